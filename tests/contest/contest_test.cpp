@@ -25,7 +25,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr unsigned kSequences = 10'000;
+constexpr unsigned kSequences = 2'000;
 constexpr int kPeriods = 10;                      // of a sequence
 constexpr milliseconds kPeriod{50};               // from one decision to the next
 constexpr std::int32_t kModes = 3, kSources = 3;  // from 1 on
@@ -264,7 +264,7 @@ class Contest {
   std::optional<Running> workspace_, actor_;
 };
 
-TEST(Contest, in_ten_thousand_random_sequences_the_actor_follows_the_focus) {
+TEST(Contest, in_random_sequences_the_actor_follows_the_focus) {
   hc::stop_descriptor();  // once, before threads ask for it
   for (unsigned seed = 1; seed <= kSequences; ++seed) {
     SCOPED_TRACE(seed);

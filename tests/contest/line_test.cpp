@@ -150,16 +150,16 @@ class Sequence {
   hc::MonotonicTime obeyed_at_{};
 };
 
-TEST(Line, in_ten_thousand_random_sequences_only_who_has_the_focus_commands_the_neck) {
+TEST(Line, in_random_sequences_only_who_has_the_focus_commands_the_neck) {
   NeckAtLine neck;
   int commanded = 0;
-  for (unsigned seed = 1; seed <= 10'000; ++seed) {
+  for (unsigned seed = 1; seed <= 2'000; ++seed) {
     SCOPED_TRACE(seed);
     commanded += Sequence(seed, neck).run();
     ASSERT_FALSE(testing::Test::HasFailure());
   }
-  EXPECT_GT(commanded, 10'000);
-  EXPECT_GT(neck.dropped, 10'000);
+  EXPECT_GT(commanded, 2'000);
+  EXPECT_GT(neck.dropped, 2'000);
 }
 
 TEST(Line, the_neck_halts_within_a_fifth_of_a_second_of_the_last_focus) {

@@ -9,7 +9,6 @@ import pathlib
 import re
 import signal
 import socket
-import time
 import unittest
 
 from graphs import Graphs
@@ -163,34 +162,6 @@ class Demonstrations(Graphs):
         at = {mode: time for time, mode in reversed(changes)}
         self.assertGreater(min(at[2] - at[1], at[3] - at[2]), 0.8e9)
 
-    def test_a_person_takes_the_focus_whatever_the_dwell_time_says(self):
-        self.write_copy("contest.toml", "actor.done", "workspace.focus")
-        person = '[modules.workspace]\ninputs.person = "unix-listen:person"\n'
-        self.write(
-            "contest.toml", self.read("contest.toml").replace("[modules.workspace]\n", person)
-        )
-        process = self.start(
-            "exec hc run contest.toml --set workspace.dwell=3600 --set workspace.person_expiry=3600 "
-            "--set looking.script=0:0.9 --set tracking.script=0:0 --set reading.script=0:0 2>errors"
-        )
-        latest = lambda: [each.rows[0][0] for each in self.recorded("workspace.focus")[-1:]]
-        self.wait_for(lambda: latest() == [1], "errors")
-        with socket.socket(socket.AF_UNIX) as person:
-            person.connect(self.path("person"))
-            say = lambda salience: person.sendall(b"1 0 0 0 8 0 120190 3 0 1 1\n%s\n" % salience)
-            for salience in (b"nan", b"-1", b"2"):
-                say(salience)  # refused, and nothing ends
-            say(b"0.01")
-            self.wait_for(lambda: latest() == [3], "errors")
-            count = len(self.recorded("actor.done"))
-            say(b"0")
-            self.wait_for(lambda: latest() == [1], "errors")
-        self.wait_for(lambda: len(self.recorded("actor.done")) > count + 1, "errors")
-        self.interrupt(process)
-        self.assertEqual({tuple(each.rows[0]) for each in self.recorded("actor.done")}, {(1, 1)})
-        self.assertIn("workspace: bid refused: Malformed: salience nan", self.read("errors"))
-        self.assertIn("bids refused: 3 for their salience", self.read("errors"))
-
     def test_the_focus_is_shown_though_no_module_hears_it(self):
         self.write(
             "g.toml",
@@ -260,39 +231,11 @@ parameters.script = "0:0.1"
         self.wait_for(lambda: modes() == ["look", "rest"], "errors")
         self.interrupt(process)
 
-    def test_nobody_commands_the_actor_while_the_workspace_hangs_or_is_dead(self):
-        self.write_copy("contest.toml", "actor.done", "looking.command", never="failure")
-        process = self.start(
-            "exec hc run contest.toml --set looking.script=0:0.9 --set tracking.script=0:0 "
-            "--set reading.script=0:0 2>errors"
-        )
-        done = lambda: len(self.recorded("actor.done"))
-        sent = lambda: len(self.recorded("looking.command"))
-        self.wait_for(lambda: done() > 3, "errors")
-        messages = self.observe(process, "contest")
-        focused = lambda state: any(state["focus"].values())
-        state = self.state(messages, focused)
-        workspace = self.module(state, "workspace")["pid"]
-        os.kill(workspace, signal.SIGSTOP)
-        self.state(messages, lambda state: not focused(state))
-        before, so_far = done(), sent()
-        self.wait_for(lambda: sent() > so_far + 20, "errors")
-        self.assertEqual(done(), before)
-        os.kill(workspace, signal.SIGCONT)
-        self.state(messages, focused)
-        self.wait_for(lambda: done() > before, "errors")
-        os.kill(workspace, signal.SIGKILL)
-        again = lambda state: self.module(state, "workspace")["pid"] not in (0, workspace)
-        self.state(messages, lambda state: again(state) and focused(state))
-        before = done()
-        self.wait_for(lambda: done() > before, "errors")
-        self.interrupt(process)
-        self.assertIn("workspace: focus: ", self.read("errors"))
 
+class Stopped(Graphs):
+    """What the robot was stopped by, outside the workspace; its rules are in modules/workspace."""
 
-class Sources(Graphs):
-    """Who may give the focus away, and who stops the robot: each source by itself."""
-
+    LOOK = {"mode": "look", "number": 1}
     GRAPH = """
 [modes]
 look = 1
@@ -300,153 +243,41 @@ look = 1
 module = "workspace"
 [modules.workspace]
 inputs.bids = "looking.bid"
-[[modules.workspace.inputs.stop]]
-from = "unix-listen:stop"
-[[modules.workspace.inputs.person]]
-from = "unix-listen:person"
+inputs.stop = "unix-listen:stop"
 [modules.looking]
 program = "bidder"
 mode = "look"
 """
-    LOOK = {"mode": "look", "number": 1}
 
-    def start_workspace(self):
-        self.name = "sources_%d" % os.getpid()
+    def test_a_stop_is_shown_and_outlives_the_workspace(self):
+        name = "stopped_%d" % os.getpid()
         self.write_graph(self.GRAPH)
-        self.process = self.start("exec hc run g.toml --as %s 2>errors" % self.name)
-        self.messages = self.observe_soon()
-        self.wait_focus(self.LOOK)
-
-    def observe_soon(self):
-        found = []
-
-        def observes():
-            try:
-                found.append(self.observe(self.process, self.name))
-            except OSError:
-                return False
-            return True
-
-        wait_until(observes)
-        return found[0]
-
-    def wait_focus(self, focus):
-        return self.state(self.messages, lambda state: state["focus"]["workspace"] == focus)
-
-    def connect(self, name):
-        link = socket.socket(socket.AF_UNIX)
-        self.addCleanup(link.close)
-        wait_until(lambda: link.connect_ex(self.path(name)) == 0)
-        return link
-
-    @staticmethod
-    def say(link, source, word):
-        link.sendall(b"1 %d 0 0 8 0 120100 0 0 1 1\n%d\n" % (source, word))
-
-    def wait_said(self, text, count=1):
-        wait_until(lambda: self.read("errors").count(text) >= count)
-
-    def kill(self, module):
-        before = self.module(self.state(self.messages), module)["pid"]
-        os.kill(before, signal.SIGKILL)
-        again = lambda state: (
-            self.module(state, module)["pid"] not in (0, before)
-            and self.module(state, module)["status"] == "running"
+        process = self.start("exec hc run g.toml --as %s 2>errors" % name)
+        wait_until(lambda: "workspace: focus: look" in self.read("errors"))
+        messages = self.observe(process, name)
+        wait_focus = lambda focus: self.state(
+            messages, lambda state: state["focus"]["workspace"] == focus
         )
-        return self.state(self.messages, again)
 
-    def test_a_source_does_not_withdraw_the_bid_of_another(self):
-        for port in ("person", "bids"):
-            focus = "focus." + port
-            process = self.start(
-                "exec hc workspace --in %s=unix-listen:%s.in --out focus=file:%s --expiry 60 "
-                "--mode_names point=2" % (port, port, focus)
-            )
-            link = self.connect(port + ".in")
-            row = b"1 %d 0 0 8 0 120190 2 0 1 1\n%d\n"
-            link.sendall(row % (1, 1))
-            rows = lambda: [each.rows[0][0] for each in read_messages(self.path(focus))]
-            wait_until(lambda: 2 in rows())
-            link.sendall(row % (2, 0))
-            count = len(rows())
-            wait_until(lambda: len(rows()) > count + 20)
-            self.assertEqual(set(rows()[rows().index(2) :]), {2})
-            link.sendall(row % (1, 0))
-            wait_until(lambda: rows()[-1] == 0)
-            process.kill()
+        def say(word):
+            with socket.socket(socket.AF_UNIX) as link:
+                wait_until(lambda: link.connect_ex(self.path("stop")) == 0)
+                link.sendall(b"1 12 0 0 8 0 120100 0 0 1 1\n%d\n" % word)
 
-    def test_a_bid_for_no_mode_of_the_graph_or_of_another_time_is_refused(self):
-        self.start_workspace()
-        link = self.connect("person")
-        now = time.time_ns()
-        for mode, stamp in ((9, 0), (1, 1), (1, now - 3600 * 10**9), (1, now + 3600 * 10**9)):
-            link.sendall(b"1 5 0 0 8 %d 120190 %d 0 1 1\n1\n" % (stamp, mode))
-        self.wait_said("bid refused: Malformed: the graph has no mode 9")
-        self.stop(self.process)
-        self.assertIn("1 for their mode, 3 for their time", self.read("errors"))
-        self.assertNotIn("a person", self.read("errors"))
-
-    def test_each_stop_holds_until_its_own_source_or_a_person_clears_it(self):
-        self.start_workspace()
-        link = self.connect("stop")
-        self.say(link, 7, 1)
-        self.assertEqual(self.wait_focus(None)["stopped"], ["workspace"])
+        workspace = self.module(wait_focus(self.LOOK), "workspace")["pid"]
+        say(1)
+        self.assertEqual(wait_focus(None)["stopped"], ["workspace"])
         self.assertIn(", stopped", self.shell("hc ps"))
-        self.assertIn(", stopped", self.shell("hc top --once " + self.name))
-        self.say(link, 12, 1)
-        self.say(link, 7, 0)
-        self.say(link, 13, 0)
-        self.say(link, 14, 9)
-        self.wait_said("stop refused: a stop is 0, 1, 2 or 3, not 9")
-        self.assertEqual(self.state(self.messages)["stopped"], ["workspace"])
-        self.say(link, 12, 0)
-        self.assertEqual(self.wait_focus(self.LOOK)["stopped"], [])
-        for source in (7, 12):
-            self.say(link, source, 1)
-        self.wait_focus(None)
-        self.say(link, 13, 2)
-        self.wait_focus(self.LOOK)
-        self.assertIn("stopped by source 7", self.read("errors"))
-        self.assertIn("stop cleared by source 13", self.read("errors"))
-
-    def test_a_stop_outlives_the_workspace(self):
-        self.start_workspace()
-        self.say(self.connect("stop"), 12, 1)
-        self.wait_focus(None)
-        for _ in range(3):
-            state = self.kill("workspace")
-            self.assertEqual(state["stopped"], ["workspace"])
-            self.assertEqual(state["focus"]["workspace"], None)
-        self.assertEqual(self.ask(self.process, "restart workspace", name=self.name), ["ok"])
-        self.wait_said("stopped by source 12, before the restart", 4)
-        link = self.connect("stop")
-        self.say(link, 12, 0)  # as one that was restarted too
-        self.wait_said("the stop of source 12 holds")
-        self.assertEqual(self.state(self.messages)["stopped"], ["workspace"])
-        self.say(link, 12, 2)
-        self.assertEqual(self.wait_focus(self.LOOK)["stopped"], [])
-        self.assertEqual(self.kill("workspace")["stopped"], [])
-        self.wait_focus(self.LOOK)
-
-    def test_who_guards_and_is_silent_halts_the_robot(self):
-        self.start_workspace()
-        link = self.connect("stop")
-        silent = "focus: none; source 12 is silent: its stop could not arrive"
-        for _ in range(2):
-            self.say(link, 12, 0)
-        self.wait_said(silent)
-        self.wait_focus(None)
-        self.assertEqual(self.state(self.messages)["stopped"], [])
-        self.kill("workspace")  # what guards outlives it too
-        self.wait_focus(None)
-        link = self.connect("stop")
-        focused = self.read("errors").count("focus: look")
-        self.say(link, 12, 0)
-        self.wait_said("focus: look", focused + 1)
-        self.wait_said(silent, 2)
-        self.say(link, 12, 0)
-        self.say(link, 12, 3)
-        self.wait_focus(self.LOOK)
+        self.assertIn(", stopped", self.shell("hc top --once " + name))
+        os.kill(workspace, signal.SIGKILL)
+        wait_until(lambda: "stopped by source 12, before the restart" in self.read("errors"))
+        state = self.state(
+            messages, lambda state: self.module(state, "workspace")["pid"] not in (0, workspace)
+        )
+        self.assertEqual((state["stopped"], state["focus"]["workspace"]), (["workspace"], None))
+        say(2)
+        self.assertEqual(wait_focus(self.LOOK)["stopped"], [])
+        self.stop(process)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ PRELOAD = "env WALL_CLOCK=FOLDER/clock LD_PRELOAD=%s" % (BUILD / "tests/wall_clo
 
 
 class Clock(Safety):
-    begin = {"prefix": PRELOAD, "by_arrival": True}
+    begin = dict(Safety.begin, prefix=PRELOAD, by_arrival=True)
 
     def step(self, seconds):
         new = pathlib.Path(self.head.path("clock.new"))

@@ -31,7 +31,22 @@ from web_socket import BINARY, CLOSE, WebSocket, get  # noqa: E402
 IS_FULL = os.environ.get("HC_FULL") == "1"
 HEAD = ROOT / "graphs/head.toml"
 SETTINGS = {"head_tracker.listen": "127.0.0.1:0", "web.port": 0, "head_eyes.ball": "roll"}
-SMALL = {"head_eyes.width": 80, "head_eyes.height": 60}  # images, where these are no matter
+# Images that take little time, where these are no matter, and what they are to whom they matter;
+# with them it cannot be calibrated.
+SMALL = {
+    "head_eyes.width": 160,
+    "head_eyes.height": 120,
+    "head_eyes.focal": 120,
+    "rectify.focal": 120,
+    "calibrate.salience": 0,
+    "left_ball.min_area": 3,
+    "right_ball.min_area": 3,
+    **{
+        "%s.%s" % (name, parameter): value
+        for name in ("track", "read_gaze")
+        for parameter, value in (("focal", 120), ("cx", 79.5), ("cy", 59.5))
+    },
+}
 PATIENCE = 40  # with which a test waits for what must come [s]
 MOST_PAN = 0.5  # how far a person turns the head here [rad]
 
@@ -482,9 +497,10 @@ class Rows(unittest.TestCase):
 
 
 class Safety(Rows):
-    """Rows that are tried on one head, one after the other."""
+    """Rows that are tried on one head, one after the other; it has small images, unless these are
+    tried for as long as the table says."""
 
-    begin = {}  # arguments of Head.begin()
+    begin = {} if IS_FULL else dict(SMALL, is_calibrated=False)  # arguments of Head.begin()
 
     @classmethod
     def setUpClass(cls):
