@@ -3,7 +3,6 @@
 """hc check on broken graphs: what it says of them is pinned beside lib/graph, and here where."""
 
 import os
-import re
 import unittest
 
 from harness import DATA, Pipes, ROOT

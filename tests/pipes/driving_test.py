@@ -4,7 +4,6 @@
 those that only a broken system exceeds."""
 
 import math
-import os
 import pathlib
 import re
 import socket

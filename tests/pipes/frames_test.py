@@ -100,40 +100,6 @@ class Frames(Pipes):
         for step, time in zip(steps, times):
             self.expect(found[time], world_left_eye(step))
 
-    def test_outside_of_what_is_known_nothing_is_guessed(self):
-        times = [START - 5_000_000, START + STEP, START + 10 * STEP]
-        found = self.run_graph(range(10), times)
-        self.assertEqual(list(found), [START + STEP])
-        self.expect(found[START + STEP], world_left_eye(1))
-        known = "frames: head in robot is known from %d to " % START
-        self.assertRegex(
-            self.logged, known + r"\d+ ns, asked for %d ns: 5.0 ms too early" % times[0]
-        )
-        last = START + 9 * STEP
-        self.assertIn(
-            known + "%d ns, asked for %d ns: 100.0 ms too late" % (last, times[2]), self.logged
-        )
-
-    def test_a_gap_is_not_bridged(self):
-        times = [START + STEP, START + 2 * STEP, START + 5 * STEP // 2, START + 13 * STEP]
-        found = self.run_graph([0, 1, 12, 13], times)
-        self.assertEqual(sorted(found), [times[0], times[3]])
-        for time in times[1:3]:
-            self.assertIn(
-                "frames: head in robot is not known between %d and %d ns, asked for %d ns: a gap "
-                "of 1.1 s" % (START + STEP, START + 12 * STEP, time),
-                self.logged,
-            )
-        found = self.run_graph([0, 1, 3, 13], times[:3])  # 1 s is none
-        self.assertEqual(sorted(found), times[:3])
-        self.expect(found[times[2]], world_left_eye(2.5))
-
-    def test_text_that_is_no_frames_ends_the_module_with_what_is_wrong(self):
-        self.write("images", image(1, START))
-        module = BUILD / "tests/whereabouts"
-        self.shell("%s --frames 'head 5 robot a.b 1' <images" % module, status=1)
-        self.assertIn("frames: frame 1, head: its number is 3, not 5", self.err)
-
     def expect_near(self, numbers, wanted):
         for number, each in zip(numbers, wanted):
             self.assertAlmostEqual(number, each, delta=1e-4)  # as printed

@@ -145,10 +145,9 @@ class Necks(Pipes):
         """Commands a pan again and again until something is so."""
         wait_until(lambda: self.command(pan, 0.0) or condition(self.motion.angles()[-1][1]))
 
-    def go(self, pan, tilt=0.0, limited=None):
-        """Commands a gaze until the unit is there, or where it is limited to: not once alone, since
-        what was commanded is forgotten when the unit answers too late, as on a busy machine."""
-        end_pan, end_tilt = limited or (pan, tilt)
+    def go(self, pan, tilt=0.0):
+        """Commands a gaze until the unit is there: not once alone, since what was commanded is
+        forgotten when the unit answers too late, as on a busy machine."""
         commanded = 0
 
         def is_there():
@@ -157,7 +156,7 @@ class Necks(Pipes):
                 self.command(pan, tilt)
                 commanded = time.monotonic()
             now_tilt, now_pan = self.motion.angles()[-1]
-            return abs(now_pan - end_pan) < STEP and abs(now_tilt - end_tilt) < STEP
+            return abs(now_pan - pan) < STEP and abs(now_tilt - tilt) < STEP
 
         wait_until(is_there)
 

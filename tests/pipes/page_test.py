@@ -10,13 +10,11 @@ import re
 import resource
 import signal
 import ssl
-import struct
 import tarfile
 import unittest
 
-from feeder import Feeder
 from graphs import GRAPH, Graphs
-from web_socket import BINARY, CLOSE, TEXT, Refused, WebSocket, connect, get, read_head
+from web_socket import BINARY, TEXT, Refused, WebSocket, connect, get, read_head
 
 TASKS = (
     GRAPH
@@ -88,13 +86,6 @@ class Page(Graphs):
         opened = WebSocket(self.port, path, cookie, context, **fields)
         self.addCleanup(opened.close)
         return opened
-
-    def keep_alive(self, drive, *frames):
-        """Says what a page does all the time while somebody drives, until the end of the test."""
-        says = lambda _: [drive.send_frame(BINARY, each) for each in (ALIVE + b"0\n", *frames)]
-        feeder = Feeder(says, 0.05)
-        self.addCleanup(feeder.end)
-        return feeder
 
     def next(self, graph):
         """The next src and string; keeps the last session, which is sent only when it changes."""
@@ -295,30 +286,6 @@ class Graph(Page):
         graph.send("stop")
         self.assertEqual(graph.code()[0], 1001)
         process.communicate()
-
-    def test_a_stop_lasts_until_it_is_cleared(self):
-        process = self.serve()
-        cookie = self.session()
-        graph, drive = self.socket("/graph", cookie), self.socket("/drive", cookie)
-        self.hear(graph, 3, lambda text: '"stopped":false' in text)
-        stopped = lambda text: json.loads(text)["focus"]["workspace"] is None
-        in_focus = lambda text: not stopped(text)
-        driver = self.keep_alive(drive, number(5, 1, 1))
-        self.hear(graph, 1, in_focus)
-        self.assertEqual(self.command(graph, "estop"), ["ok"])
-        self.hear(graph, 1, stopped)
-        state = json.loads(self.hear(graph, 1))
-        pids = {module["name"]: module["pid"] for module in state["modules"]}
-        # Both ends of it may crash.
-        os.kill(pids["workspace"], signal.SIGKILL)
-        self.hear(graph, 2, lambda text: text == "workspace: started")
-        self.hear(graph, 2, lambda text: "workspace: stopped" in text)
-        self.assertEqual(self.command(graph, "estop clear"), ["ok"])
-        self.hear(graph, 3, lambda text: '"stopped":false' in text)
-        self.hear(graph, 1, in_focus)
-        driver.end()  # silence commands nothing
-        self.hear(graph, 1, stopped)
-        self.stop(process)
 
 
 class Stop(Page):
@@ -526,41 +493,6 @@ class Seat(Page):
         self.assertIn(b"is not of now", words)
         second.close()
         self.hear(graph, 3, lambda text: '"driver":null' in text)
-        self.stop(process)
-
-    def test_who_sits_holds_the_focus_though_nothing_is_touched(self):
-        process = self.serve(
-            TASKS.replace("look = 1", "look = 1\nother = 2").replace(
-                '"look.bid"', '["look.bid", "other.bid"]'
-            )
-            + '[modules.other]\nprogram = "gaze"\nmode = "other"\ninputs.target = "web.target"\n'
-        )
-        cookie = self.session()
-        graph, drive = self.socket("/graph", cookie), self.socket("/drive", cookie)
-        self.hear(graph, 1, lambda text: json.loads(text)["focus"]["workspace"] is None)
-        driver = self.keep_alive(drive)
-        drive.send_frame(BINARY, number(5, 1, 1))
-        focus = lambda text: (json.loads(text)["focus"]["workspace"] or {}).get("number")
-
-        def changes(until):
-            """The modes in focus one after the other, until a condition."""
-            seen = []
-            while not until(seen):
-                src, rows = self.next(graph)
-                if src == 1:
-                    seen.append(focus("\n".join(rows)))
-            return [mode for i, mode in enumerate(seen) if i == 0 or mode != seen[i - 1]]
-
-        # Two states a second come, and one more at each change.
-        self.assertIn(changes(lambda seen: len(seen) > 8), ([1], [None, 1]))
-        drive.send_frame(BINARY, number(5, 1, 2))
-        self.assertIn(changes(lambda seen: seen[-2:] == [2, 2]), ([1, 2], [2]))
-        driver.end()
-        for mode in (3, 0, -1):
-            drive.send_frame(BINARY, number(5, 1, mode))
-            code, why = drive.code()
-            self.assertEqual(code, 1007)
-            drive = self.socket("/drive", cookie)
         self.stop(process)
 
 

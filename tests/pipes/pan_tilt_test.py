@@ -11,7 +11,7 @@ import time
 import unittest
 
 from harness import wait_until
-from necks import Necks, PROGRAMS, SLOWLY, STEP
+from necks import Necks, SLOWLY, STEP
 
 
 class PanTilt(Necks):
@@ -34,40 +34,6 @@ class PanTilt(Necks):
             self.assertAlmostEqual(one, other)
         self.assertEqual([row[3] for row in rows], [0, 0, 0, 1])
         self.assertAlmostEqual(rows[0][1], -math.sin(pan))
-
-    def test_gaze_on_the_way_is_of_its_time(self):
-        self.start_both("--hold 0 --rate 100", "--bytes_per_second 960")
-        errors, goal = [], 1.0
-        while len(errors) <= 3:  # and back, and so on, where it was held up on its way
-            self.go(goal)
-            self.gaze.wait(2)
-            goal = 1.0 - goal
-            truth = [(stamp, rows[0][2]) for stamp, _, rows in self.motion.messages]
-            errors.clear()
-            for stamp, _, ((_, _, pan),) in self.gaze.messages:
-                nearest = min(truth, key=lambda each: abs(each[0] - stamp))
-                if abs(nearest[0] - stamp) < 6e6 and 0.1 < pan < 0.9:
-                    errors.append(abs(nearest[1] - pan))
-        self.assertLess(sorted(errors)[len(errors) // 2], 0.1)  # 0.1 s at its speed
-
-    def test_commands_beyond_the_limits_go_to_the_limit(self):
-        self.start_both("--hold 0 --speed 2.5")
-        self.go(9.0, 9.0, limited=(3090 * STEP, 907 * STEP))
-        self.assertEqual(self.neck.count("refused"), 0)
-
-    def test_stale_commands_and_wrong_ones_are_not_carried_out(self):
-        self.start_both("--hold 0")
-        self.command(-1.0, 0.0, -30)
-        self.command(-1.0, 0.0, +30)
-        self.command(float("nan"), 0.0)
-        self.command(-1.0, 0.0, timed=False)
-        self.go(0.3)
-        self.assertGreaterEqual(min(pan for _, pan in self.motion.angles()), 0)
-        counted = self.neck.count("further ones are counted")
-        self.assertEqual(counted - self.neck.count("not connected (further"), 3)
-        self.neck.process.terminate()
-        self.neck.wait_line("1 not finite, 2 stale, 1 without a time")
-        self.assertEqual(self.neck.process.wait(), 0)
 
     def stop_for(self, nanoseconds, program, meanwhile):
         """Stops a program as a debugger does, does something, and lets it continue later."""
@@ -112,24 +78,6 @@ class PanTilt(Necks):
         self.start_ready()
         self.assertLess(self.wait_rest(), 2.4)
 
-    def test_the_unit_stops_where_commands_end(self):
-        self.start_both(SLOWLY)
-        self.drive(2.5, lambda pan: pan > 0.05)
-        self.assertLess(self.wait_rest(), 2.4)
-
-    def test_garbage_does_not_keep_the_unit_from_being_stopped(self):
-        self.start_both(SLOWLY)
-        self.drive(2.5, lambda pan: pan > 0.05)
-        self.fake.set("garbage=1")
-        self.neck.wait_line("garbage")
-        begin = len(self.motion.messages)
-        stands = lambda pans: len(pans) > 100 and min(pans[-100:]) == max(pans[-100:])
-        # Whoever commands does not know.
-        wait_until(
-            lambda: self.command(2.5, 0.0) or stands([p for _, p in self.motion.angles()[begin:]])
-        )
-        self.assertLess(self.motion.angles()[-1][1], 2.4)
-
     def test_a_name_that_stays_is_opened_when_it_is_there_and_there_again(self):
         link = self.path("neck")
         self.start_neck("--hold 0", device=link)
@@ -166,14 +114,6 @@ class PanTilt(Necks):
         self.drive(-2.5, lambda pan: pan < -0.05)
         self.assertGreater(self.wait_rest(), -2.4)
 
-    def test_the_unit_stops_when_the_driver_ends(self):
-        self.start_both("--hold 0 " + SLOWLY)
-        self.command(2.5, 0.0)
-        wait_until(lambda: self.motion.angles()[-1][1] > 0.05)
-        self.neck.process.terminate()
-        self.assertEqual(self.neck.process.wait(), 0)
-        self.assertLess(self.wait_rest(), 2.4)
-
     def test_unplugged_and_plugged_in_again(self):
         self.start_both("--hold 0")
         for _ in range(2):
@@ -198,36 +138,6 @@ class PanTilt(Necks):
         self.fake.set("silent=false")
         self.answers_again(begin, 4)
         self.assertLess(max(pan for _, pan in self.motion.angles()), 0.1 + STEP)
-
-    def test_late(self):
-        self.start_both("--hold 0")
-        self.fake.set("answer_delay=0.2")
-        begin = len(self.neck.lines)
-        self.gaze.wait(4)
-        self.go(0.2)
-        self.assertEqual(self.neck.lines[begin:], [])
-        self.fake.set("answer_delay=0.8")
-        self.neck.wait_line("does not answer", begin)
-        self.fake.set("answer_delay=0")
-        self.answers_again(begin, 10)
-        for tilt, pan in self.gaze.angles():
-            self.assertTrue(-STEP <= pan <= 0.2 + STEP and abs(tilt) <= STEP, (pan, tilt))
-
-    def test_garbage(self):
-        self.start_both("--hold 0")
-        begin = len(self.neck.lines)
-        self.fake.set("garbage=0.02")
-        self.neck.wait_line("garbage", begin)
-        self.gaze.wait(20)
-        self.fake.set("garbage=0")
-        self.answers_again(begin, 10)
-        self.go(0.2)
-
-    def test_no_device(self):
-        process = self.start("exec %span_tilt --device /dev/null --in - --out gaze.mtp" % PROGRAMS)
-        self.assertIn(b"/dev/null: not a serial line", process.stderr.readline())
-        process.terminate()
-        self.assertEqual(process.wait(), 0)
 
     def test_either_killed_leaves_nothing_and_is_found_again(self):
         self.start_both("--hold 0")

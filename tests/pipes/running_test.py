@@ -56,36 +56,6 @@ class Running(Graphs):
         self.assertNotIn("brightness: started", err)
         self.assertNotIn("camera: started", err)
 
-    def test_commands_change_the_graph(self):
-        self.write_graph(GRAPH)
-        process = self.run_graph()
-        observed = self.observe(process)
-        self.assertEqual(
-            self.ask(process, "add more brightness", "link camera.left more.image rate=10"), ["ok"]
-        )
-        self.state(observed, lambda state: self.module(state, "more"))
-        self.assertEqual(self.ask(process, "set camera.rate=20"), ["ok"])
-        self.state(
-            observed, lambda state: self.module(state, "camera")["parameters"]["rate"] == "20"
-        )
-        self.assertEqual(self.ask(process, "remove more"), ["ok"])
-        self.state(observed, lambda state: not self.module(state, "more"))
-        self.stop(process)
-
-    def test_a_link_lives_on_with_another_policy(self):
-        self.write_graph(GRAPH.replace("[modules", 'restart = "never"\n[modules', 1))
-        process = self.run_graph()
-        observed = self.observe(process)
-        link = lambda state: state["links"][0]
-        messages = link(self.state(observed, lambda state: link(state)["messages"] > 0))["messages"]
-        self.assertEqual(self.ask(process, "link camera.left brightness.image rate=40"), ["ok"])
-        self.state(
-            observed,
-            lambda state: link(state)["rate"] == 40 and link(state)["messages"] > messages + 10,
-        )
-        _, err = self.stop(process)
-        self.assertNotIn("started", err)
-
     def test_commands_change_the_graph_as_it_was_read_last(self):
         self.write_graph(GRAPH)
         process = self.run_graph()
@@ -147,24 +117,6 @@ hc cat --raw "$in" | hc play --speed max --out "$out" /dev/stdin
         await_more()
         self.stop(process)
 
-    def test_wrong_commands_are_answered(self):
-        self.write_graph(GRAPH)
-        process = self.run_graph()
-        for command, answer in (
-            ("set camera.rate=fast", "fast"),
-            ("set camra.rate=1", 'did you mean "camera"?'),
-            ("add more brihtness", 'did you mean "brightness"?'),
-            ("remove brihtness", 'did you mean "brightness"?'),
-            ("link camera.left brightness.imag", 'did you mean "image"?'),
-            ("unlink camera.left more.image", "no link from camera.left to more.image"),
-            ("restart brihtness", 'no module "brihtness"'),
-            ("dance", 'no command "dance"'),
-        ):
-            rows = self.ask(process, command)
-            self.assertIn(answer, "\n".join(rows), command)
-            self.assertNotIn("ok", rows)
-        self.stop(process)
-
     def ask_for_a_program_that_hangs(self, process):
         """Who asks for a module whose program does not answer, and the number of that."""
         self.write("hang", "#!/bin/sh\necho $$ > asked\nexec sleep 1000\n", 0o755)
@@ -200,60 +152,6 @@ hc cat --raw "$in" | hc play --speed max --out "$out" /dev/stdin
         _, hangs = self.ask_for_a_program_that_hangs(process)
         os.kill(process.pid, signal.SIGKILL)
         wait_until(lambda: self.has_ended(hangs))
-
-    def test_a_killed_module_comes_back_and_messages_flow_again(self):
-        self.write_graph(GRAPH)
-        process = self.run_graph()
-        observed = self.observe(process)
-        messages = lambda state: state["links"][0]["messages"]
-        is_running = lambda state: all(each["status"] == "running" for each in state["modules"])
-        state = self.state(observed, lambda state: is_running(state) and messages(state) > 0)
-        for name in ("camera", "brightness") * 3:
-            before = self.module(state, name)
-            os.kill(before["pid"], signal.SIGKILL)
-            is_back = lambda state: (
-                is_running(state) and self.module(state, name)["pid"] not in (0, before["pid"])
-            )
-            back = self.state(observed, is_back)
-            state = self.state(
-                observed, lambda state: is_running(state) and messages(state) > messages(back)
-            )
-            after = self.module(state, name)
-            self.assertEqual(after["restarts"], before["restarts"] + 1)
-        _, err = self.stop(process)
-        self.assertEqual(err.count("camera: killed by signal 9; restarting"), 3)
-
-    def test_a_stopped_module_is_shown_as_stalled(self):
-        self.write_graph(GRAPH)
-        process = self.run_graph()
-        observed = self.observe(process)
-        stalled = self.state(
-            observed, lambda state: self.module(state, "camera")["status"] == "running"
-        )
-        pid = self.module(stalled, "camera")["pid"]
-        os.kill(pid, signal.SIGSTOP)
-        is_stalled = lambda state: self.module(state, "camera")["status"] == "stalled"
-        detail = self.module(self.state(observed, is_stalled), "camera")["detail"]
-        self.assertEqual(detail, "stopped by a signal")
-        os.kill(pid, signal.SIGCONT)
-        self.state(observed, lambda state: not is_stalled(state))
-        os.kill(pid, signal.SIGSTOP)
-        self.stop(process)
-
-    def test_a_running_module_is_reported_and_not_restarted(self):
-        self.write_graph(GRAPH)
-        process = self.run_graph()
-        observed = self.observe(process)
-        self.assertEqual(self.ask(process, "set camera.rate=100"), ["ok"])
-        rows = self.ask(process, "add more brightness", "link camera.left more.image keep=all")
-        self.assertEqual(rows, ["ok"])
-        counts = lambda state: {link["to"]: link["messages"] for link in state["links"]}
-        self.state(observed, lambda state: counts(state).get("more.image", 0) > 0)
-        self.assertEqual(self.ask(process, "unlink camera.left more.image"), ["ok"])
-        state = self.state(observed, lambda state: len(state["links"]) == 1)
-        self.assertEqual([module["restarts"] for module in state["modules"]], [0, 0, 0])
-        self.assertEqual(self.module(state, "camera")["parameters"]["rate"], "100")
-        self.stop(process)
 
     def test_nobody_needs_to_read_what_is_reported(self):
         """A pager, or a terminal after Ctrl-S, keeps no module from being seen to."""

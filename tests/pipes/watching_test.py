@@ -292,57 +292,6 @@ class Watching(Graphs):
         wait_until(lambda: re.search(waits, self.hc("top " + name)))
         self.stop_named(name, process)
 
-    def test_a_reader_that_hangs_holds_nobody_for_long(self):
-        readers = ("one", "two", "three")
-        camera = GRAPH.partition("[modules.brightness]")[0].replace("rate = 50", "rate = 200")
-        text = camera + "".join(
-            """[modules.%s]
-program = "brightness"
-inputs.image = { from = "camera.left", keep = "all", timeout = 1 }
-"""
-            % reader
-            for reader in readers
-        )
-        name, process = self.run_named("held", text, "three: started")
-        messages = self.observe(process, name)
-
-        def taken(state, reader):
-            link = next(each for each in state["links"] if each["to"] == reader + ".image")
-            return link["per_second"] > 0
-
-        for hung in readers:
-            others = [each for each in readers if each != hung]
-            state = self.state(messages, lambda state: all(taken(state, r) for r in readers))
-            pid = self.module(state, hung)["pid"]
-            os.kill(pid, signal.SIGSTOP)
-            waiting = self.state(
-                messages, lambda state: self.module(state, "camera")["waits"] is not None
-            )
-            self.assertEqual(self.module(waiting, "camera")["waits_for"], hung + ".image")
-            self.state(
-                messages,
-                lambda state: self.module(state, "camera")["waits"] is None
-                and all(taken(state, other) for other in others),
-            )
-            os.kill(pid, signal.SIGCONT)
-            self.state(messages, lambda state: self.module(state, hung)["status"] == "running")
-        self.stop_named(name, process)
-
-    def test_a_module_that_hangs_is_restarted(self):
-        name, process = self.run_named("hangs", "hang = 1\n" + GRAPH)
-        messages = self.observe(process, name)
-
-        def running(state, restarts=0):
-            module = self.module(state, "brightness")
-            return module["status"] == "running" and module["restarts"] == restarts
-
-        pid = self.module(self.state(messages, running), "brightness")["pid"]
-        os.kill(pid, signal.SIGSTOP)
-        self.await_lines(process, "brightness: hung for 1 s; restarting")
-        again = self.state(messages, lambda state: running(state, 1))
-        self.assertEqual(self.module(again, "camera")["restarts"], 0)
-        self.stop_named(name, process)
-
     def test_help_says_what_each_word_is(self):
         for verb, words in (
             ("add", ["MODULE", "PROGRAM", "SETTING"]),

@@ -8,7 +8,6 @@ import unittest
 from types import SimpleNamespace
 from unittest import mock
 
-import numpy
 
 from package import Package, WATCHDOG, hc, wait_until
 
@@ -161,13 +160,6 @@ class Graphs(Package):
             with hc.start(self.path("wrong.toml")):
                 pass
         self.assertEqual(caught.exception.code, "Invalid")
-
-    def test_a_killed_module_is_restarted(self):
-        with hc.start(self.graph) as graph:
-            before = graph.modules["darken"]
-            os.kill(before.pid, signal.SIGKILL)
-            wait_until(lambda: graph.modules["darken"].restarts == 1)
-            self.assertEqual(graph["darken.dark"].read().array.dtype, numpy.uint8)
 
     def test_an_exception_is_in_the_log_of_the_graph(self):
         self.write_module("darken", FILTER.replace(">> shift.value", "/ 0 * no_such_name"))
