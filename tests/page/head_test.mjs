@@ -57,7 +57,7 @@ async function takeSeat(panels = "seat") {
 
 describe("the page", { timeout: 10 * watchdog }, () => {
   before(async () => {
-    graph = new Graph("head.toml");
+    graph = new Graph("head.toml", "--set", "head_eyes.rate=10");
     browser = await openBrowser();
     context = await browser.newContext({ viewport: { width: 1000, height: 720 } });
     context.setDefaultTimeout(watchdog);
