@@ -201,10 +201,10 @@ class Watching(Graphs):
         os.kill(observer.pid, signal.SIGSTOP)
         sent = lambda state: state["links"][0]["messages"]
         first = sent(self.state(messages))
-        self.state(messages, lambda state: sent(state) > first + 100)
+        self.state(messages, lambda state: sent(state) > first + 20)
         os.kill(observer.pid, signal.SIGKILL)
         first = sent(self.state(messages))
-        self.state(messages, lambda state: sent(state) > first + 100)
+        self.state(messages, lambda state: sent(state) > first + 20)
         self.stop_named(name, process)
 
     def test_a_peer_that_has_left_is_seen(self):
