@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
     module.on(input, [&](const auto&) {
       if (!rounds) return send();
       if (rounds->next()) return send();
-      module.log("result: " + rounds->json());
+      module.log(rounds->json(), hc::Level::Result);
     });
   module.every(rate, [] {});
   return module.run(argc, argv);

@@ -37,7 +37,7 @@ def add(message):
     if taken == first:
         begin = time.perf_counter()
     elif taken == last:
-        module.log("result: %f" % ((last - first) / (time.perf_counter() - begin)))
+        module.log("%f" % ((last - first) / (time.perf_counter() - begin)), "result")
 
 
 @module.on(late)
@@ -49,7 +49,7 @@ def look(message):
 @module.on_end
 def end():
     if ways:
-        module.log("result: %f" % numpy.median(ways[len(ways) // 10 :]))
+        module.log("%f" % numpy.median(ways[len(ways) // 10 :]), "result")
 
 
 module.run()

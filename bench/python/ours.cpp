@@ -20,7 +20,7 @@ class Meter {
     if (counted_ == all)
       rate_ = static_cast<double>(all - all / kWarm) / hc::seconds(time - begin_);
   }
-  [[nodiscard]] std::string text() const { return "result: " + std::to_string(rate_); }
+  [[nodiscard]] std::string text() const { return std::to_string(rate_); }
 
  private:
   std::int64_t counted_ = 0, begin_ = 0;
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
     meter.count(module.now(), *count);
   });
   module.on_end([&] {
-    if (*role == "sink" || *role == "counter") module.log(meter.text());
+    if (*role == "sink" || *role == "counter") module.log(meter.text(), hc::Level::Result);
   });
   if (argc > 1 && std::any_of(argv, argv + argc, [](const char* word) {
         return std::strstr(word, "role=source") != nullptr ||

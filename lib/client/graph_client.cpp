@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <hc/base/format.h>
-#include <hc/mtp/rows.h>
 
 namespace hc {
 namespace {
@@ -44,7 +43,7 @@ void GraphClient::take(const Message& message) {
   is_alive_ = true;
   const auto text = message.characters();
   if (message.header.src == static_cast<std::int32_t>(GraphReport::Log)) {
-    if (const auto rows = rows_of(message); !rows.empty()) callbacks_->log(rows.front());
+    if (const auto line = parse_log_line(text)) callbacks_->log(*line, text);
   } else if (message.header.src == static_cast<std::int32_t>(GraphReport::State)) {
     if (const auto state = parse_graph_state(text)) callbacks_->state(*state, text);
   }

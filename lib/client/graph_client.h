@@ -14,6 +14,7 @@
 
 #include <hc/contract/graph_command.h>
 #include <hc/contract/graph_state.h>
+#include <hc/contract/log_line.h>
 #include <hc/contract/running_graph.h>
 #include <hc/link/intake.h>
 #include <hc/link/link.h>
@@ -28,7 +29,8 @@ class GraphClient {
   struct Callbacks {
     /// @param json  what it was read from.
     std::function<void(const GraphState& state, std::string_view json)> state;
-    std::function<void(std::string_view line)> log = [](std::string_view) {};
+    /// @param json  what it was read from.
+    std::function<void(const LogLine& line, std::string_view json)> log = [](const auto&, auto) {};
     /// The graph has ended, or cannot be read: the last call.
     std::function<void()> end = [] {};
   };

@@ -19,18 +19,16 @@ namespace hc {
 
 /// What a graph has done.
 struct RunReport {
-  GraphState state;                  ///< at its end
-  std::vector<std::string> results;  ///< "MODULE: …", of lines `result: …`, by module
-  bool stopped = false;              ///< ended because it was asked to
-  bool has_errors = false;           ///< one of the lines was `result: error: …`
+  GraphState state;              ///< at its end
+  std::vector<LogLine> results;  ///< and errors, by module
+  bool stopped = false;          ///< ended because it was asked to
 };
 
 struct RunOptions {
   int stop = -1;  ///< descriptor that is readable when the graph is to end
-  /// Gets one line for each event, and the lines of modules; each begins with a module's name, or
-  /// "graph".
-  std::function<void(std::string_view line)> event;
-  bool with_module_lines = true;  ///< false: only the last ones of a module that fails
+  /// Gets events, and the lines of modules.
+  std::function<void(const LogLine& line)> event;
+  bool with_module_lines = true;  ///< false: only errors, and the last ones of a module that fails
   /// Called with the state of the graph, twice a second.
   std::function<void(const GraphState& state)> state;
   /// Where others find the graph: it has two links of that name (spec/graph.md). Empty: none.

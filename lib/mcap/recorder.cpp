@@ -169,7 +169,7 @@ void Recorder::add_other(std::string_view topic, ros::Type type, std::int64_t ti
   add(number, ++others_, time, time, data);
 }
 
-Status Recorder::log(std::int64_t time, std::string_view line) {
+Status Recorder::log(std::int64_t time, const LogLine& line) {
   add_other(kLog, ros::Type::Log, time, encoder_.encode_log(time, line));
   return hand_on_if_due();
 }

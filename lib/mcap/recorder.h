@@ -56,7 +56,7 @@ class Recorder {
   Status record(std::size_t stream, const Message& message, std::int64_t time);
 
   /// A line of the graph's log, as ros::Encoder::encode_log() takes it, on the topic /rosout.
-  Status log(std::int64_t time, std::string_view line);
+  Status log(std::int64_t time, const LogLine& line);
   Status metadata(std::string name, Words words);
 
   /// The frames of the graph as text (spec/graph.md, G31): joints that never move are recorded on

@@ -423,19 +423,14 @@ Pieces Encoder::encode(std::span<const Joint> list) {
   return writer_.write(message);
 }
 
-Pieces Encoder::encode_log(std::int64_t time, std::string_view line) {
+Pieces Encoder::encode_log(std::int64_t time, const LogLine& line) {
   Log log;
   log.stamp = time_of(time);
-  log.name = "graph";
-  const auto colon = line.find(": ");
-  if (colon != std::string_view::npos && is_name(line.substr(0, colon))) {
-    log.name = line.substr(0, colon);
-    line.remove_prefix(colon + 2);
-  }
-  const bool is_error = line.starts_with("error: ") || line.starts_with("failed with status ") ||
-                        line.starts_with("killed by signal ");
-  log.level = is_error ? Log::kError : line.starts_with("warning: ") ? Log::kWarning : Log::kInfo;
-  log.msg = line;
+  log.name = line.module;
+  log.level = line.level == Level::Error     ? Log::kError
+              : line.level == Level::Warning ? Log::kWarning
+                                             : Log::kInfo;
+  log.msg = line.text;
   return writer_.write(log);
 }
 

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include <hc/contract/log_line.h>
 #include <hc/contract/port_type.h>
 #include <hc/mtp/message.h>
 #include <ros/messages.h>
@@ -79,11 +80,9 @@ class Encoder {
   /// A tf2_msgs/msg/TFMessage of joints.
   Pieces encode(std::span<const Joint> list);
 
-  /// A line of a graph's log as a rcl_interfaces/msg/Log: "MODULE: TEXT", or a text of the graph
-  /// itself. A text that begins with "warning: " is a warning; with "error: ", or as what ends a
-  /// module ("failed with status 1"), an error.
+  /// A line of a graph's log as a rcl_interfaces/msg/Log.
   /// @param time  [ns since the Unix epoch]
-  Pieces encode_log(std::int64_t time, std::string_view line);
+  Pieces encode_log(std::int64_t time, const LogLine& line);
 
   /// An MTP message whole (`offset` 0), or what its other form lacks, whose bytes from `offset` on
   /// are its elements.

@@ -54,20 +54,17 @@ TEST(Encode, AnImageIsNotCopied) {
   EXPECT_EQ(read.header.stamp.nanosec, 123'456'789U);
 }
 
-TEST(Encode, ALineOfTheLogHasTheNameAndSeverityThatItBeginsWith) {
+TEST(Encode, ALineOfTheLogHasNameAndSeverity) {
   Encoder encoder;
-  auto words = [&](std::string_view line) {
-    const auto bytes = bytes_of(encoder.encode_log(1, line));
+  auto words = [&](Level level) {
+    const auto bytes = bytes_of(encoder.encode_log(1, {"eyes", level, "it is dark"}));
     const auto log = *CdrReader::read<Log>(bytes);
     return std::to_string(log.level) + " " + std::string(log.name) + " " + std::string(log.msg);
   };
-  EXPECT_EQ(words("eyes: no error is near"), "20 eyes no error is near");
-  EXPECT_EQ(words("eyes: warning: it is dark"), "30 eyes warning: it is dark");
-  EXPECT_EQ(words("eyes: error: no device"), "40 eyes error: no device");
-  EXPECT_EQ(words("eyes: failed with status 1; restarting in 1 s"),
-            "40 eyes failed with status 1; restarting in 1 s");
-  EXPECT_EQ(words("Two words: and more"), "20 graph Two words: and more");
-  EXPECT_EQ(words("eyes"), "20 graph eyes");
+  EXPECT_EQ(words(Level::Info), "20 eyes it is dark");
+  EXPECT_EQ(words(Level::Result), "20 eyes it is dark");
+  EXPECT_EQ(words(Level::Warning), "30 eyes it is dark");
+  EXPECT_EQ(words(Level::Error), "40 eyes it is dark");
 }
 
 TEST(Encode, PixelsHaveTheNamesOfRos) {

@@ -165,7 +165,7 @@ int main(int argc, char** argv) {
                   "corners off by %.2f px median, %.2f px at most, pixels right %.1f %% median, "
                   "%.1f %% at least, the head turning at up to %.0f°/s",
                   error, worst, 100 * share, 100 * least, samples.fastest * 57.29578);
-    module.log(std::string("result: ") + line);
+    module.log(line, hc::Level::Result);
     return false;
   });
   return module.run(argc, argv);

@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
     area.send(hc::table({blob->area}));
   });
   const int status = module.run(argc, argv);
-  if (const auto summary = search.summary(); !summary.empty()) module.log("result: " + summary);
+  if (const auto summary = search.summary(); !summary.empty())
+    module.log(summary, hc::Level::Result);
   return status;
 }

@@ -185,8 +185,8 @@ int main(int argc, char** argv) {
   const int status = module.run(argc, argv);
   stop.request_stop();
   if (found)
-    module.log("result: it is known how the eyes are mounted, " + how_found);
+    module.log("eye mounting calibrated " + how_found, hc::Level::Result);
   else if (tried > 0)
-    module.log("result: how the eyes are mounted was not found");
+    module.log("eye mounting not found", hc::Level::Result);
   return status;
 }

@@ -32,9 +32,10 @@ int main(int argc, char** argv) {
     const double offset =
         std::hypot(found[3] - *offset_roll, found[4] - *offset_pitch, found[5] - *offset_yaw);
     score.send(hc::table({is_right ? 1.0 : 0.0, zero, offset}));
-    module.log(hc::format(
-        "result: left and right {}, zero off by {:.3f}°, camera offset by {:.3f}°",
-        is_right ? "identified correctly" : "MIXED UP", zero * 180 / M_PI, offset * 180 / M_PI));
+    module.log(hc::format("left and right {}, zero off by {:.3f}°, camera offset by {:.3f}°",
+                          is_right ? "identified correctly" : "MIXED UP", zero * 180 / M_PI,
+                          offset * 180 / M_PI),
+               hc::Level::Result);
     is_done = true;
   });
   std::int64_t looks = 0;

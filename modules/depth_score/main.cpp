@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
                             "bad or hole %.2f %%, of %lld pixels with known truth",
                             100 * score.bad_share(), *threshold, 100 * score.hole_share(),
                             100 * score.wrong_share(), static_cast<long long>(score.truth));
-              module.log(std::string("result: ") + line);
+              module.log(line, hc::Level::Result);
             });
   return module.run(argc, argv);
 }

@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
     if (wanted.back().time < end || turned.back().time < end) return true;
     const auto score = hc::gaze::score_follow(wanted, turned, begin, end);
     result.send(hc::table<double>(score.numbers()));
-    module.log("result: " + score.text());
+    module.log(score.text(), hc::Level::Result);
     return false;
   });
   return module.run(argc, argv);

@@ -92,7 +92,7 @@ Bridge::Bridge(Options options, web::Access& access, web::Server& server)
   server_.every(kTick, [this] { tick(); });
   const auto watched = graph_.watch(
       {[this](const auto& state, std::string_view) { apply(catalog_.take_state(state)); },
-       [this](std::string_view line) { take_log(line); }, [this] { close(); }});
+       [this](const auto& line, auto) { take_log(line); }, [this] { close(); }});
   if (!watched) throw hc::ModuleError(watched.error());
 }
 
@@ -258,7 +258,7 @@ void Bridge::set_parameters(const std::shared_ptr<Viewer>& viewer, const Json& r
   }
 }
 
-void Bridge::take_log(std::string_view line) {
+void Bridge::take_log(const hc::LogLine& line) {
   const std::int64_t time = clock_.wall();
   publish(catalog_.log().id, {time, bytes_of(encoder_.encode_log(time, line))});
 }

@@ -48,7 +48,7 @@ class Bridge final : public hc::web::Site {
   void set_parameters(const std::shared_ptr<Viewer>& viewer, const Json& request);
 
   void move(const hc::ros::Joint& joint);
-  void take_log(std::string_view line);
+  void take_log(const hc::LogLine& line);
   void apply(const Catalog::Changes& changes);
   void publish(std::uint32_t channel, const Payload& payload);
   void publish_frames();

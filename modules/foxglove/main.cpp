@@ -46,10 +46,11 @@ int main(int argc, char** argv) {
         hc::value_or_end(web::Service::open({*listen, static_cast<int>(*port), *tls, *hosts}, *loop,
                                             [&](std::string_view line) { module.log(line); }));
     auto& access = service->access();
-    module.log("notice: foxglove: " + access.invite_socket(web::Right::Operate));
-    module.log("notice: foxglove, to view alone: " + access.invite_socket(web::Right::View));
+    module.log("foxglove: " + access.invite_socket(web::Right::Operate), hc::Level::Notice);
+    module.log("foxglove, to view alone: " + access.invite_socket(web::Right::View),
+               hc::Level::Notice);
     if (!service->fingerprint().empty())
-      module.log("notice: foxglove: certificate " + service->fingerprint());
+      module.log("foxglove: certificate " + service->fingerprint(), hc::Level::Notice);
     bridge = &service->serve(std::make_unique<Bridge>(
         Bridge::Options{*graph, std::move(joints), *images == "jpeg"}, access, service->server()));
   });

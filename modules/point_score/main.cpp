@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
     if (!pusher->is_done()) return true;
     const auto score = pusher->score();
     result.send(hc::table<double>(score.numbers()));
-    module.log("result: " + score.text());
+    module.log(score.text(), hc::Level::Result);
     return false;
   });
   return module.run(argc, argv);

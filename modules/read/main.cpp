@@ -57,6 +57,7 @@ int main(int argc, char** argv) {
   });
   module.background();
   const int status = module.run(argc, argv);
-  if (const auto summary = announcer.summary(); !summary.empty()) module.log("result: " + summary);
+  if (const auto summary = announcer.summary(); !summary.empty())
+    module.log(summary, hc::Level::Result);
   return status;
 }

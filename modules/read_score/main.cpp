@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
     }
     const auto score = dictation->score();
     result.send(hc::table<double>(score.numbers()));
-    module.log("result: " + score.text());
+    module.log(score.text(), hc::Level::Result);
     return false;
   });
   return module.run(argc, argv);

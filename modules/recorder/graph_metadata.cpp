@@ -46,8 +46,9 @@ void GraphMetadata::record(hc::mcap::Recorder& recorder, std::int64_t now) {
     const auto text = message.characters();
     if (message.header.src == static_cast<int>(hc::GraphReport::State))
       record_state(recorder, text);
-    if (message.header.src == static_cast<int>(hc::GraphReport::Log))
-      static_cast<void>(recorder.log(now, text));
+    if (message.header.src == static_cast<int>(hc::GraphReport::Log)) {
+      if (const auto line = hc::parse_log_line(text)) static_cast<void>(recorder.log(now, *line));
+    }
   }
   static_cast<void>(source_->prepare_wait());
   const std::lock_guard lock(mutex_);

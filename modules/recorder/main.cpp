@@ -106,8 +106,9 @@ int main(int argc, char** argv) {
     if (status || has_failed) return;
     has_failed = true;
     static_cast<void>(recording->close());
-    module.log("result: error: recording ended: " + status.error().detail + "; " +
-               recording->place() + " holds what came before");
+    module.log("recording ended: " + status.error().detail + "; " + recording->place() +
+                   " holds what came before",
+               hc::Level::Error);
   };
 
   module.on_start([&] {
@@ -152,9 +153,9 @@ int main(int argc, char** argv) {
     if (!has_failed) fail_once(recording->close());
     const std::uint64_t lost = recording->lost(), count = recording->messages() - lost;
     std::string text =
-        hc::format("result: {} message{} in {}", count, count == 1 ? "" : "s", recording->place());
+        hc::format("{} message{} in {}", count, count == 1 ? "" : "s", recording->place());
     if (has_failed) text += hc::format(", {} not recorded", unrecorded + lost);
-    module.log(text);
+    module.log(text, hc::Level::Result);
   });
   const int status = module.run(argc, argv);
   // In a graph it lasts as long as that, which says at its end what is missing.

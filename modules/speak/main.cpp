@@ -102,8 +102,8 @@ int main(int argc, char** argv) {
   });
   const int status = module.run(argc, argv);
   if (said > 0)
-    module.log(
-        hc::format("result: said {} text{}, the last \"{}\"", said, said == 1 ? "" : "s", last));
+    module.log(hc::format("said {} text{}, the last \"{}\"", said, said == 1 ? "" : "s", last),
+               hc::Level::Result);
   if (dropped > 0) module.log(hc::format("{} texts dropped", dropped));
   return status;
 }

@@ -62,13 +62,14 @@ void Player::save(std::span<const std::int16_t> samples) {
   const bool is_full = !written && written.error().code == hc::Code::TooLarge;
   if (!writer_ || is_full) {
     auto begun = hc::audio::WavWriter::create(options_.file, *format_);
-    if (begun && begun->path() != options_.file) log_("continuing in " + begun->path());
+    if (begun && begun->path() != options_.file)
+      log_("continuing in " + begun->path(), hc::Level::Info);
     written = begun ? begun->write(samples) : begun.error();
     if (begun) writer_.emplace(std::move(*begun));
   }
   if (written) return;
   file_error_ = true;
-  log_("result: error: recording of sound ended: " + written.error().detail);
+  log_("recording of sound ended: " + written.error().detail, hc::Level::Error);
 }
 
 Status Player::give_out() {
@@ -98,7 +99,7 @@ void Player::wait_until_at_most(double seconds) {
     last = waiting;
     if (clock.monotonic() - since > kTimeout) {
       stuck_at_ = waiting;
-      return log_("loudspeaker unresponsive; dropping sound");
+      return log_("loudspeaker unresponsive; dropping sound", hc::Level::Warning);
     }
     pollfd stop{stop_, POLLIN, 0};
     if (::poll(&stop, 1, kPoll) != 0) return;
@@ -108,7 +109,8 @@ void Player::wait_until_at_most(double seconds) {
 void Player::look_whether_stuck() {
   if (!stuck_at_ || playback_->waiting() >= *stuck_at_) return;
   stuck_at_.reset();
-  log_("loudspeaker resumed; dropped " + std::to_string(dropped_ - dropped_logged_) + " messages");
+  log_("loudspeaker resumed; dropped " + std::to_string(dropped_ - dropped_logged_) + " messages",
+       hc::Level::Info);
   dropped_logged_ = dropped_;
 }
 
@@ -119,14 +121,14 @@ void Player::look() {
     playback_.reset();
     stuck_at_.reset();
     is_missing_ = true;
-    log_("loudspeaker disconnected; dropping sound");
+    log_("loudspeaker disconnected; dropping sound", hc::Level::Warning);
   }
   if (playback_ != nullptr) return look_whether_stuck();
   if (!backoff_.is_due(now)) return;
   auto opened = hc::audio::Playback::open(options_.device, *format_);
   if (!opened) {
     backoff_.fail(now);
-    if (!is_missing_) log_(opened.error().detail + "; dropping sound");
+    if (!is_missing_) log_(opened.error().detail + "; dropping sound", hc::Level::Warning);
     is_missing_ = true;
     return;
   }
@@ -134,7 +136,8 @@ void Player::look() {
   backoff_.reset();
   if (is_missing_)
     log_("loudspeaker connected; dropped " + std::to_string(dropped_ - dropped_logged_) +
-         " messages");
+             " messages",
+         hc::Level::Info);
   dropped_logged_ = dropped_;
   is_missing_ = false;
 }

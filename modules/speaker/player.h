@@ -33,7 +33,7 @@ class Player {
  public:
   static constexpr std::chrono::seconds kTimeout{1};
   static constexpr std::chrono::milliseconds kLook{100};  ///< how often look() is to be called
-  using Log = std::function<void(std::string_view line)>;
+  using Log = std::function<void(std::string_view line, hc::Level level)>;
   /// @param stop  descriptor that is readable when waiting is to end.
   Player(PlayerOptions options, Log log, int stop)
       : options_(std::move(options)), log_(std::move(log)), stop_(stop) {}

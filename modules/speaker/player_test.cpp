@@ -30,7 +30,8 @@ class PlayerTest : public testing::Test {
   ~PlayerTest() override { std::filesystem::remove_all(folder); }
 
   Player player(PlayerOptions options) {
-    return {std::move(options), [this](std::string_view line) { log.emplace_back(line); }, -1};
+    return {std::move(options),
+            [this](std::string_view line, hc::Level) { log.emplace_back(line); }, -1};
   }
   [[nodiscard]] std::vector<std::int16_t> written(const Format& format) const {
     auto reader = hc::audio::WavReader::open(wav);
@@ -102,9 +103,7 @@ TEST_F(PlayerTest, says_why_a_file_cannot_be_written) {
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(to_file.play<std::int16_t>(kSome, {8000, 1}));
   EXPECT_TRUE(to_file.has_file_error());
   ASSERT_EQ(log.size(), 1);
-  EXPECT_EQ(
-      log.front(),
-      "result: error: recording of sound ended: open(/no/such.wav): No such file or directory");
+  EXPECT_EQ(log.front(), "recording of sound ended: open(/no/such.wav): No such file or directory");
 }
 
 TEST_F(PlayerTest, what_is_played_plays_and_written) {

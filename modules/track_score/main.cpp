@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
     if (track.duration() < *duration) return true;
     const auto score = track.score(*within);
     result.send(hc::table<double>(score.numbers()));
-    module.log("result: " + score.text());
+    module.log(score.text(), hc::Level::Result);
     return false;
   });
   return module.run(argc, argv);

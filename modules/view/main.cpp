@@ -124,7 +124,7 @@ int main(int argc, char** argv) {
     auto saved = hc::vision::save_image(picture.path, picture.bgr);
     if (saved) last = picture.path;
     if (!saved && !std::exchange(has_failed, true))  // a later one may be, and windows go on
-      module.log("result: error: not all images saved: " + saved.error().detail);
+      module.log("not all images saved: " + saved.error().detail, hc::Level::Error);
   };
   // To compress an image takes longer than to compute most.
   auto write_latest = [&] {
@@ -176,6 +176,6 @@ int main(int argc, char** argv) {
       std::this_thread::sleep_for(kPause);
   });
   const int status = module.run(argc, argv);
-  if (!last.empty()) module.log("result: image saved to " + fs::absolute(last).string());
+  if (!last.empty()) module.log("image saved to " + fs::absolute(last).string(), hc::Level::Result);
   return status == 0 && has_failed && !hc::own_graph() ? 1 : status;
 }

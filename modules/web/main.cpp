@@ -118,12 +118,12 @@ int main(int argc, char** argv) {
     wanted.emplace(module.instance());
     auto& access = service->access();
     const std::string url = access.invite(web::Right::Operate);
-    module.log("notice: page: " + url);
+    module.log("page: " + url, hc::Level::Notice);
     if (!service->fingerprint().empty())
-      module.log("notice: page: certificate " + service->fingerprint());
+      module.log("page: certificate " + service->fingerprint(), hc::Level::Notice);
     if (!web::is_local(*listen))
       for (const auto& line : web::qr_lines(access.invite(web::Right::Operate)))
-        module.log("notice: " + line);
+        module.log(line, hc::Level::Notice);
     service->serve(std::make_unique<Page>(
         Page::Options{*graph, module.instance(), *frames, *recordings}, access, service->server(),
         robot,
@@ -136,7 +136,10 @@ int main(int argc, char** argv) {
                           ordered);
               });
             },
-            [&](const std::string& line) { loop->post([&, line] { module.log(line); }); }}));
+            [&](const std::string& line) { loop->post([&, line] { module.log(line); }); },
+            [&](const std::string& line) {
+              loop->post([&, line] { module.log(line, hc::Level::Notice); });
+            }}));
     if (*browser && web::is_local(*listen)) open_in_browser(url);
     seen = module.monotonic();
   });

@@ -102,9 +102,9 @@ Page::Page(Options options, web::Access& access, web::Server& server, Robot& rob
       callbacks_(std::move(callbacks)),
       graph_(server.loop(), options_.graph) {
   server_.every(std::chrono::milliseconds(25), [this] { tick(); });
-  const auto watched =
-      graph_.watch({[this](const auto& state, std::string_view json) { take_state(state, json); },
-                    [this](std::string_view line) { take_log(line); }, [this] { close(); }});
+  const auto watched = graph_.watch(
+      {[this](const auto& state, std::string_view json) { take_state(state, json); },
+       [this](const auto&, std::string_view json) { take_log(json); }, [this] { close(); }});
   if (!watched) callbacks_.log("the graph cannot be seen: " + watched.error().detail);
 }
 
@@ -149,8 +149,7 @@ web::Reply Page::reply_to_token(const web::Request& request) {
       return refusal(401, "this token is wrong, or was used before; the log has a new one");
     return {303, "text/plain", {}, {}, {{"Location", "/"}}};
   }
-  callbacks_.log("notice: page opened; for another browser: " +
-                 access_.invite(web::Right::Operate));
+  callbacks_.notice("page opened; for another browser: " + access_.invite(web::Right::Operate));
   return {303,
           "text/plain",
           {},
@@ -320,8 +319,8 @@ void Page::take_state(const hc::GraphState& state, std::string_view json) {
     if (session.socket->waiting() < kMaxStates) session.socket->send(state_);
 }
 
-void Page::take_log(std::string_view line) {
-  log_.push_back(rows_message({std::string(line)}, kLog, lines_++));
+void Page::take_log(std::string_view json) {
+  log_.push_back(rows_message({std::string(json)}, kLog, lines_++));
   if (log_.size() > kMaxLog) log_.pop_front();
   for (auto& [number, session] : sessions_)
     if (session.socket->waiting() < kMaxWaiting) session.socket->send(log_.back());

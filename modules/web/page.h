@@ -44,7 +44,7 @@ class Page final : public web::Site {
     std::function<void(Order)> order;  ///< something is commanded
     /// The robot is to be stopped, or the stop is cleared; answered on the module's thread.
     std::function<void(bool stops, Stop::Answer answer)> stop;
-    std::function<void(const std::string& line)> log;
+    std::function<void(const std::string&line)> log, notice;
   };
 
   Page(Options options, web::Access& access, web::Server& server, Robot& robot,
@@ -83,7 +83,7 @@ class Page final : public web::Site {
   void open_drive(const std::shared_ptr<web::WebSocket>& socket, const web::Request& request);
 
   void take_state(const hc::GraphState& state, std::string_view json);
-  void take_log(std::string_view line);
+  void take_log(std::string_view json);
   [[nodiscard]] web::Bytes rows_message(const std::vector<std::string>& rows, std::int32_t src,
                                         std::int64_t seq) const;
   void take_command(std::uint64_t session, const std::string& command);

@@ -296,8 +296,18 @@ void add_modules(py::module_& extension) {
           "background", [](Self& self) { self.module().background(); },
           "Has the process yield the processor to closed loops: for what is in no hurry.")
       .def(
-          "log", [](const Self& self, const std::string& line) { self.log(line); }, py::arg("line"),
-          "Writes a line to standard error, with the module's name before it.")
+          "log",
+          [](const Self& self, const std::string& line, const std::string& level) {
+            const auto known = hc::level_named(level);
+            if (!known)
+              throw py::value_error("level is info, warning, error, result or notice, and not " +
+                                    level);
+            self.log(line, *known);
+          },
+          py::arg("line"), py::arg("level") = "info",
+          "Logs a line: to standard error, and of another level than info to `hc run`, which "
+          "repeats "
+          "each result and error at its end. A notice is for the person at the terminal alone.")
       .def(
           "log_once",
           [](Self& self, const std::string& kind, const std::string& line) {

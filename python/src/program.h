@@ -44,7 +44,7 @@ class Program {
     return *frames_;
   }
   /// Its name in the graph and a line, on any thread.
-  void log(const std::string& line) const { module_.log(line); }
+  void log(const std::string& line, hc::Level level) const { module_.log(line, level); }
   [[nodiscard]] const std::string& name() const { return module_.name(); }
 
   /// Runs the module; the GIL is free meanwhile but for its handlers. Raises what a handler has

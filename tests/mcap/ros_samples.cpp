@@ -119,5 +119,5 @@ int main(int argc, char** argv) {
   }
   const hc::ros::Joint joint{"robot", "head", {1, 2, 3}, {0, 0, 0.6, 0.8}, kTime};
   print(Type::TfMessage, {hex(encoder.encode(std::vector{joint, joint}))});
-  print(Type::Log, {hex(encoder.encode_log(kTime, "eyes: warning: it is dark"))});
+  print(Type::Log, {hex(encoder.encode_log(kTime, {"eyes", hc::Level::Warning, "it is dark"}))});
 }

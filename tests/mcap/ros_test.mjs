@@ -97,7 +97,7 @@ const values = {
     stamp,
     level: 30,
     name: "eyes",
-    msg: "warning: it is dark",
+    msg: "it is dark",
     file: "",
     function: "",
     line: 0,

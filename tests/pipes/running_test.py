@@ -15,6 +15,22 @@ from graphs import GRAPH, Graphs
 from harness import WATCHDOG, wait_until
 
 
+def report(row):
+    """A line of a shell that is a module: it reports a line of its log (spec/module.md, report 5)."""
+    message = "1 5 0 0 8 0 60101 0 0 %d 1\\n%s" % (len(row), row)
+    return (
+        """python3 - "$@" <<'END'
+import socket, sys
+place = sys.argv[sys.argv.index("--manage") + 1]
+reports = socket.socket(socket.AF_UNIX)
+reports.connect("\\0" + place.split("?")[0].partition("@")[2])
+reports.sendall(b"%s")
+END
+"""
+        % message
+    )
+
+
 class Running(Graphs):
     def test_two_graphs_run_side_by_side(self):
         self.write_graph(GRAPH)
@@ -202,8 +218,8 @@ exec sleep 1000
 [ "$1" = --describe ] && exec echo '{"inputs":[],"outputs":[],"parameters":[]}'
 """
         self.shell("mkfifo done")
-        self.write("first", begin + 'cat done; echo "result: one" >&2\n', 0o755)
-        self.write("second", begin + 'echo "result: two" >&2; echo >done\n', 0o755)
+        self.write("first", begin + "cat done\n" + report("result one"), 0o755)
+        self.write("second", begin + report("result two") + "echo >done\n", 0o755)
         modules = "".join("[modules.%s]\nprogram = './%s'\n" % (n, n) for n in ("first", "second"))
         self.write_graph("restart = 'never'\n" + modules)
         out = self.shell("hc run g.toml --quiet")
@@ -245,7 +261,7 @@ exec sleep 1000
 
     def test_a_module_that_floods_its_log_is_counted(self):
         count = 200000
-        script = "seq 1 %d >&2; echo 'result: done' >&2\n" % count
+        script = "seq 1 %d >&2\n" % count + report("result done")
         self.write_graph("restart = 'never'\n" + self.write_module("noisy", script))
         out = self.shell("hc run g.toml")
         self.assertIn("  noisy: done\n", out)
@@ -271,8 +287,9 @@ exec sleep 1000
 
     def test_what_a_module_logs_steers_no_terminal(self):
         script = r"""printf 'clear \e[2J\e]0;title\a over\rwritten nul \0 bad \xff\x9b csi \xc2\x9b31m\n' >&2
-printf 'windows\r\nresult: \e[31mred\n' >&2; [ -e again ] || exec sleep 1000
+printf 'windows\r\n' >&2
 """
+        script += report(r"result \x1b[31mred") + "[ -e again ] || exec sleep 1000\n"
         self.write_graph("restart = 'never'\n" + self.write_module("painter", script))
         process = self.run_graph(last="painter: .*red$")
         line = (

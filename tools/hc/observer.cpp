@@ -81,7 +81,7 @@ Observer::Observer(const RunningGraph& graph)
                                         state_ = state;
                                         is_new_ = true;
                                       },
-                                      [](auto) {}, [this] { has_ended_ = true; }});
+                                      [](const auto&, auto) {}, [this] { has_ended_ = true; }});
   if (!watched) throw Failure(watched.error());
 }
 

@@ -56,7 +56,7 @@ void print_summary(const RunOptions& options, const hc::RunReport& report) {
       counted(report.state.modules.size(), "module"),
       restarts > 0 ? ", " + counted(restarts, "restart") : "", counted(sum.messages, "message"),
       bytes_in_words(static_cast<double>(sum.bytes)));
-  for (const auto& line : report.results) text += "  " + line + "\n";
+  for (const auto& line : report.results) text += "  " + line.line() + "\n";
   std::string lost;
   for (auto [count, word] : {std::pair(sum.over_rate, "throttled"),
                              {sum.lost() - sum.over_rate, "dropped"},
@@ -179,9 +179,8 @@ void run(RunOptions options) {
   hc::RunOptions run_options;
   run_options.stop = hc::stop_descriptor();
   run_options.with_module_lines = !options.quiet;
-  run_options.event = [&](std::string_view line) {
-    bool is_event = line.ends_with(": started") || line.ends_with(": ended");
-    if (!(options.quiet && is_event)) status.say(line);
+  run_options.event = [&](const hc::LogLine& line) {
+    if (!options.quiet || line.level != hc::Level::Info) status.say(line.line());
   };
   run_options.state = [&, recorder = graph.recorder](const hc::GraphState& state) {
     status.show(state);
@@ -203,7 +202,9 @@ void run(RunOptions options) {
     if (module.status == hc::ModuleStatus::GivenUp)
       given_up += (given_up.empty() ? "" : ", ") + module.name;
   if (!given_up.empty()) fail(status, {hc::Code::Closed, "given up: " + given_up});
-  if (report->has_errors) throw Failure(1);  // they are in the summary
+  if (std::ranges::any_of(report->results,
+                          [](const auto& line) { return line.level == hc::Level::Error; }))
+    throw Failure(1);  // they are in the summary
 }
 
 }  // namespace

@@ -228,13 +228,7 @@ bool is_in_trouble(const hc::ModuleState& module) {
   if (module.status == GivenUp || module.status == Stalled || module.status == Waiting) return true;
   if (module.status == Running && (module.waits || !module.detail.empty())) return true;
   if (module.status == Ended) return false;
-  constexpr std::array kWords = {"disconnect",   "reconnecting", "retrying",  "trying again",
-                                 "unresponsive", "cannot be",    "failed",    "refused",
-                                 "is lost",      "timed out",    "not found", "Closed:",
-                                 "System:",      "Malformed:",   "NotFound:", "Truncated:"};
-  return std::any_of(kWords.begin(), kWords.end(), [&](const char* word) {
-    return module.last_line.find(word) != std::string::npos;
-  });
+  return module.last_level == hc::Level::Warning || module.last_level == hc::Level::Error;
 }
 
 std::string status_text(const hc::ModuleState& module) {

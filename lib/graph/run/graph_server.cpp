@@ -60,8 +60,8 @@ void GraphServer::changed() {
   soon_ = loop_.call_at(std::chrono::steady_clock::now() + kSoon, [this] { publish_state(); });
 }
 
-void GraphServer::log(const std::string& line) {
-  if (has_clients() && !line.empty()) states_->say(stamped(line, GraphReport::Log, lines_sent_));
+void GraphServer::log(const LogLine& line) {
+  if (has_clients()) states_->say(stamped(to_json(line), GraphReport::Log, lines_sent_));
 }
 
 void GraphServer::take_request(const Message& message) const {

@@ -11,6 +11,7 @@
 #include <graph/run/announcer.h>
 #include <hc/contract/graph_command.h>
 #include <hc/contract/graph_state.h>
+#include <hc/contract/log_line.h>
 #include <hc/contract/running_graph.h>
 #include <hc/link/intake.h>
 
@@ -34,7 +35,7 @@ class GraphServer {
   void publish_state();
   /// Has the state published soon, however often it is called by then.
   void changed();
-  void log(const std::string& line);
+  void log(const LogLine& line);
   /// Whether a client reads the state.
   [[nodiscard]] bool has_clients() const { return states_->is_heard(); }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a process says, line by line, and the last of it. Pure. Internal to graph.
+// What a process writes, line by line, and the last lines of its log. Pure. Internal to graph.
 
 #include <algorithm>
 #include <deque>
@@ -18,9 +18,6 @@ class Lines {
  public:
   static constexpr std::size_t kMaxLine = 4096;  ///< longer ones come in parts [byte]
   static constexpr std::size_t kLast = 20;       ///< so many are kept
-
-  /// In a line for the person at the terminal alone, such as a secret: it is not kept.
-  static constexpr std::string_view kNotice = ": notice: ";
 
   using Take = std::function<void(const std::string& line)>;
 
@@ -40,12 +37,13 @@ class Lines {
   void finish(const Take& take) {
     if (begun_.ends_with('\r')) begun_.pop_back();
     if (begun_.empty()) return;
-    const std::string line = visible(std::exchange(begun_, {}));
-    if (line.find(kNotice) == std::string::npos) {
-      if (last_.size() == kLast) last_.pop_front();
-      last_.push_back(line);
-    }
-    take(line);
+    take(visible(std::exchange(begun_, {})));
+  }
+
+  /// Keeps a line among the last ones.
+  void keep(const std::string& line) {
+    if (last_.size() == kLast) last_.pop_front();
+    last_.push_back(line);
   }
 
   /// The last lines, the newest at the end.

@@ -17,12 +17,6 @@ using MonotonicClock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kTick{250};
 constexpr int kTicksOfState = 2, kTicksOfMemory = 8;
 
-/// A line with its module's name before it, where that is not there yet.
-std::string with_name(const std::string& module, const std::string& line) {
-  const std::string prefix = module + ": ";
-  return line.starts_with(prefix) ? line : prefix + line;
-}
-
 }  // namespace
 
 Result<RunReport> Runner::run() {
@@ -34,11 +28,10 @@ Result<RunReport> Runner::run() {
   refuse_changes();
   if (!outcome_) return outcome_.error();
   auto end = state();
-  std::ranges::stable_sort(results_, {}, [&](const std::string& line) {
-    return std::ranges::find(end.modules, line.substr(0, line.find(':')), &ModuleState::name) -
-           end.modules.begin();
+  std::ranges::stable_sort(results_, {}, [&](const LogLine& line) {
+    return std::ranges::find(end.modules, line.module, &ModuleState::name) - end.modules.begin();
   });
-  return RunReport{std::move(end), std::move(results_), is_stopped_, has_errors_};
+  return RunReport{std::move(end), std::move(results_), is_stopped_};
 }
 
 Status Runner::begin() {
@@ -96,11 +89,11 @@ Status Runner::begin() {
 Result<std::unique_ptr<Supervised>> Runner::make(const PlannedModule& module) {
   const std::string& name = module.name;
   Supervised::Callbacks callbacks;
-  callbacks.event = [this, name](const std::string& line) { log(with_name(name, line)); };
-  callbacks.said = [this, name](const std::string& line) { take_line(with_name(name, line)); };
+  callbacks.event = [this, name](Level level, const auto& text) { log({name, level, text}); };
+  callbacks.said = [this, name](Level level, const auto& text) { take_line({name, level, text}); };
   callbacks.failed = [this, name](const std::deque<std::string>& last_words) {
     if (!options_.with_module_lines)
-      for (const auto& line : last_words) print(with_name(name, line));
+      for (const auto& line : last_words) print({name, Level::Warning, line});
   };
   callbacks.changed = [this] {
     is_unsettled_ = true;
@@ -166,32 +159,23 @@ std::set<Supervised*> Runner::cut_off_by(const std::string& name) const {
   return cut_off;
 }
 
-void Runner::print(const std::string& line) const {
+void Runner::print(const LogLine& line) const {
   if (options_.event) options_.event(line);
 }
 
-void Runner::log(const std::string& line) {
+void Runner::log(const LogLine& line) {
   print(line);
   if (server_) server_->log(line);
 }
 
-void Runner::take_line(std::string line) {
-  constexpr std::string_view kResult = ": result: ", kError = ": error: ";
-  // Its peers are stopping too.
-  if (is_stopping_ && (line.ends_with("reconnecting") || line.ends_with("connecting again")))
-    return;
-  line = with_link_names(std::move(line));
-  if (const auto found = line.find(Lines::kNotice); found != std::string::npos)
-    return print(line.erase(found + 2, Lines::kNotice.size() - 2));
-  bool is_error = false;
-  if (auto found = line.find(kResult); found != std::string::npos) {
-    line.erase(found, kResult.size() - 2);
-    is_error = line.compare(found, kError.size(), kError) == 0;
-    has_errors_ = has_errors_ || is_error;
-    if (results_.size() < kMaxResults) results_.push_back(line);
-  }
-  if (options_.with_module_lines || is_error) print(line);
-  if (server_) server_->log(line);
+void Runner::take_line(LogLine line) {
+  if (is_stopping_ && line.level == Level::Warning) return;  // its peers are stopping too
+  line.text = with_link_names(std::move(line.text));
+  const bool is_error = line.level == Level::Error;
+  if ((is_error || line.level == Level::Result) && results_.size() < kMaxResults)
+    results_.push_back(line);
+  if (options_.with_module_lines || is_error || line.level == Level::Notice) print(line);
+  if (server_ && line.level != Level::Notice) server_->log(line);
 }
 
 /// Puts "MODULE.PORT → MODULE.PORT" in the place of a link's URI.
@@ -224,7 +208,7 @@ void Runner::tick() {
 
 /// A host has been lost, or is there again.
 void Runner::look_at_hosts() {
-  for (const auto& line : options_.hosts->take_events()) log(line);
+  for (const auto& line : options_.hosts->take_events()) log(line, Level::Warning);
   for (auto& [name, module] : modules_) module->look_at_host();
   is_unsettled_ = true;
   if (server_) server_->changed();
@@ -259,7 +243,7 @@ void Runner::settle_failures() {
 
 void Runner::end_all() {
   if (std::exchange(is_stopping_, true)) return;
-  if (is_stopped_) log("graph: stopping");
+  if (is_stopped_) log("stopping");
   refuse_changes();
   for (auto& [name, module] : modules_) module->end();
 }
@@ -283,7 +267,7 @@ void Runner::settle_links() {
   for (const auto& [name, link] : to_read) {
     if (drains_.contains(name)) continue;
     auto drain = drain_for(at(link->to)->plan(), link->reader_uri);
-    if (!drain) log("graph: " + link->reader_uri + ": " + drain.error().text());
+    if (!drain) log(link->reader_uri + ": " + drain.error().text(), Level::Warning);
     drains_[name] = drain ? std::move(*drain) : nullptr;
   }
   end_unneeded();

@@ -48,12 +48,12 @@ class Runner {
   [[nodiscard]] std::set<Supervised*> neighbours_of(const std::string& name) const;
   [[nodiscard]] std::set<Supervised*> cut_off_by(const std::string& name) const;
 
-  /// Gives a line to the options' `event`.
-  void print(const std::string& line) const;
-  /// Prints an event, and publishes it in the log.
-  void log(const std::string& line);
-  /// Takes a line of a module's log, with the module's name before it.
-  void take_line(std::string line);
+  void print(const LogLine& line) const;
+  /// Prints a line, and publishes it in the log.
+  void log(const LogLine& line);
+  void log(const std::string& text, Level level = Level::Info) { log({"graph", level, text}); }
+  /// Takes a line of a module's log.
+  void take_line(LogLine line);
   [[nodiscard]] std::string with_link_names(std::string line) const;
 
   void tick();
@@ -98,8 +98,7 @@ class Runner {
   bool is_file_gone_ = false;  // the graph's own
   bool is_unsettled_ = false;  // a module has started or ended, or links have changed
   std::vector<Failure> failures_;
-  std::vector<std::string> results_;  // lines
-  bool has_errors_ = false;           // among them
+  std::vector<LogLine> results_;  // and errors
   Status outcome_;
   std::deque<Change> changes_;           // the first of them may be being planned
   std::map<std::string, int> observed_;  // outputs that have been observed, and their numbers

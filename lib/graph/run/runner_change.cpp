@@ -41,7 +41,7 @@ void Runner::reload() {
   std::error_code failed;
   const bool is_gone = fs::status(file, failed).type() == fs::file_type::not_found;
   if (is_gone && !is_file_gone_)
-    log("graph: " + file + " has been removed; keeping the running version");
+    log(file + " has been removed; keeping the running version", Level::Warning);
   is_file_gone_ = is_gone;
   if (is_gone) return;
   auto is_reload = [](const Change& change) { return change.commands.empty(); };
@@ -187,8 +187,8 @@ void Runner::take_planned(Result<LoadedGraph>& loaded) {
     graph_ = std::move(loaded->graph);
     change_to(std::move(*loaded->plan));
   } else if (is_reload && !planning_.is_stopped()) {  // else there is a newer edit
-    for (const auto& line : wrong) log("graph: " + line);
-    log("graph: keeping the running version");
+    for (const auto& line : wrong) log(line, Level::Warning);
+    log("keeping the running version", Level::Warning);
   }
   if (is_reload && loaded)
     files_->set_files(loaded->graph.files.empty() ? graph_.files : loaded->graph.files);
@@ -266,7 +266,7 @@ void Runner::change_to(Plan plan) {
   for (auto& [module, change] : changes) module->send_commands(change.outputs);
   for (const auto* module : added) add(*module);
   for (auto& [module, change] : changes) module->send_commands(change.inputs);
-  log(has_changed ? "graph: changed" : "graph: unchanged");
+  log(has_changed ? "changed" : "unchanged");
 }
 
 void Runner::add(const PlannedModule& module) {
@@ -276,7 +276,7 @@ void Runner::add(const PlannedModule& module) {
     return there.restart();
   }
   auto made = make(module);
-  if (!made) return log(module.name + ": " + made.error().text());
+  if (!made) return log({module.name, Level::Warning, made.error().text()});
   auto& added = *(modules_[module.name] = std::move(*made));
   added.restart();
 }

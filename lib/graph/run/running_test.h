@@ -30,7 +30,8 @@ class Run : public ::testing::Test {
 
   Result<RunReport> run() {
     options_.stop = stop_.descriptor();
-    options_.event = [this](std::string_view line) {
+    options_.event = [this](const LogLine& said) {
+      const std::string line = said.line();
       lines_.emplace_back(line);
       if (line == stop_at_) stop();
       if (heard_) heard_(line);

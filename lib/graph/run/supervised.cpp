@@ -164,7 +164,7 @@ Status Supervised::start() {
   if (auto started = process_->start(plan.command(), plan.control_uri); !started)
     return Error{started.error().code, plan_.name + ": " + started.error().detail};
   told_ = plan_;
-  callbacks_.event("started");
+  callbacks_.event(Level::Info, "started");
   change(takes_commands() ? ModuleStatus::Starting : ModuleStatus::Running);
   return {};
 }
@@ -172,7 +172,7 @@ Status Supervised::start() {
 void Supervised::start_again() {
   auto started = start();
   if (started) return;
-  callbacks_.event(started.error().detail);
+  callbacks_.event(Level::Warning, started.error().detail);
   forget_process();
   go_on(kCannotExecute);
 }
@@ -231,7 +231,7 @@ ModuleChange Supervised::adopt(PlannedModule plan) {
   }
   if (process_->is_listening()) set_told();
   for (const auto& command : change.outputs)
-    if (command.starts_with("set ")) callbacks_.event(command);
+    if (command.starts_with("set ")) callbacks_.event(Level::Info, command);
   return change;
 }
 
@@ -240,7 +240,7 @@ void Supervised::send_commands(const std::vector<std::string>& commands) {
     if (!process_->is_listening() || wish_ == Wish::Restart ||
         process_->send(command_message(command)))
       continue;
-    callbacks_.event("does not accept commands; restarting");
+    callbacks_.event(Level::Warning, "does not accept commands; restarting");
     restart();
   }
 }
@@ -254,7 +254,7 @@ void Supervised::finish_input(const PlannedEnd& end, bool is_finished) {
 }
 
 void Supervised::note_end(int status) {
-  lines_.finish([this](const std::string& line) { take_line(line); });
+  lines_.finish([this](const std::string& line) { take_line(Level::Info, line); });
   note_dropped_lines(now() + LogLimit::kPeriod);
   forget_process();
   go_on(status);
@@ -276,7 +276,8 @@ void Supervised::go_on(int status) {
   // A process that the signal ended before it could handle it has done as it was asked.
   const bool is_as_asked = wish_ != Wish::None && (status == 0 || status == kSignal + SIGTERM);
   if (wish_ == Wish::End || wish_ == Wish::Restart || is_as_asked) {
-    callbacks_.event(is_as_asked ? end_in_words(0) : words);
+    callbacks_.event(is_as_asked ? Level::Info : Level::Warning,
+                     is_as_asked ? end_in_words(0) : words);
     if (wish_ == Wish::Restart) {
       callbacks_.interrupted();
       return start_again();
@@ -306,17 +307,18 @@ void Supervised::decide(int status) {
   using Next = Restarts::Next;
   if (decision.next == Next::Again) callbacks_.interrupted();
   if (decision.next == Next::Again && decision.delay.count() == 0) {
-    callbacks_.event(words + "; restarting");
+    callbacks_.event(Level::Warning, words + "; restarting");
     return start_again();
   }
   if (decision.next == Next::Again) {
-    callbacks_.event(words + "; restarting in " + seconds_in_words(decision.delay));
+    callbacks_.event(Level::Warning, words + "; restarting in " + seconds_in_words(decision.delay));
     change(ModuleStatus::Waiting, words);
     timer_ = loop_.call_at(MonotonicClock::now() + decision.delay, [this] { start_again(); });
     return;
   }
   bool is_given_up = decision.next == Next::GiveUp;
-  callbacks_.event(is_given_up && plan_.restart != Restart::Never
+  callbacks_.event(is_given_up ? Level::Warning : Level::Info,
+                   is_given_up && plan_.restart != Restart::Never
                        ? words + "; failed permanently" +
                              (starts_ > 1 ? " after " + std::to_string(starts_) + " starts" : "")
                        : words);

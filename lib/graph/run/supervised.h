@@ -39,8 +39,8 @@ class Supervised {
  public:
   /// Called when something happens to it. None may destroy it.
   struct Callbacks {
-    std::function<void(const std::string& line)> event;  ///< "started"
-    std::function<void(const std::string& line)> said;   ///< by the module itself
+    std::function<void(Level level, const std::string& text)> event;  ///< "started"
+    std::function<void(Level level, const std::string& text)> said;   ///< by the module itself
     std::function<void(const std::deque<std::string>& last_words)> failed;
     std::function<void()> changed;      ///< its state, other than in numbers
     std::function<void()> ended;        ///< for good
@@ -136,7 +136,7 @@ class Supervised {
   void change(ModuleStatus status, const std::string& detail = "");
   void ask_to_end();
   bool take_text(std::string_view text);
-  void take_line(const std::string& line);
+  void take_line(Level level, std::string text);
   void note_dropped_lines(MonotonicTime time);
   void take_report(const Message& message);
   void look_at_silent();
@@ -167,8 +167,9 @@ class Supervised {
   Restarts restarts_;
   Lines lines_;
   LogLimit log_limit_;
-  int results_ = 0;           // among what it has said
-  MonotonicTime said_at_{0};  // the last of them
+  int results_ = 0;                 // and errors, among what it has said
+  Level said_level_ = Level::Info;  // of the last line,
+  MonotonicTime said_at_{0};        // and when it was said
   Reports reports_;
   MonotonicTime heard_{0};                // when this process reported last; 0: it has not
   MonotonicTime looked_{0}, silence_{0};  // the last look; without a sign, as far as one looked

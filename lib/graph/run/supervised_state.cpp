@@ -6,7 +6,7 @@
 
 #include <graph/held_port.h>
 #include <graph/run/supervised.h>
-#include <hc/mtp/rows.h>
+#include <hc/base/visible.h>
 
 namespace hc::internal {
 namespace {
@@ -68,19 +68,29 @@ void Supervised::end_observations(MonotonicTime time) {
 
 /// Whether more may come at once.
 bool Supervised::take_text(std::string_view text) {
-  lines_.add(text, [this](const std::string& line) { take_line(line); });
-  said_at_ = now();
+  lines_.add(text, [this](const std::string& line) { take_line(Level::Info, line); });
   return !log_limit_.is_over();
 }
 
-void Supervised::take_line(const std::string& line) {
-  const bool is_result = results_ < kMostResults && line.find("result: ") != std::string::npos;
-  if (is_result) ++results_;
-  if (is_result || log_limit_.passes(line.size(), now())) callbacks_.said(line);
+void Supervised::take_line(Level level, std::string text) {
+  // A module's own name is before what it writes to standard error.
+  const std::string prefix = plan_.name + ": ";
+  if (text.starts_with(prefix)) text.erase(0, prefix.size());
+  const bool is_repeated = level == Level::Result || level == Level::Error;  // at the end
+  if (is_repeated) ++results_;
+  const bool is_kept = is_repeated && results_ <= kMostResults;
+  if (!is_kept && !log_limit_.passes(text.size(), now())) return;
+  if (level != Level::Notice) {
+    lines_.keep(text);
+    said_level_ = level;
+    said_at_ = now();
+  }
+  callbacks_.said(level, text);
 }
 
 void Supervised::note_dropped_lines(MonotonicTime time) {
-  if (const auto remark = log_limit_.take_remark(time); !remark.empty()) callbacks_.event(remark);
+  if (const auto remark = log_limit_.take_remark(time); !remark.empty())
+    callbacks_.event(Level::Warning, remark);
 }
 
 void Supervised::take_report(const Message& message) {
@@ -90,11 +100,9 @@ void Supervised::take_report(const Message& message) {
   const bool is_blocked = reports_.state().blocked_row != 0;
   if (!is_blocked) blocked_ = MonotonicTime(0);
   if (is_blocked && blocked_ == MonotonicTime(0)) blocked_ = heard_;
-  if (message.header.src == static_cast<int>(Report::Refusal) &&
-      message.header.info.type == MatrixType::String)
-    for (const auto& line : rows_of(message))
-      if (log_limit_.passes(line.size(), heard_)) callbacks_.event(visible(line));
-  if (status_ == ModuleStatus::Stalled) callbacks_.event("resumed");
+  if (message.header.src == static_cast<int>(Report::Log))
+    if (const auto line = read_log(message)) take_line(line->level, visible(line->text));
+  if (status_ == ModuleStatus::Stalled) callbacks_.event(Level::Info, "resumed");
   if (status_ == ModuleStatus::Stalled || status_ == ModuleStatus::Starting ||
       status_ == ModuleStatus::Running)
     change(ModuleStatus::Running);
@@ -119,7 +127,7 @@ void Supervised::look(MonotonicTime time) {
   if (time - heard_ < limits_.stall) return;
   const bool is_stopped = process_->usage(false).is_stopped;
   if (is_blocked && !is_stopped) {
-    if (is_stalled) callbacks_.event("resumed");
+    if (is_stalled) callbacks_.event(Level::Info, "resumed");
     const auto output = reports_.blocked_output();
     return change(
         ModuleStatus::Running,
@@ -127,7 +135,7 @@ void Supervised::look(MonotonicTime time) {
   }
   if (is_stalled) return;
   change(ModuleStatus::Stalled, is_stopped ? "stopped by a signal" : "busy");
-  callbacks_.event("unresponsive: " + detail_);
+  callbacks_.event(Level::Warning, "unresponsive: " + detail_);
 }
 
 /// Kills a process whose last report is older than the graph allows, or that a signal has stopped
@@ -160,7 +168,8 @@ void Supervised::look_at_silent() {
   if (is_stopped == is_stalled) return;
   silence_ = MonotonicTime(0);
   change(is_stopped ? ModuleStatus::Stalled : usual, is_stopped ? "stopped by a signal" : "");
-  callbacks_.event(is_stopped ? "unresponsive: " + detail_ : "resumed");
+  callbacks_.event(is_stopped ? Level::Warning : Level::Info,
+                   is_stopped ? "unresponsive: " + detail_ : "resumed");
 }
 
 void Supervised::measure(MonotonicTime time, bool with_memory) {
@@ -210,6 +219,7 @@ ModuleState Supervised::state() const {
     state.waits = std::chrono::duration<double>(now() - blocked_).count();
   if (!lines_.last().empty()) {
     state.last_line = lines_.last().back();
+    state.last_level = said_level_;
     state.last_line_age = std::chrono::duration<double>(now() - said_at_).count();
   }
   state.parameters = plan_.parameters;

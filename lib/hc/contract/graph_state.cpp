@@ -27,6 +27,7 @@ struct Writer {
     json[key] = value ? Json(*value) : Json(nullptr);
   }
   void operator()(const char* key, ModuleStatus value) { json[key] = name(value); }
+  void operator()(const char* key, Level value) { json[key] = name(value); }
 };
 
 /// Reads them; throws what Json throws. A key that is absent leaves its field as it is, so that a
@@ -48,6 +49,9 @@ struct Reader {
     const auto found = std::find(kStatusNames.begin(), kStatusNames.end(), text);
     if (found != kStatusNames.end())
       value = static_cast<ModuleStatus>(found - kStatusNames.begin());
+  }
+  void operator()(const char* key, Level& value) {
+    value = level_named(json.value(key, std::string())).value_or(value);
   }
 };
 
@@ -72,6 +76,7 @@ void visit_module(Module& module, Visit visit) {
   visit("waits_for", module.waits_for);
   visit("waits", module.waits);
   visit("last_line", module.last_line);
+  visit("last_level", module.last_level);
   visit("last_line_age", module.last_line_age);
   visit("parameters", module.parameters);
 }

@@ -16,6 +16,7 @@
 
 #include <hc/base/result.h>
 #include <hc/base/traffic.h>
+#include <hc/contract/log_line.h>
 
 namespace hc {
 
@@ -46,7 +47,8 @@ struct ModuleState {
   std::vector<std::string> modes;  ///< in which it is active; empty: all
   std::string workspace;           ///< whose focus it obeys; empty: none
   std::string last_line;           ///< of its log
-  double last_line_age = 0;        ///< [s]
+  Level last_level = Level::Info;
+  double last_line_age = 0;  ///< [s]
   bool in_focus = true;
   bool in_workspace = false;
   std::string waits_for;        ///< the input whose reader it waits for; empty: unknown

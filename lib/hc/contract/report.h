@@ -19,7 +19,8 @@
 namespace hc {
 
 /// What a message reports, by its src.
-enum class Report : std::int32_t { Counters = 1, Links, Parameters, State, Refusal };
+/// Log: log_line.h.
+enum class Report : std::int32_t { Counters = 1, Links, Parameters, State, Log };
 
 /// Durations since the report before: median, 99th percentile, greatest [ns]; -1: none.
 using Durations = std::array<std::int64_t, 3>;

@@ -57,7 +57,10 @@ Uri without_waiting(Uri uri, std::uint32_t keep) {
 }  // namespace
 
 Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int stop)
-    : module_(module), waits_(stop), pauses_(stop) {
+    : module_(module),
+      management_(*(module.management_ = std::make_shared<internal::Management>())),
+      waits_(stop),
+      pauses_(stop) {
   options_.limits = arguments.limits;
   options_.stop = stop;
   module_.focus_ = arguments.focus;
@@ -71,12 +74,12 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
   if (arguments.manage) {
     Uri uri = *arguments.manage;
     if (uri.option("keep", "").empty()) uri.options.emplace_back("keep", kReportsKept);
-    auto sink = open_sink(uri, options_for(uri, "reports"));
+    auto sink = open_sink(uri);  // it outlives this loop
     if (!sink) fail(uri.text(), sink.error());
     reports = std::move(*sink);
   }
-  management_ = internal::Management(
-      std::move(reports), arguments.control ? open(*arguments.control, "commands") : nullptr);
+  management_.open(std::move(reports),
+                   arguments.control ? open(*arguments.control, "commands") : nullptr);
   open_outputs(arguments);
   open_inputs(arguments);
   for (const auto& uri : arguments.focus_links) open_focus(uri);
@@ -102,8 +105,8 @@ LinkOptions Module::Loop::options_for(const Uri& uri, const std::string& port) {
   options.log = [this, uri = uri.text(), port](Severity severity, std::string_view line) {
     if (uri.starts_with("file:") && line.starts_with(uri)) {
       // After an error the work goes on; `hc run` repeats it at its end.
-      const std::string kind = severity == Severity::Error ? "result: error: " : "";
-      return module_.log(kind + port + std::string(line.substr(uri.size())));
+      return module_.log(port + std::string(line.substr(uri.size())),
+                         severity == Severity::Error ? Level::Error : Level::Warning);
     }
     const std::string name = name_of(uri, port);
     if (name == uri || !line.starts_with(uri)) return module_.log(line);

@@ -179,7 +179,7 @@ struct Module::Loop {
   std::vector<std::shared_ptr<internal::LinkedSink>> unlinked_;  // one may still be in send()
   std::vector<internal::Inlet> focus_;
   std::unique_ptr<internal::Trace> trace_;  // while it is traced
-  internal::Management management_;
+  internal::Management& management_;
   WaitSet waits_, pauses_;  // for all there is; between two calls of the generator
   std::vector<Source*> waited_for_;
   std::vector<int> watched_;

@@ -86,10 +86,7 @@ void Module::Loop::obey(const std::string& command) {
   auto done = carry_out(command);
   if (done) return;
   const std::string line = "command \"" + command + "\": " + done.error().detail;
-  if (management_.is_heard())
-    send(Report::Refusal, make_rows(std::array{line}));
-  else
-    module_.log(line);
+  module_.log(line, Level::Warning);
 }
 
 /// Obeys commands while a sink waits within send(), as far as the handler that sends cannot notice:

@@ -19,12 +19,14 @@ std::vector<std::string> Management::take_commands() {
   return commands;
 }
 
-void Management::send(Report report, Message message, std::int64_t time) {
-  if (reports_ == nullptr) return;
+bool Management::send(Report report, Message message, std::int64_t time) {
+  const std::lock_guard lock(mutex_);
+  if (reports_ == nullptr) return false;
   message.header.src = static_cast<std::int32_t>(report);
   message.header.seq = sent_++;
   message.header.time = time;
   if (!reports_->send(message)) reports_.reset();
+  return reports_ != nullptr;
 }
 
 }  // namespace hc::internal

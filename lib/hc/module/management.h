@@ -4,6 +4,7 @@
 // other (spec/module.md). Internal.
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -15,9 +16,10 @@ namespace hc::internal {
 /// The two links, of which either may be missing. When one breaks, the module continues without it.
 class Management {
  public:
-  Management() = default;
-  Management(std::unique_ptr<Sink> reports, std::unique_ptr<Source> commands)
-      : reports_(std::move(reports)), commands_(std::move(commands)) {}
+  void open(std::unique_ptr<Sink> reports, std::unique_ptr<Source> commands) {
+    reports_ = std::move(reports);
+    commands_ = std::move(commands);
+  }
 
   [[nodiscard]] bool is_heard() const { return reports_ != nullptr; }
   /// Where commands come from; null where nobody sends any.
@@ -26,10 +28,11 @@ class Management {
   /// The commands that have come, a line each. Never waits.
   std::vector<std::string> take_commands();
 
-  /// Sends a report; dropped where nobody takes it in time.
-  void send(Report report, Message message, std::int64_t time);
+  /// Sends a report; dropped where nobody takes it in time. From any thread. False: nobody listens.
+  bool send(Report report, Message message, std::int64_t time);
 
  private:
+  std::mutex mutex_;  // of the reports
   std::unique_ptr<Sink> reports_;
   std::unique_ptr<Source> commands_;
   std::int64_t sent_ = 0;

@@ -141,9 +141,13 @@ void Module::log_unmatched(const internal::TogetherState& together) {
     }
 }
 
-void Module::log(std::string_view line) const {
+void Module::log(std::string_view line, Level level) const {
+  if (level != Level::Info && management_ != nullptr &&
+      management_->send(Report::Log, make_log(level, line), clock_.wall()))
+    return;
+  const std::string prefix = level == Level::Info ? "" : std::string(hc::name(level)) + ": ";
   // There is no one to tell that it failed.
-  static_cast<void>(write_all(STDERR_FILENO, instance_ + ": " + visible(line) + "\n"));
+  static_cast<void>(write_all(STDERR_FILENO, instance_ + ": " + prefix + visible(line) + "\n"));
 }
 
 void Module::log_once(const std::string& kind, std::string_view line, std::int64_t count) {

@@ -26,6 +26,7 @@
 #include <vector>
 
 #include <hc/base/parameter.h>
+#include <hc/contract/log_line.h>
 #include <hc/module/focus.h>
 #include <hc/module/period.h>
 #include <hc/module/port.h>
@@ -269,7 +270,8 @@ class Module {
   void keep_rate(double rate);
 
   /// Writes a line to standard error, with the module's name before it.
-  void log(std::string_view line) const;
+  /// Of another level than Info it is reported where `hc run` runs the module.
+  void log(std::string_view line, Level level = Level::Info) const;
 
   /// Logs the first problem of a kind and counts the others; the counts are logged at the end.
   ///
@@ -377,10 +379,11 @@ class Module {
   bool routes_ = false, is_background_ = false, keeps_running_ = false;
   const Clock& clock_;
   internal::Focus focus_;
-  Loop* loop_ = nullptr;                      // while it runs
-  std::optional<std::int64_t> message_time_;  // with --clock messages [ns]
-  internal::Handled handled_;                 // the message being handled
-  std::optional<MonotonicTime> last_period_;  // of keep_rate()
+  Loop* loop_ = nullptr;                              // while it runs
+  std::shared_ptr<internal::Management> management_;  // from then on
+  std::optional<std::int64_t> message_time_;          // with --clock messages [ns]
+  internal::Handled handled_;                         // the message being handled
+  std::optional<MonotonicTime> last_period_;          // of keep_rate()
 };
 
 }  // namespace hc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { mayOperate, type GraphLink, type GraphModule, type GraphState } from "../server";
+import { mayOperate, type GraphLink, type GraphModule, type GraphState, type LogLine } from "../server";
 import { fill, h, type PanelHost, type PanelKind } from "../shell";
 import { describe, typeText, type Description, type PortDescription } from "./describe";
 import { Failures } from "./failures";
@@ -209,10 +209,10 @@ class ModuleView {
   }
 
   /** A line of the log that is of this module. */
-  private addLine(line: string): void {
-    if (!line.startsWith(`${this.name}: `)) return;
+  private addLine(line: LogLine): void {
+    if (line.module !== this.name) return;
     const atEnd = this.log.scrollTop + this.log.clientHeight >= this.log.scrollHeight - 4;
-    this.log.append(line.slice(this.name.length + 2) + "\n");
+    this.log.append(`${line.level === "error" ? "error: " : ""}${line.text}\n`);
     while (this.log.childNodes.length > logLines) this.log.firstChild?.remove();
     if (atEnd) this.log.scrollTop = this.log.scrollHeight;
   }

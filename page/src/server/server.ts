@@ -4,7 +4,7 @@ import { Drive } from "./drive";
 import { Signal, type Unsubscribe } from "./signal";
 import { Socket } from "./socket";
 import { Stream, type StreamOptions } from "./stream";
-import type { Connection, GraphState, Recording, Session } from "./types";
+import type { Connection, GraphState, LogLine, Recording, Session } from "./types";
 
 /** A command that was not done; `rows` say what is wrong. */
 export class CommandError extends Error {
@@ -25,11 +25,11 @@ const logLines = 2000;
 export class Server {
   private readonly states = new Signal<GraphState>();
   private readonly sessions = new Signal<Session>();
-  private readonly lines = new Signal<string>();
+  private readonly lines = new Signal<LogLine>();
   private readonly connections = new Signal<Connection>({ status: "connecting" });
   private readonly waiting = new Map<bigint, Waiting>(); // by the number of the command
   private asked = 0n; // over this connection
-  private readonly logged: string[] = [];
+  private readonly logged: LogLine[] = [];
   private readonly socket: Socket;
 
   constructor() {
@@ -74,7 +74,7 @@ export class Server {
   }
 
   /** The last lines of the log. */
-  get log(): readonly string[] {
+  get log(): readonly LogLine[] {
     return this.logged;
   }
 
@@ -91,7 +91,7 @@ export class Server {
   }
 
   /** Each line of the log as it comes (G46); those before are in `log`. */
-  onLog(listener: (line: string) => void): Unsubscribe {
+  onLog(listener: (line: LogLine) => void): Unsubscribe {
     return this.lines.on(listener);
   }
 
@@ -141,12 +141,9 @@ export class Server {
       case 1:
         return this.states.set(JSON.parse(rows.join("")) as GraphState);
       case 2:
-        for (const row of rows) {
-          this.logged.push(row);
-          if (this.logged.length > logLines) this.logged.shift();
-          this.lines.emit(row);
-        }
-        return;
+        this.logged.push(JSON.parse(rows.join("")) as LogLine);
+        if (this.logged.length > logLines) this.logged.shift();
+        return this.lines.emit(this.logged[this.logged.length - 1] as LogLine);
       case 3:
         return this.sessions.set(JSON.parse(rows.join("")) as Session);
       case 4: {

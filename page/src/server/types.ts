@@ -62,6 +62,13 @@ export interface Focus {
   readonly number: number;
 }
 
+/** A line of the graph's log (G46). */
+export interface LogLine {
+  readonly module: string;
+  readonly level: "info" | "warning" | "error" | "result";
+  readonly text: string;
+}
+
 export interface GraphState {
   readonly graph: string;
   readonly file: string;

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/contract/log_line.h>
+
+#include <algorithm>
+#include <array>
+
+#include <nlohmann/json.hpp>
+
+#include <hc/mtp/rows.h>
+
+namespace hc {
+namespace {
+
+constexpr std::array<std::string_view, 5> kNames = {"info", "warning", "error", "result", "notice"};
+
+}  // namespace
+
+std::string_view name(Level level) {
+  return kNames.at(static_cast<std::size_t>(level));
+}
+
+std::optional<Level> level_named(std::string_view name) {
+  const auto found = std::find(kNames.begin(), kNames.end(), name);
+  if (found == kNames.end()) return std::nullopt;
+  return static_cast<Level>(found - kNames.begin());
+}
+
+std::string LogLine::line() const {
+  const bool is_wrong = level == Level::Error || level == Level::Warning;
+  return module + ": " + (is_wrong ? std::string(name(level)) + ": " : "") + text;
+}
+
+Message make_log(Level level, std::string_view text) {
+  return make_rows(std::array{std::string(name(level)) + " " + std::string(text)});
+}
+
+Result<LogLine> read_log(const Message& message) {
+  const auto rows = rows_of(message);
+  const std::string row = rows.empty() ? "" : rows.front();
+  const auto space = std::min(row.find(' '), row.size());
+  const auto level = level_named(row.substr(0, space));
+  if (!level) return Error{Code::Malformed, "a log report is LEVEL TEXT, and not \"" + row + "\""};
+  return LogLine{{}, *level, row.substr(std::min(row.size(), space + 1))};
+}
+
+std::string to_json(const LogLine& line) {
+  const nlohmann::ordered_json json = {
+      {"module", line.module}, {"level", name(line.level)}, {"text", line.text}};
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+Result<LogLine> parse_log_line(std::string_view text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const Error wrong{Code::Malformed, "a line of a graph's log has module, level and text"};
+  if (!json.is_object()) return wrong;
+  auto word = [&](const char* key) {
+    const auto found = json.find(key);
+    return found != json.end() && found->is_string() ? std::optional(found->get<std::string>())
+                                                     : std::nullopt;
+  };
+  const auto module = word("module"), level = word("level"), said = word("text");
+  const auto known = level ? level_named(*level) : std::nullopt;
+  if (!module || !known || !said) return wrong;
+  return LogLine{*module, *known, *said};
+}
+
+}  // namespace hc

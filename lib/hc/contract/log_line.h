@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A line of a log with its level: as a module reports it to `hc run`, and as a running graph
+// publishes it (spec/module.md, spec/graph.md). Pure.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <hc/base/result.h>
+#include <hc/mtp/message.h>
+
+namespace hc {
+
+enum class Level {
+  Info,
+  Warning,
+  Error,   ///< something was not done although the module goes on; `hc run` repeats it at its end
+  Result,  ///< of the module's work, such as a score; `hc run` repeats it at its end
+  Notice,  ///< for the person at the terminal alone, such as a URL with its token; never published
+};
+/// "info", "warning" and so on.
+std::string_view name(Level level);
+std::optional<Level> level_named(std::string_view name);
+
+struct LogLine {
+  std::string module;  ///< "graph": of the graph itself
+  Level level = Level::Info;
+  std::string text;
+
+  /// "camera: error: no such device"; the level is shown of what is wrong alone.
+  [[nodiscard]] std::string line() const;
+};
+
+/// What a module reports: a string with a row "LEVEL TEXT".
+Message make_log(Level level, std::string_view text);
+/// Errors: Malformed.
+Result<LogLine> read_log(const Message& message);
+
+/// What a graph publishes: one line of JSON.
+std::string to_json(const LogLine& line);
+/// Errors: Malformed.
+Result<LogLine> parse_log_line(std::string_view json);
+
+}  // namespace hc

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/contract/log_line.h>
+
+#include <gtest/gtest.h>
+
+#include <hc/mtp/rows.h>
+
+namespace hc {
+namespace {
+
+TEST(LogLine, a_report_says_its_level) {
+  for (const auto level :
+       {Level::Info, Level::Warning, Level::Error, Level::Result, Level::Notice}) {
+    const auto line = read_log(make_log(level, "said: two words"));
+    ASSERT_TRUE(line) << name(level);
+    EXPECT_EQ(line->level, level);
+    EXPECT_EQ(line->text, "said: two words");
+  }
+  for (const char* wrong : {"", "fatal: x", "Error x"})
+    EXPECT_FALSE(read_log(make_rows(std::array{std::string(wrong)}))) << wrong;
+}
+
+TEST(LogLine, json_brings_back_what_was_said) {
+  const auto line = parse_log_line(to_json({"camera", Level::Error, "no \"device\"\\"}));
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->module, "camera");
+  EXPECT_EQ(line->level, Level::Error);
+  EXPECT_EQ(line->line(), "camera: error: no \"device\"\\");
+  EXPECT_TRUE(parse_log_line(to_json({"a", Level::Info, "\xff"})));
+  for (const char* wrong : {"", "[]", "{}", R"({"module":"a","level":3,"text":"b"})",
+                            R"({"module":"a","level":"loud","text":"b"})"})
+    EXPECT_FALSE(parse_log_line(wrong)) << wrong;
+}
+
+TEST(LogLine, a_terminal_shows_what_is_wrong) {
+  EXPECT_EQ((LogLine{"a", Level::Result, "3 px"}.line()), "a: 3 px");
+  EXPECT_EQ((LogLine{"a", Level::Warning, "late"}.line()), "a: warning: late");
+}
+
+}  // namespace
+}  // namespace hc
