@@ -26,9 +26,9 @@ class Host {
  public:
   virtual ~Host() = default;
 
-  // For who plans: from other threads than the loop's, waiting for the host until `stop` is
-  // readable. Errors: Closed (it is not connected), Stopped, and those of the functions of this
-  // host.
+  // For planning. To be called from threads other than the loop's; each call waits for the host
+  // until `stop` is readable. Errors: Closed (it is not connected), Stopped, and those of the
+  // functions of this host.
 
   /// As find_program(), but a missing program is an error (NotFound).
   virtual Result<std::string> find_program(const std::string& name, int stop) = 0;
@@ -39,17 +39,17 @@ class Host {
   /// What the program that runs there says of its host (`hc doctor`); words of its own.
   virtual Result<std::string> examine(const std::string& question, int stop) = 0;
 
-  // For who runs the graph: on the loop's thread, at once.
+  // For running the graph. To be called on the loop's thread; no call waits.
 
   [[nodiscard]] virtual HostPlace place() const = 0;
   [[nodiscard]] virtual HostState state() const = 0;
-  /// Processes of a module there. One that runs ends with status kHostLost when the connection
-  /// does.
+  /// Runs the processes of a module there. When the connection is lost they end with status
+  /// kHostLost.
   virtual std::unique_ptr<ModuleProcess> make_process(const PlannedModule& module,
                                                       ModuleCallbacks callbacks) = 0;
-  /// Has a reader there take the place of one that has ended, as long as the result.
+  /// As read_in_place_here(), there.
   virtual std::shared_ptr<void> read_in_place(const std::string& reader_uri) = 0;
-  /// A port of all addresses for who observes, where one is at hand. Errors: Closed.
+  /// A port of all addresses for observers, if one is held in reserve. Errors: Closed.
   virtual Result<std::shared_ptr<const HeldPort>> spare_port() = 0;
   /// What added to its monotonic clock gives the wall clock here [ns].
   [[nodiscard]] virtual std::int64_t wall_offset() const = 0;
@@ -58,7 +58,7 @@ class Host {
   static constexpr int kHostLost = 256;
 };
 
-/// All other hosts of a run, and the connections to them, on the thread of a loop.
+/// All other hosts of a run, and the connections to them. Used on the thread of one loop.
 class Hosts {
  public:
   struct Connected {
@@ -68,22 +68,21 @@ class Hosts {
 
   virtual ~Hosts() = default;
 
-  /// The loop, to be turned as long as a host is connected: one that hears nothing for 3 s gives
-  /// us up.
+  /// The loop, which must turn while a host is connected: an agent that hears nothing for 3 s
+  /// ends.
   [[nodiscard]] virtual internal::Loop& loop() = 0;
-  /// Does work that may wait for hosts, on another thread, while this one turns the loop. Errors:
-  /// System.
+  /// Calls `work`, which may wait for hosts, on another thread, and turns the loop until it
+  /// returns. Errors: System.
   virtual Status serve(const std::function<void()>& work) = 0;
 
-  /// The hosts of these declarations; those that are new are connected to, all at once. Errors: of
-  /// each, Closed (it cannot be reached, or has no agent of ours; the detail says why), Stopped.
-  /// From another thread than the loop's.
-  virtual std::vector<Result<Connected>> connect(const std::vector<GraphHost>& declared,
-                                                 int stop) = 0;
+  /// The host of this declaration; a new one is connected to. To be called from threads other than
+  /// the loop's. Errors: Closed (it cannot be reached, or has no agent of ours; the detail says
+  /// why), Stopped.
+  virtual Result<Connected> connect(const GraphHost& declared, int stop) = 0;
   /// A host that has been connected to; null: none has that name.
   [[nodiscard]] virtual std::shared_ptr<Host> find(const std::string& name) const = 0;
 
-  /// Of the key of this host: its fingerprint, and its file. The same for life, from any thread.
+  /// The fingerprint of the key of this host, and its file. Constant; for any thread.
   [[nodiscard]] virtual std::string fingerprint() const = 0;
   [[nodiscard]] virtual int key() const = 0;
 

@@ -216,33 +216,63 @@ class FileLoader : public GraphLoader {
     return !options_.recorder.empty() && (options_.record.empty() || has_recorder_ || spans_hosts);
   }
 
+  /// What is known of another host.
+  struct Elsewhere {
+    Result<Hosts::Connected> connected;
+    Answers found;      // where its programs are, by host and name,
+    Answers described;  // and what these say of themselves, by host and path
+  };
+
+  static Elsewhere ask_host(Hosts& hosts, const GraphHost& declared,
+                            const std::set<std::string>& programs, int stop) {
+    Elsewhere there{hosts.connect(declared, stop), {}, {}};
+    for (const auto& program : programs) {
+      if (!there.connected) break;
+      auto& host = *there.connected->host;
+      auto path = host.find_program(program, stop);
+      if (path)
+        there.described.emplace(std::pair(declared.name, *path),
+                                host.describe_program(*path, stop));
+      there.found.emplace(std::pair(declared.name, program), std::move(path));
+    }
+    return there;
+  }
+
   /// Connects to the hosts that modules run on, and asks each where its programs are and for their
-  /// descriptions. Modules on a host that cannot be reached cause no further problems.
+  /// descriptions: all at the same time, each on a thread. Modules on a host that cannot be reached
+  /// cause no further problems.
   HostPlaces find_programs_elsewhere(Graph& graph, Problems& problems, HostsByName& hosts,
                                      Answers& described, int stop) {
-    std::vector<GraphHost> wanted;
-    for (const auto& declared : graph.hosts)
-      if (!declared.ssh.empty() &&
-          std::any_of(graph.modules.begin(), graph.modules.end(),
-                      [&](const auto& module) { return module.host.value == declared.name; }))
-        wanted.push_back(declared);
-    HostPlaces places;
-    if (!wanted.empty() && options_.hosts == nullptr)
-      problems.add(wanted.front().place, "this program runs graphs on one host alone");
-    if (options_.hosts != nullptr) {
-      const auto connected = options_.hosts->connect(wanted, stop);
-      for (std::size_t i = 0; i < wanted.size(); ++i) {
-        const auto& name = wanted[i].name;
-        if (connected[i]) {
-          hosts[name] = connected[i]->host;
-          places[name] = connected[i]->place;
-        } else {
-          problems.add(wanted[i].place, "host " + name + ": " + connected[i].error().detail);
-        }
+    std::vector<std::pair<const GraphHost*, std::future<Elsewhere>>> asked;
+    for (const auto& declared : graph.hosts) {
+      std::set<std::string> programs;
+      for (const auto& module : graph.modules)
+        if (module.host.value == declared.name) programs.insert(module.program.value);
+      if (declared.ssh.empty() || programs.empty()) continue;
+      if (options_.hosts == nullptr) {
+        problems.add(declared.place, "this program runs graphs on one host alone");
+        break;
       }
-      places[""].fingerprint = options_.hosts->fingerprint();
+      programs.erase("");  // what is wrong has been reported
+      asked.emplace_back(
+          &declared, std::async(std::launch::async, ask_host, std::ref(*options_.hosts), declared,
+                                programs, stop));
     }
-    const auto found = ask_all(graph, hosts, described, stop);
+    HostPlaces places;
+    Answers found;
+    for (auto& [declared, answer] : asked) {
+      auto there = answer.get();
+      if (!there.connected) {
+        problems.add(declared->place,
+                     "host " + declared->name + ": " + there.connected.error().detail);
+        continue;
+      }
+      hosts[declared->name] = there.connected->host;
+      places[declared->name] = there.connected->place;
+      found.merge(there.found);
+      described.merge(there.described);
+    }
+    if (options_.hosts != nullptr) places[""].fingerprint = options_.hosts->fingerprint();
     for (auto& module : graph.modules) {
       auto& [program, place] = module.program;
       const std::string& name = module.host.value;
@@ -256,41 +286,6 @@ class FileLoader : public GraphLoader {
       program = known ? *known : "";
     }
     return places;
-  }
-
-  /// Asks all hosts at the same time, each on a thread: where its programs are, by host and name,
-  /// and what these say of themselves.
-  static Answers ask_all(const Graph& graph, const HostsByName& hosts, Answers& described,
-                         int stop) {
-    struct Of {
-      Answers found, described;
-    };
-    std::vector<std::future<Of>> asked;
-    for (const auto& each : hosts) {
-      const auto name = each.first;
-      const auto host = each.second;
-      std::set<std::string> programs;
-      for (const auto& module : graph.modules)
-        if (module.host.value == name && !module.program.value.empty())
-          programs.insert(module.program.value);
-      asked.push_back(std::async(std::launch::async, [name, host, programs, stop] {
-        Of of;
-        for (const auto& program : programs) {
-          auto path = host->find_program(program, stop);
-          if (path)
-            of.described.emplace(std::pair(name, *path), host->describe_program(*path, stop));
-          of.found.emplace(std::pair(name, program), std::move(path));
-        }
-        return of;
-      }));
-    }
-    Answers found;
-    for (auto& each : asked) {
-      auto of = each.get();
-      found.merge(of.found);
-      described.merge(of.described);
-    }
-    return found;
   }
 
   Result<std::string> describe_once(const std::string& program, int stop) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How a thread asks another one, which turns a loop, and waits for the answer. Internal.
+// Asks the thread of a loop, from another thread, and waits for the answer. Internal.
 
 #include <chrono>
 #include <functional>
@@ -13,10 +13,10 @@
 namespace hc::hosts {
 
 template <typename T>
-using Give = std::function<void(T)>;
+using Give = std::function<void(Result<T>)>;
 
-/// Calls `begin` on the loop's thread and waits on this one, which is another, for what it gives,
-/// then or later.
+/// Calls `begin` on the loop's thread and waits, on this other thread, until it has given an
+/// answer.
 ///
 /// Errors: Stopped (`stop` is readable), Closed (no answer in time), System.
 template <typename T>
@@ -30,10 +30,9 @@ Result<T> answer_of(internal::Loop& loop, int stop, std::chrono::nanoseconds tim
   if (!made) return made.error();
   auto here = std::make_shared<Here>(Here{std::move(*made), {}});
   loop.post([here, begin = std::move(begin)] {
-    begin([here](T value) {
-      here->loop->post([self = here.get(), value = std::move(value)]() mutable {
-        self->answer.emplace(std::move(value));
-      });
+    begin([here](Result<T> value) {
+      here->loop->post(
+          [self = here.get(), value = std::move(value)] { self->answer.emplace(value); });
     });
   });
   internal::Loop::Handle stopped;

@@ -110,11 +110,11 @@ void Connection::ask(Json question, Answered answered) {
   send(question);
 }
 
-// For who plans, on another thread.
+// For planning, on other threads.
 
 Result<std::string> Connection::ask_text(const char* what, const std::string& subject, int stop) {
   const Json question = {{"what", what}, {"subject", subject}};
-  auto answer = answer_of<Result<Json>>(
+  auto answer = answer_of<Json>(
       loop_, stop, kAnswerTime, [self = shared_from_this(), question](const auto& give) {
         self->ask(question, [self, question, give](Result<Json> answered) {
           auto& known = self->answers_[question.dump()];
@@ -126,9 +126,8 @@ Result<std::string> Connection::ask_text(const char* what, const std::string& su
         });
       });
   if (!answer) return answer.error();
-  if (!*answer) return answer->error();
-  const auto text = (*answer)->find("text");
-  if (text == (*answer)->end() || !text->is_string()) return Error{Code::Malformed, "no text"};
+  const auto text = answer->find("text");
+  if (text == answer->end() || !text->is_string()) return Error{Code::Malformed, "no text"};
   return text->get<std::string>();
 }
 
@@ -145,8 +144,7 @@ Result<std::string> Connection::examine(const std::string& question, int stop) {
 }
 
 Result<std::shared_ptr<const HeldPort>> Connection::hold_port(bool of_all_addresses, int stop) {
-  using Held = Result<std::shared_ptr<const HeldPort>>;
-  auto held = answer_of<Held>(
+  return answer_of<std::shared_ptr<const HeldPort>>(
       loop_, stop, kAnswerTime, [self = shared_from_this(), of_all_addresses](const auto& give) {
         self->ask({{"what", "hold"}, {"of_all", of_all_addresses}, {"port", 0}},
                   [self, of_all_addresses, give](const Result<Json>& answer) {
@@ -156,12 +154,11 @@ Result<std::shared_ptr<const HeldPort>> Connection::hold_port(bool of_all_addres
                     give(self->held(port, of_all_addresses));
                   });
       });
-  return held ? *held : held.error();
 }
 
 // On the loop's thread.
 
-/// A port there, until nobody has it any more, on whichever thread that is.
+/// A port there, released when its last owner ends, on whichever thread.
 std::shared_ptr<const HeldPort> Connection::held(std::uint16_t number, bool of_all) {
   ports_[number] = of_all;
   return {new HeldPort{internal::Descriptor(), number},
@@ -312,7 +309,7 @@ void Connection::take_heartbeat(const Message& message, std::int64_t received) {
   if (!std::exchange(state_.is_connected, true)) begin_work();
 }
 
-/// The host is connected: what ran over an earlier connection, and goes on, is asked for again.
+/// The host is connected: asks again for the ports and readers that outlast a connection.
 void Connection::begin_work() {
   connected_ = Clock::now();
   state_.detail.clear();

@@ -40,19 +40,13 @@ class AllHosts final : public Hosts {
     return {};
   }
 
-  std::vector<Result<Connected>> connect(const std::vector<GraphHost>& declared,
-                                         int stop) override {
-    auto connected = answer_of<std::vector<Result<Connected>>>(
-        *loop_, stop, std::chrono::hours(1), [this, declared](const auto& give) {
-          auto begun = std::make_shared<Begun>(Begun{{}, declared.size(), give});
-          for (std::size_t i = 0; i < declared.size(); ++i)
-            begun->connected.emplace_back(Error{Code::Closed, "not connected"});
-          for (std::size_t i = 0; i < declared.size(); ++i) begin_connecting(declared[i], i, begun);
-          if (declared.empty()) give({});
-        });
-    if (connected) return *connected;
-    loop_->post([this] { close_those_not_open(); });
-    return {declared.size(), connected.error()};
+  Result<Connected> connect(const GraphHost& declared, int stop) override {
+    auto connected = answer_of<Connected>(
+        *loop_, stop, std::chrono::hours(1),
+        [this, declared](const auto& give) { begin_connecting(declared, give); });
+    if (!connected && connected.error().code == Code::Stopped)
+      loop_->post([this] { close_those_not_open(); });
+    return connected;
   }
   Status serve(const std::function<void()>& work) override {
     bool is_done = false;
@@ -83,41 +77,30 @@ class AllHosts final : public Hosts {
   }
 
  private:
-  struct Begun {
-    std::vector<Result<Connected>> connected;
-    std::size_t missing;
-    Give<std::vector<Result<Connected>>> give;
-
-    void note(std::size_t index, Result<Connected> one) {
-      connected[index] = std::move(one);
-      if (--missing == 0) give(std::move(connected));
-    }
-  };
-
-  void begin_connecting(const GraphHost& declared, std::size_t index,
-                        const std::shared_ptr<Begun>& begun) {
+  void begin_connecting(const GraphHost& declared, const Give<Connected>& give) {
     if (!clock_) look_at_clock();  // with the first host
     const auto known = hosts_.find(declared.name);
     if (known != hosts_.end() && known->second->is_of(declared))
-      return begun->note(index, Connected{known->second, known->second->place()});
+      return give(Connected{known->second, known->second->place()});
     auto key = tls::make_key_text();
-    if (!key) return begun->note(index, key.error());
+    if (!key) return give(key.error());
     auto fingerprint = tls::fingerprint_of_text(*key);
-    if (!fingerprint) return begun->note(index, fingerprint.error());
+    if (!fingerprint) return give(fingerprint.error());
     const auto host = std::make_shared<Connection>(
         *loop_, Connection::Parts{declared, version_, *key, *fingerprint,
                                   [this](const std::string& line) { log(line); },
                                   [this] { changed_.raise(); }});
     opening_.insert(host);
-    host->open([this, index, begun, name = declared.name,
-                opening = std::weak_ptr(host)](const Status& opened) {
-      const auto self = opening.lock();
-      opening_.erase(self);
-      if (!opened) return begun->note(index, opened.error());
+    host->open([this, give, name = declared.name, host](const Status& opened) {
+      opening_.erase(host);
+      if (!opened) {
+        loop_->post([host] { host->close(); });  // it is what calls this
+        return give(opened.error());
+      }
       auto& entry = hosts_[name];
       if (entry) entry->close();  // the file says something else of it now
-      entry = self;
-      begun->note(index, Connected{self, self->place()});
+      entry = host;
+      give(Connected{host, host->place()});
     });
   }
 
