@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The processes of a module as who supervises them sees them, whether they run on this host or on
-// another one (hosts.h).
+// How a module's processes are run and supervised, on this host and on others (hosts.h) alike.
 
 #include <functional>
 #include <memory>
@@ -16,25 +15,25 @@
 
 namespace hc {
 
-/// What a process does, as it is noted. None may destroy the ModuleProcess.
+/// What is called for a process. A callback may not destroy the ModuleProcess.
 struct ModuleCallbacks {
-  /// Takes what it writes to standard error. Returns whether more may come at once.
+  /// It has written to standard error. Returns whether more may be read at once.
   std::function<bool(std::string_view bytes)> said;
   std::function<void(const Message& report)> reported;
-  /// It takes commands from now on. Returns the first ones.
+  /// It has connected to take commands. Returns the first ones.
   std::function<std::vector<Message>()> listens;
-  /// It has ended, and all that it had started; all that it has said and reported was handed over
-  /// before. The status is 128 + the signal where one killed it.
+  /// It has ended, with all that it had started. What it has written and reported was handed over
+  /// before. The status is 128 + the signal if one killed it.
   std::function<void(int status)> ended;
 };
 
-/// The process of a module, and the next one where that has ended. It is used on the thread of a
-/// loop; with the object the process is killed, with all that it has started.
+/// Runs the processes of one module, one after another. Used on the thread of a loop. The
+/// destructor kills the process and all that it has started.
 class ModuleProcess {
  public:
   virtual ~ModuleProcess() = default;
 
-  /// Starts a process, when none runs.
+  /// Starts a process; none may run.
   /// @param control_uri  where it connects to for commands; empty: it takes none.
   ///
   /// Errors: NotFound, System (also: a name is in use).
@@ -42,26 +41,26 @@ class ModuleProcess {
   [[nodiscard]] virtual bool runs() const = 0;
   /// Asks it to end (SIGTERM).
   virtual void ask_to_end() = 0;
-  /// Has it killed; `ended` says when that is done.
+  /// Kills it, with all that it has started; `ended` is called when that is done.
   virtual void kill() = 0;
-  /// Looks whether it has ended, without waiting for the event.
+  /// Notes its end at once, if it has ended, and not only in the next turn.
   virtual void look() = 0;
-  /// No process will follow soon: the names that readers of its outputs know are free.
+  /// Frees the names at which readers of its outputs connect, which are held between processes.
   virtual void let_names_go() = 0;
 
   [[nodiscard]] virtual bool is_listening() const = 0;
-  /// Sends it a command, if it is listening; false: it does not read them.
+  /// Sends a command to a process that is listening; false: it does not read its commands.
   virtual bool send(const Message& command) = 0;
 
   /// Its process number on its host; 0 where that is not known, or none runs.
   [[nodiscard]] virtual pid_t number() const = 0;
   /// What it and all that it has started use.
-  /// @param with_memory  whether to look at the memory and at who has been started meanwhile.
+  /// @param with_memory  whether to measure memory, and look for further processes.
   virtual internal::Usage usage(bool with_memory) = 0;
 };
 
-/// Processes of a module on this host.
-/// @param manage_uri  where they report, listened to from now on.
+/// Runs the processes of a module on this host.
+/// @param manage_uri  where they report; it is listened to from now on.
 /// @param key  descriptor that they get as kKeyDescriptor; -1: none.
 ///
 /// Errors: Invalid, System (the name is in use).
@@ -69,10 +68,10 @@ Result<std::unique_ptr<ModuleProcess>> make_process_here(internal::Loop& loop,
                                                          const std::string& manage_uri, int key,
                                                          ModuleCallbacks callbacks);
 
-/// Reads on this host in the place of a module that reads no more, so that no writer waits for it,
-/// as long as the result.
-/// @param reader_uri  the URI of its end; how long it was to wait plays no part, and it keeps no
-///     message from being overwritten.
+/// Reads and drops the messages of a link whose reader has ended, as long as the result exists, so
+/// that its writer does not wait.
+/// @param reader_uri  the URI of the reader's end. Its time-outs are not used, and it does not keep
+///     messages from being overwritten.
 /// @param key  as above.
 ///
 /// Errors: as open_source().

@@ -197,7 +197,7 @@ class Agent {
           },
           [this, number](int status) {
             send({{"what", "ended"}, {"number", number}, {"status", status}});
-            // This is what calls it.
+            // Later, since the child calls this.
             loop_->post([this, number] { forget_if_over(number); });
           }};
       auto made = make_process_here(*loop_, order.at("manage"), key_.get(), std::move(callbacks));

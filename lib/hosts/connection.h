@@ -19,8 +19,8 @@
 
 namespace hc::hosts {
 
-/// A host as the graph has it; the connection is made again whenever it is lost. On the thread of a
-/// loop, but for what Host offers to who plans.
+/// The connection to a host, which is made again whenever it is lost. Used on the thread of a loop,
+/// except for the functions of Host for planning.
 class Connection final : public Host, public std::enable_shared_from_this<Connection> {
  public:
   struct Parts {
@@ -35,8 +35,8 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
     state_.name = parts_.declared.name;
   }
 
-  /// Connects for the first time; a failure is the end of it.
-  /// @param opened  gets what came of it. Errors: Closed.
+  /// Connects for the first time. If that fails, it is not tried again.
+  /// @param opened  gets the outcome. Errors: Closed.
   void open(std::function<void(Status)> opened);
   /// Ends all there is.
   void close();
@@ -55,9 +55,9 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   Result<std::shared_ptr<const HeldPort>> spare_port() override;
   [[nodiscard]] std::int64_t wall_offset() const override { return wall_offset_; }
 
-  // For modules.
+  // For RemoteModule.
 
-  /// Sends to the agent, if there is a connection.
+  /// Sends to the agent, if it is connected.
   void send(const Json& order) { say(make_order(order)); }
   void say(const Message& message) {
     if (conversation_) conversation_->say(message);
@@ -90,7 +90,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
 
   internal::Loop& loop_;
   const Parts parts_;
-  std::function<void(Status)> opened_;  // until it is known whether it can be connected to
+  std::function<void(Status)> opened_;  // to be called with the outcome of the first attempt
   bool is_closed_ = false;
   HostState state_;
   HostPlace place_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The processes of a module on another host, seen from this one. Internal.
+// Runs the processes of a module on another host. Internal.
 
 #include <cstdint>
 #include <memory>
@@ -15,7 +15,7 @@ class Connection;
 
 class RemoteModule final : public ModuleProcess {
  public:
-  /// @param number  of the module, in the conversation.
+  /// @param number  the module's number in the conversation.
   RemoteModule(std::shared_ptr<Connection> host, std::int64_t number, std::string manage_uri,
                ModuleCallbacks callbacks);
   ~RemoteModule() override;
@@ -31,7 +31,7 @@ class RemoteModule final : public ModuleProcess {
   [[nodiscard]] pid_t number() const override { return process_; }
   internal::Usage usage(bool) override { return usage_; }
 
-  // For the connection: what the agent says of it.
+  // For Connection: events that the agent reports.
 
   void said(std::string_view bytes) const { callbacks_.said(bytes); }
   void reported(const Message& report) const { callbacks_.reported(report); }

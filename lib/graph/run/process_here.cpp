@@ -75,7 +75,7 @@ class ProcessHere final : public ModuleProcess {
     const auto status = process_ ? process_->poll_status() : std::nullopt;
     if (!status) return;
     reports_->take_rest();
-    // Its last lines are in the pipe; who else still holds that open may do so for ever.
+    // Its last lines are in the pipe, which another process may hold open for ever.
     for (int piece = 0; piece < kLastPieces && said_; ++piece) read();
     said_.reset();
     ended_.reset();
@@ -106,8 +106,8 @@ class ProcessHere final : public ModuleProcess {
   }
 
  private:
-  /// Hands on what it has said. One piece only: one who does not stop must not keep us from all
-  /// else, and waits for us where that is too much.
+  /// Hands on one piece of its log, so that a module that never stops does not keep the loop from
+  /// other work. After too much, reading pauses.
   void read() {
     static thread_local std::array<char, kPiece> piece;
     static_cast<void>(said_.want(EPOLLIN));

@@ -102,7 +102,7 @@ class Runner {
   Status outcome_;
   std::deque<Change> changes_;           // the first of them may be being planned
   std::map<std::string, int> observed_;  // outputs that have been observed, and their numbers
-  std::unique_ptr<Loop> own_loop_;       // where there are no hosts, whose loop it is else
+  std::unique_ptr<Loop> own_loop_;       // without hosts, which have a loop
   Loop* loop_ = nullptr;
   std::unique_ptr<GraphServer> server_;
   std::unique_ptr<FileWatch> files_;

@@ -61,7 +61,7 @@ Result<std::unique_ptr<Supervised>> Supervised::make(Loop& loop, PlannedModule p
   return module;
 }
 
-/// Listens to the processes that it will have on the host of its plan.
+/// Makes what runs its processes on the host of the plan, unless it is there.
 Status Supervised::make_process() {
   const auto there = host();
   HC_CHECK(there != nullptr || plan_.host.empty(), plan_.name, plan_.host);
@@ -79,7 +79,7 @@ Status Supervised::make_process() {
     if (!here) return here.error();
     made = std::move(*here);
   }
-  // The end of the one before, on another host, may be what calls this.
+  // The one before, on another host, may be what calls this.
   if (process_) loop_.post([before = std::shared_ptr(std::move(process_))] {});
   process_ = std::move(made);
   process_host_ = there;
@@ -295,8 +295,8 @@ void Supervised::go_on(int status) {
   decide(status);
 }
 
-/// Restarts a process that has ended unasked, or gives it up: at once, or in a later turn when it
-/// is clear whether a link was cut.
+/// Restarts a process that has ended unasked, or gives it up. Called at once, or from the timer
+/// when the cause may be a link that was cut.
 void Supervised::decide(int status) {
   awaits_cause_ = false;
   const auto words = why_ended(status);

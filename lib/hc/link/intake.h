@@ -22,7 +22,7 @@ class Intake {
                                               const LinkOptions& options = {},
                                               bool is_limited = true);
 
-  /// Takes all that has been sent, also by a peer that has only just connected.
+  /// Takes all that has been sent, also by a peer that has just connected.
   void take_rest();
   /// Has `end` called when the link has ended or failed, as the last act of this object, which it
   /// may destroy.
