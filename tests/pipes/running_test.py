@@ -17,17 +17,17 @@ from harness import WATCHDOG, wait_until
 
 def report(row):
     """A line of a shell that is a module: it reports a line of its log (spec/module.md, report 5)."""
-    message = "1 5 0 0 8 0 60101 0 0 %d 1\\n%s" % (len(row), row)
     return (
         """python3 - "$@" <<'END'
 import socket, sys
 place = sys.argv[sys.argv.index("--manage") + 1]
 reports = socket.socket(socket.AF_UNIX)
 reports.connect("\\0" + place.split("?")[0].partition("@")[2])
-reports.sendall(b"%s")
+row = b"%s"
+reports.sendall(b"1 5 0 0 8 0 60101 0 0 %%d 1\\n%%s" %% (len(row), row))
 END
 """
-        % message
+        % row
     )
 
 
