@@ -36,6 +36,19 @@ def stream_peer_lines():
     return sum(found.values())
 
 
+def same_names():
+    """Types of two modules with one name: the tests of all modules are one program."""
+    types = {}
+    for path in sorted((ROOT / "modules").glob("*/*")):
+        if path.suffix not in (".h", ".cpp") or path.name == "main.cpp":
+            continue
+        text = re.sub(r"^namespace.*?^}  // namespace", "", path.read_text(), flags=re.M | re.S)
+        for name in re.findall(r"^(?:class|struct|enum class) (\w+)\b[^;]*$", text, re.M):
+            first = types.setdefault(name, path)
+            if first.parent != path.parent:
+                yield "%s: %s is also in %s" % (path.relative_to(ROOT), name, first.parent.name)
+
+
 def problems():
     listed = subprocess.run(["git", "ls-files"], cwd=ROOT, stdout=-1, check=True).stdout.decode()
     budget, suppressions = budgets(), 0
@@ -63,6 +76,7 @@ def problems():
                 for match in () if is_code else LINK.finditer(line):
                     if not (path.parent / match[1]).exists():
                         yield "%s:%d: there is no %s" % (name, number, match[1])
+    yield from same_names()
     if suppressions > budget["tidy_suppressions"]:
         yield "%d NOLINT, at most %d" % (suppressions, budget["tidy_suppressions"])
     readme = len((ROOT / "README.md").read_text().splitlines())

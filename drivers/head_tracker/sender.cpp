@@ -17,7 +17,7 @@
 namespace hc {
 namespace {
 
-Error failed(const std::string& what) {
+Error not_sent(const std::string& what) {
   return {Code::System, what + ": " + std::generic_category().message(errno)};
 }
 
@@ -27,7 +27,7 @@ Result<HeadPoseSender> HeadPoseSender::open(const std::string& address) {
   const auto place = parse_host_port(address);
   if (!place) return place.error();
   const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (socket < 0) return failed("socket");
+  if (socket < 0) return not_sent("socket");
   HeadPoseSender sender(socket);
   sockaddr_in to{};
   to.sin_family = AF_INET;
@@ -35,7 +35,7 @@ Result<HeadPoseSender> HeadPoseSender::open(const std::string& address) {
   if (place->port == 0 || ::inet_pton(AF_INET, place->host.c_str(), &to.sin_addr) != 1)
     return Error{Code::Invalid, "\"" + address + "\" is no address and port of IPv4"};
   if (::connect(socket, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0)
-    return failed("UDP " + address);
+    return not_sent("UDP " + address);
   return sender;
 }
 
@@ -51,7 +51,7 @@ Result<void> HeadPoseSender::send(const HeadPose& pose) {
   if (::send(socket_, packet.data(), packet.size(), 0) >= 0) return {};
   // ECONNREFUSED is of an earlier packet that nobody received.
   if (errno == ECONNREFUSED || errno == EAGAIN || errno == EINTR) return {};
-  return failed("send");
+  return not_sent("send");
 }
 
 }  // namespace hc

@@ -20,12 +20,12 @@ Message message_of(std::string_view bytes) {
 }
 
 // A head turned to the left by a right angle, 0.3 m above its robot, as one would type it.
-constexpr std::string_view kHead =
+constexpr std::string_view kHeadPose =
     "1 7 0 0 8 1763683200123456789 70190 1 2003 4 4\n"
     "0 -1 0 0\n1 0 0 0\n0 0 1 0.3\n0 0 0 1\n";
 
 std::string refusal(std::string_view from, std::string_view to) {
-  std::string bytes(kHead);
+  std::string bytes(kHeadPose);
   bytes.replace(bytes.find(from), from.size(), to);
   auto pose = pose_of(message_of(bytes));
   return pose ? "" : pose.error().text();
@@ -33,7 +33,7 @@ std::string refusal(std::string_view from, std::string_view to) {
 
 TEST(Pose, IsATransformationOfFourByFour) {
   for (std::string_view info : {"70190", "70180"}) {
-    std::string bytes(kHead);
+    std::string bytes(kHeadPose);
     bytes.replace(bytes.find("70190"), 5, info);
     auto pose = pose_of(message_of(bytes));
     ASSERT_TRUE(pose) << pose.error().text();
@@ -48,7 +48,7 @@ TEST(Pose, IsATransformationOfFourByFour) {
 TEST(Pose, FeedsATree) {
   auto tree = frames::Tree::standard();
   ASSERT_TRUE(tree.join("robot", "head"));
-  auto pose = *pose_of(message_of(kHead));
+  auto pose = *pose_of(message_of(kHeadPose));
   ASSERT_TRUE(tree.feed(pose.to, pose.from, pose.time, pose.T_to_from));
   auto T_robot_head = tree.lookup("robot", "head", pose.time);
   EXPECT_EQ(T_robot_head->matrix(), pose.T_to_from.matrix());
@@ -56,7 +56,7 @@ TEST(Pose, FeedsATree) {
 
 TEST(Pose, FeedsTheFramesOfAGraph) {
   auto frames = *frames::read_frames("head 3 robot neck.pose 9; chip 0 head neck.chip 12");
-  Message message = message_of(kHead);
+  Message message = message_of(kHeadPose);
   const std::int64_t time = message.header.time;
   ASSERT_TRUE(feed(frames, message));
   EXPECT_TRUE(frames.tree.lookup("robot", "head", time));
@@ -86,7 +86,7 @@ TEST(Pose, RefusesWhatIsNone) {
   EXPECT_EQ(refusal("0 0 0 1", "0 0 0 2"),
             "Malformed: frames: the transformation has no last row 0 0 0 1");
   EXPECT_EQ(refusal("-1", "1"), "Malformed: frames: the transformation is not rigid: it mirrors");
-  Message packed = message_of(kHead);
+  Message packed = message_of(kHeadPose);
   packed.header.info.encoding = Encoding::Zstd;
   EXPECT_EQ(pose_of(packed).error().code, Code::Unsupported);
 }

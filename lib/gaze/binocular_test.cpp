@@ -11,7 +11,7 @@ namespace {
 constexpr std::int64_t kPeriod = 50'000'000;  // [ns]
 
 /// Where an eye as it was built sees a place in the head [px].
-Eigen::Vector2d pixel_of(const Eyes& eyes, Side side, const Eigen::Vector3d& p_head) {
+Eigen::Vector2d straight_pixel_of(const Eyes& eyes, Side side, const Eigen::Vector3d& p_head) {
   const Eigen::Vector3d from = p_head - eyes.place(side);
   return {eyes.cx - eyes.focal * from.y() / from.x(), eyes.cy - eyes.focal * from.z() / from.x()};
 }
@@ -19,7 +19,8 @@ Eigen::Vector2d pixel_of(const Eyes& eyes, Side side, const Eigen::Vector3d& p_h
 TEST(Binocular, both_eyes_give_the_place_and_its_range_holds_for_one) {
   const Eyes eyes = mounted_eyes();
   const Eigen::Vector3d p(1.5, 0.2, -0.1);
-  const auto left = pixel_of(eyes, Side::Left, p), right = pixel_of(eyes, Side::Right, p);
+  const auto left = straight_pixel_of(eyes, Side::Left, p),
+             right = straight_pixel_of(eyes, Side::Right, p);
   Binocular sight;
   // The first word of one eye may be all that comes.
   const auto guess = sight.see(eyes, Side::Left, 1000, left, 2.5);

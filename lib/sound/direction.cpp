@@ -14,8 +14,8 @@ constexpr double kAlike = 0.5;         // least correlation of one source at bot
 
 }  // namespace
 
-Heard hear(std::span<const std::int16_t> stereo, int rate, double base) {
-  Heard heard;
+Direction hear(std::span<const std::int16_t> stereo, int rate, double base) {
+  Direction heard;
   const auto frames = static_cast<std::ptrdiff_t>(stereo.size() / 2);
   if (frames == 0 || rate <= 0 || !(base > 0)) return heard;
   const auto at = [&](std::ptrdiff_t frame, int ear) {

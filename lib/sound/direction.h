@@ -8,7 +8,7 @@
 
 namespace hc::audio {
 
-struct Heard {
+struct Direction {
   double level = 0;           ///< root of the mean square, both ears; 1 is full scale
   std::optional<double> pan;  ///< > 0: from the left; nothing for what both ears hear differently
                               ///< [rad, −π/2 … π/2]
@@ -22,6 +22,6 @@ struct Heard {
 /// Source: Knapp and Carter, The generalized correlation method for estimation of time delay, 1976
 /// (without weights).
 /// Cost: 20 µs for 20 ms at 16 kHz.
-Heard hear(std::span<const std::int16_t> stereo, int rate, double base);
+Direction hear(std::span<const std::int16_t> stereo, int rate, double base);
 
 }  // namespace hc::audio

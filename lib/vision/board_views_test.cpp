@@ -8,7 +8,7 @@
 namespace hc::vision {
 namespace {
 
-constexpr Board kBoard{9, 6, 0.025};
+constexpr Board kPrinted{9, 6, 0.025};
 
 /// A board whose top left square is there.
 cv::Mat board_at(cv::Point at, cv::Size size = {640, 480}) {
@@ -21,7 +21,7 @@ cv::Mat board_at(cv::Point at, cv::Size size = {640, 480}) {
 }
 
 BoardViews make() {
-  auto views = BoardViews::make(kBoard);
+  auto views = BoardViews::make(kPrinted);
   EXPECT_TRUE(views);
   return std::move(*views);
 }

@@ -31,7 +31,7 @@ cv::Mat scene(const std::string& text, cv::Point at = {300, 200}, double scale =
   return image;
 }
 
-void add_noise(cv::Mat& image, double deviation, int seed) {
+void add_grain(cv::Mat& image, double deviation, int seed) {
   cv::Mat noise(image.size(), CV_16SC3), sum;
   cv::RNG(static_cast<std::uint64_t>(seed)).fill(noise, cv::RNG::NORMAL, 0, deviation);
   cv::add(image, noise, sum, cv::noArray(), CV_8U);
@@ -61,7 +61,7 @@ TEST(Letters, finds_it_in_noise_and_in_the_dark) {
   for (int seed = 0; seed < 5; ++seed) {
     cv::Mat image = scene("WATER 27");
     image = 0.6 * image;
-    add_noise(image, 20, seed);
+    add_grain(image, 20, seed);
     const auto lines = find_text_lines(image);
     ASSERT_GE(lines.size(), 1U) << seed;
     const auto box = text_box("WATER 27");
@@ -108,7 +108,7 @@ TEST(Letters, a_block_is_as_large_as_its_lines_and_whole_where_they_all_are) {
 TEST(Letters, finds_nothing_where_nothing_is_written) {
   for (int seed = 0; seed < 5; ++seed) {
     cv::Mat image = scene("");
-    add_noise(image, 20, seed);
+    add_grain(image, 20, seed);
     EXPECT_TRUE(find_text_lines(image).empty()) << seed;
   }
   EXPECT_TRUE(find_text_lines(cv::Mat(600, 800, CV_8U, cv::Scalar(128))).empty());
@@ -163,7 +163,7 @@ TEST(Letters, straightens_what_is_turned) {
 TEST(Letters, noise_is_measured_in_spite_of_edges) {
   for (double deviation : {2.0, 10.0, 20.0}) {
     cv::Mat image = scene("HELLO ROBOT");
-    add_noise(image, deviation, 1);
+    add_grain(image, deviation, 1);
     cv::Mat green;
     cv::extractChannel(image, green, 1);
     EXPECT_NEAR(noise_of(green), deviation, 0.1 * deviation + 0.3);

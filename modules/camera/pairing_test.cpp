@@ -26,10 +26,10 @@ std::vector<std::pair<std::int64_t, std::int64_t>> pairs_of(std::vector<std::int
   return pairs;
 }
 
-using Pairs = std::vector<std::pair<std::int64_t, std::int64_t>>;
+using Matched = std::vector<std::pair<std::int64_t, std::int64_t>>;
 
 TEST(Pairing, equal_times_at_once) {
-  EXPECT_EQ(pairs_of({20, 40}, {20, 40}), (Pairs{{20, 20}, {40, 40}}));
+  EXPECT_EQ(pairs_of({20, 40}, {20, 40}), (Matched{{20, 20}, {40, 40}}));
 }
 
 TEST(Pairing, the_nearest_of_cameras_that_are_out_of_step) {
@@ -47,16 +47,16 @@ TEST(Pairing, a_late_left_one_is_paired_with_the_nearer_right_one) {
 
 TEST(Pairing, a_faster_camera_is_thinned_out) {
   const auto pairs = pairs_of({100, 110, 120, 130, 140, 150, 160, 170, 180}, {100, 132, 164});
-  EXPECT_EQ(pairs, (Pairs{{100, 100}, {130, 132}, {160, 164}}));
+  EXPECT_EQ(pairs, (Matched{{100, 100}, {130, 132}, {160, 164}}));
 }
 
 TEST(Pairing, an_image_that_is_missing_costs_one_pair) {
   const auto pairs = pairs_of({20, 40, 60, 80, 100, 120}, {20, 40, 80, 100, 120});
-  EXPECT_EQ(pairs, (Pairs{{20, 20}, {40, 40}, {80, 80}, {100, 100}, {120, 120}}));
+  EXPECT_EQ(pairs, (Matched{{20, 20}, {40, 40}, {80, 80}, {100, 100}, {120, 120}}));
 }
 
 TEST(Pairing, a_clock_that_goes_back_starts_over) {
-  EXPECT_EQ(pairs_of({}, {}), Pairs{});
+  EXPECT_EQ(pairs_of({}, {}), Matched{});
   Pairing pairing;
   pairing.add(0, {{}, 100 * kMs});
   pairing.add(0, {{}, 10 * kMs});

@@ -40,11 +40,6 @@ const char* chosen(std::string_view offered) {
   return nullptr;
 }
 
-std::string string_of(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
 /// The list of a key; empty where there is none.
 const Json& list_of(const Json& object, const char* key) {
   static const Json kNone = Json::array();

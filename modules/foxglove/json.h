@@ -18,3 +18,9 @@ inline std::string excerpt(const Json& json) {
   constexpr std::size_t kMaxExcerpt = 100;
   return text(json).substr(0, kMaxExcerpt);
 }
+
+/// The text of a key; empty where there is none.
+inline std::string string_of(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}

@@ -13,7 +13,7 @@
 class Controller {
  public:
   /// @param parameters  must outlive it.
-  Controller(const Parameters& parameters, Targets empty)
+  Controller(const GazeParameters& parameters, Targets empty)
       : targets(std::move(empty)), parameters_(parameters) {}
 
   /// The command that follows the target: to where it will be when the head gets there. Nothing:
@@ -37,6 +37,6 @@ class Controller {
   /// The command for what moves so: ahead of it by the unit's braking distance, within its limits.
   [[nodiscard]] hc::gaze::Angles command(const hc::gaze::Motion& motion) const;
 
-  const Parameters& parameters_;
+  const GazeParameters& parameters_;
   hc::gaze::Stick stick_;
 };

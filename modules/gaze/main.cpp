@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
   auto bid = module.output("bid", hc::table<double>(),
                            "salience while there is a target, else idle_salience");
   hc::ModuleFrames frames{module};
-  const Parameters parameters{module};
+  const GazeParameters parameters{module};
 
   std::optional<Controller> controller;
   bool was_wanted = false;  // in the last bid

@@ -9,7 +9,7 @@
 #include <gaze/follower.h>
 #include <hc/module/module.h>
 
-struct Parameters {
+struct GazeParameters {
   hc::Module& module;  ///< that has them
 
   hc::Parameter<double> rate =

@@ -8,7 +8,7 @@
 
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr std::int64_t kOneMillisecond = 1'000'000;
 
 TEST(RandomText, is_a_word_or_two_of_letters_and_digits) {
   std::mt19937_64 random(7);
@@ -52,13 +52,13 @@ TEST(Edits, are_the_fewest) {
 
 TEST(Attempt, is_done_when_read_and_spoken_in_any_order) {
   for (const bool is_sound_first : {false, true}) {
-    Attempt attempt("ABC", 1000 * kMillisecond);
-    if (is_sound_first) attempt.take_sound(1100 * kMillisecond, 1300 * kMillisecond);
+    Attempt attempt("ABC", 1000 * kOneMillisecond);
+    if (is_sound_first) attempt.take_sound(1100 * kOneMillisecond, 1300 * kOneMillisecond);
     EXPECT_FALSE(attempt.is_done());
-    attempt.take_text("ABD", 1100 * kMillisecond);
+    attempt.take_text("ABD", 1100 * kOneMillisecond);
     if (!is_sound_first) {
       EXPECT_FALSE(attempt.is_done());
-      attempt.take_sound(1100 * kMillisecond, 1300 * kMillisecond);
+      attempt.take_sound(1100 * kOneMillisecond, 1300 * kOneMillisecond);
     }
     EXPECT_TRUE(attempt.is_done());
     const auto result = attempt.result();
@@ -71,9 +71,9 @@ TEST(Attempt, is_done_when_read_and_spoken_in_any_order) {
 }
 
 TEST(Attempt, what_was_seen_before_does_not_count) {
-  Attempt attempt("ABC", 1000 * kMillisecond);
-  attempt.take_text("OLD", 999 * kMillisecond);
-  attempt.take_sound(999 * kMillisecond, 1300 * kMillisecond);
+  Attempt attempt("ABC", 1000 * kOneMillisecond);
+  attempt.take_text("OLD", 999 * kOneMillisecond);
+  attempt.take_sound(999 * kOneMillisecond, 1300 * kOneMillisecond);
   EXPECT_EQ(attempt.result().read, "");
   EXPECT_FALSE(attempt.result().seen_to_spoken);
 }
@@ -82,8 +82,8 @@ TEST(Attempt, the_first_reading_counts) {
   Attempt attempt("ABC", 0);
   attempt.take_text("AC", 1);
   attempt.take_text("ABC", 2);
-  attempt.take_sound(1, 10 * kMillisecond);
-  attempt.take_sound(2, 20 * kMillisecond);
+  attempt.take_sound(1, 10 * kOneMillisecond);
+  attempt.take_sound(2, 20 * kOneMillisecond);
   EXPECT_EQ(attempt.result().read, "AC");
   EXPECT_NEAR(*attempt.result().seen_to_spoken, 0.01, 1e-9);
 }
@@ -108,16 +108,18 @@ TEST(ReadingScore, is_over_all_letters_and_all_that_were_spoken) {
 }
 
 TEST(Dictation, writes_the_next_text_after_the_speech_and_a_pause) {
-  Dictation dictation(7, 10'000 * kMillisecond);
-  const auto write = [&](std::int64_t at) { return dictation.write(at * kMillisecond); };
-  const auto finish = [&](std::int64_t at) { return dictation.finish(at * kMillisecond, 10, 0.3); };
+  Dictation dictation(7, 10'000 * kOneMillisecond);
+  const auto write = [&](std::int64_t at) { return dictation.write(at * kOneMillisecond); };
+  const auto finish = [&](std::int64_t at) {
+    return dictation.finish(at * kOneMillisecond, 10, 0.3);
+  };
   EXPECT_FALSE(write(9'999));
   const auto first = write(10'000);
   ASSERT_TRUE(first);
   EXPECT_FALSE(write(10'010)) << "one at a time";
-  dictation.take_text(*first, 10'100 * kMillisecond, 10'200 * kMillisecond);
+  dictation.take_text(*first, 10'100 * kOneMillisecond, 10'200 * kOneMillisecond);
   EXPECT_FALSE(finish(10'300));
-  dictation.take_sound(10'100 * kMillisecond, 10'400 * kMillisecond, 2);
+  dictation.take_sound(10'100 * kOneMillisecond, 10'400 * kOneMillisecond, 2);
   const auto ended = finish(10'400);
   ASSERT_TRUE(ended);
   EXPECT_EQ(ended->read, *first);
@@ -127,19 +129,19 @@ TEST(Dictation, writes_the_next_text_after_the_speech_and_a_pause) {
 }
 
 TEST(Dictation, begins_soon_after_something_is_read) {
-  Dictation dictation(7, 10'000 * kMillisecond);
-  dictation.take_text("WHAT STOOD THERE", 0, 2'000 * kMillisecond);
-  dictation.take_text("WHAT STOOD THERE", 0, 2'500 * kMillisecond);
-  EXPECT_FALSE(dictation.write(2'999 * kMillisecond));
-  EXPECT_TRUE(dictation.write(3'000 * kMillisecond)) << "after the first, not the second";
+  Dictation dictation(7, 10'000 * kOneMillisecond);
+  dictation.take_text("WHAT STOOD THERE", 0, 2'000 * kOneMillisecond);
+  dictation.take_text("WHAT STOOD THERE", 0, 2'500 * kOneMillisecond);
+  EXPECT_FALSE(dictation.write(2'999 * kOneMillisecond));
+  EXPECT_TRUE(dictation.write(3'000 * kOneMillisecond)) << "after the first, not the second";
 }
 
 TEST(Dictation, a_text_that_is_not_read_in_time_ends) {
   Dictation dictation(7, 0);
   ASSERT_TRUE(dictation.write(0));
   EXPECT_FALSE(dictation.is_done(0)) << "one is not ended";
-  EXPECT_FALSE(dictation.finish(4'999 * kMillisecond, 5, 0));
-  const auto ended = dictation.finish(5'000 * kMillisecond, 5, 0);
+  EXPECT_FALSE(dictation.finish(4'999 * kOneMillisecond, 5, 0));
+  const auto ended = dictation.finish(5'000 * kOneMillisecond, 5, 0);
   ASSERT_TRUE(ended);
   EXPECT_EQ(ended->read, "");
   EXPECT_TRUE(dictation.is_done(1));

@@ -21,7 +21,7 @@ namespace {
 using hc::pan_tilt::Neck;
 using std::chrono::milliseconds;
 
-constexpr std::int32_t kModes = 3, kSources = 3;  // from 1 on
+constexpr std::int32_t kTasks = 3, kSenders = 3;  // from 1 on
 constexpr std::int64_t kWall = 1'700'000'000'000'000'000;
 
 /// A neck at its line, whose unit notes who has commanded it.
@@ -110,7 +110,7 @@ class Sequence {
   int pick(int least, int most) { return std::uniform_int_distribution(least, most)(random_); }
 
   void say() {
-    const Bidder who{pick(1, kModes), pick(1, kSources)};
+    const Bidder who{pick(1, kTasks), pick(1, kSenders)};
     const double salience = pick(0, 4) == 0 ? 0 : 0.1 * pick(1, 10);
     const auto now = neck_.now;
     if (const int what = pick(0, 19); what < 12) {
@@ -131,7 +131,7 @@ class Sequence {
   /// Of any mode and source, whoever has the focus. Another source of the same mode is obeyed only
   /// after a silence, or when the mode has changed.
   void command() {
-    const Bidder who{pick(1, kModes), pick(1, kSources)};
+    const Bidder who{pick(1, kTasks), pick(1, kSenders)};
     if (!focus_.admits(true, who.mode) || !neck_.command(who.mode, who.source)) return;
     if (who.mode == obeyed_.mode && who.source != obeyed_.source) {
       EXPECT_GE(neck_.now - obeyed_at_, Neck::kTurn);

@@ -2,7 +2,7 @@
 // Ends of `shm:NAME` that are killed, at random moments and at each crash point: what others get is
 // whole and right, they continue, and nothing is left behind. In full, for some minutes:
 //
-//     HC_SHM_KILLS=1000 HC_SHM_POINT_KILLS=20 build/tests/shm/shm_crash
+//     HC_SHM_KILLS=1000 HC_SHM_POINT_KILLS=20 build/tests/unit/shm_test
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -27,15 +27,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-int rounds(const char* variable, int default_value) {
+int count_of(const char* variable, int default_value) {
   const char* text = std::getenv(variable);
   return text == nullptr ? default_value : std::atoi(text);
 }
 int random_kills() {
-  return rounds("HC_SHM_KILLS", 60);
+  return count_of("HC_SHM_KILLS", 60);
 }
 int point_kills() {
-  return rounds("HC_SHM_POINT_KILLS", 2);
+  return count_of("HC_SHM_POINT_KILLS", 2);
 }
 
 /// A crash point, and how often a process comes by at least: it is to die at any of these times.

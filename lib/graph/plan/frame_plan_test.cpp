@@ -35,7 +35,7 @@ coord = 200
   EXPECT_TRUE(planned->modules[0].known.at("file").options.fixed);
 }
 
-constexpr const char* kHead = R"([modules.framed]
+constexpr const char* kFramedHead = R"([modules.framed]
 [frames.head]
 parent = "world"
 translation = [0, 0, 1]
@@ -45,7 +45,7 @@ parent = "head"
 
 TEST(Frames, OfAnIncludedFileHaveTheNamesThatItGivesThem) {
   auto planned =
-      plan("[modules.framed]\n[graphs.one]\nfile = \"head.toml\"\n", {{"head.toml", kHead}});
+      plan("[modules.framed]\n[graphs.one]\nfile = \"head.toml\"\n", {{"head.toml", kFramedHead}});
   ASSERT_TRUE(planned) << planned.error().detail;
   EXPECT_EQ(planned->modules[0].parameters.at("frames"),
             "head 3 world 0 0 1 0 0 0 1; one_cup 0 head 0 0 0 0 0 0 1")
@@ -58,7 +58,7 @@ TEST(Frames, OfTwoHeadsAreDistinguished) {
   auto planned = plan(
       "[modules.framed]\n[graphs.one]\nfile = \"head.toml\"\n"
       "[graphs.two]\nfile = \"head.toml\"\n",
-      {{"head.toml", kHead}});
+      {{"head.toml", kFramedHead}});
   ASSERT_TRUE(planned) << planned.error().detail;
   EXPECT_EQ(planned->modules[0].parameters.at("frames"),
             "one_head 0 world 0 0 1 0 0 0 1; one_cup 0 one_head 0 0 0 0 0 0 1; "
@@ -70,7 +70,7 @@ TEST(Frames, OfTwoHeadsAreDistinguished) {
 
 TEST(Frames, OfTwoGraphsThatIncludeAHeadEachHasItsOwn) {
   auto planned = plan("[graphs.one]\nfile = \"task.toml\"\n[graphs.two]\nfile = \"task.toml\"\n",
-                      {{"head.toml", kHead},
+                      {{"head.toml", kFramedHead},
                        {"task.toml", "[modules.framed]\n[graphs.own]\nfile = \"head.toml\"\n"}});
   ASSERT_TRUE(planned) << planned.error().detail;
   for (const auto& module : planned->modules) {

@@ -19,7 +19,7 @@ std::string warnings(const std::string& text,
 }
 
 /// A source whose messages a task makes commands of, and which others read.
-const std::string kHead = R"([modules.eye]
+const std::string kLoop = R"([modules.eye]
 program = "source"
 [modules.task]
 inputs.image = "eye.left"
@@ -30,16 +30,16 @@ program = "keeper"
 )";
 
 TEST(Motion, ALinkThatMayHoldWhatMovesTheRobotIsWarnedOf) {
-  EXPECT_EQ(warnings(kHead), "");
-  EXPECT_EQ(warnings(kHead + "inputs.in = \"eye.left\"\n"), "") << "the newest";
-  const auto held = warnings(kHead + "inputs.in = { from = \"eye.left\", keep = \"all\" }\n");
+  EXPECT_EQ(warnings(kLoop), "");
+  EXPECT_EQ(warnings(kLoop + "inputs.in = \"eye.left\"\n"), "") << "the newest";
+  const auto held = warnings(kLoop + "inputs.in = { from = \"eye.left\", keep = \"all\" }\n");
   EXPECT_TRUE(held.starts_with("g.toml:10: watcher.in can hold eye, which moves the robot"))
       << held;
-  const auto default_all = warnings(kHead + "[modules.filter]\ninputs.in = \"task.bid\"\n");
+  const auto default_all = warnings(kLoop + "[modules.filter]\ninputs.in = \"task.bid\"\n");
   EXPECT_TRUE(default_all.starts_with("g.toml:11: filter.in can hold task")) << default_all;
-  EXPECT_EQ(warnings(kHead + "[modules.filter]\ninputs.in = { from = \"task.bid\", keep = 16 }\n"),
+  EXPECT_EQ(warnings(kLoop + "[modules.filter]\ninputs.in = { from = \"task.bid\", keep = 16 }\n"),
             "");
-  EXPECT_EQ(warnings(kHead + "[modules.other]\nprogram = \"source\"\n[modules.filter]\n"
+  EXPECT_EQ(warnings(kLoop + "[modules.other]\nprogram = \"source\"\n[modules.filter]\n"
                              "inputs.in = \"other.left\"\n"),
             "")
       << "neither moves anything";
@@ -47,8 +47,8 @@ TEST(Motion, ALinkThatMayHoldWhatMovesTheRobotIsWarnedOf) {
 
 TEST(Motion, ALinkToTheOutsideMayHoldToo) {
   const std::string to = "\n[modules.task.outputs]\nbid = ";
-  EXPECT_TRUE(warnings(kHead + to + "\"tcp:1\"\n").starts_with("g.toml:12: tcp:1 can hold task"));
-  EXPECT_EQ(warnings(kHead + to + "\"file:bids\"\n"), "");
+  EXPECT_TRUE(warnings(kLoop + to + "\"tcp:1\"\n").starts_with("g.toml:12: tcp:1 can hold task"));
+  EXPECT_EQ(warnings(kLoop + to + "\"file:bids\"\n"), "");
 }
 
 TEST(Motion, ALoopOverTwoActorsIsWarnedOf) {

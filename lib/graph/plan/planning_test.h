@@ -10,7 +10,7 @@
 
 namespace hc {
 
-inline const std::string kFirstLine = "version = 1\n";
+inline const std::string kVersionLine = "version = 1\n";
 
 /// What some programs say of themselves.
 inline Result<std::string> describe(const std::string& program, const std::string& = "") {
@@ -125,11 +125,11 @@ inline Result<Plan> plan(const std::string& text,
   Problems problems("g.toml");
   auto read_file = [&](const std::string& name) -> Result<std::string> {
     auto found = files.find(name);
-    if (found != files.end()) return kFirstLine + found->second;
+    if (found != files.end()) return kVersionLine + found->second;
     return Error{Code::NotFound, name + ": cannot be read"};
   };
   auto graph = parse_graph(
-      kFirstLine + text, [](const char*) -> const char* { return nullptr; }, problems, read_file);
+      kVersionLine + text, [](const char*) -> const char* { return nullptr; }, problems, read_file);
   Plan plan = make_plan(graph, describe, "t", problems, before, hold_port, places);
   if (problems.empty()) return plan;
   std::string all;

@@ -16,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 
 /// A shell that has said that it is ready.
-Process shell(const std::string& script) {
+Process ready_shell(const std::string& script) {
   auto process = Process::start({"/bin/sh", "-c", script}, Process::Capture::Output);
   HC_CHECK(process, process.error().detail);
   HC_CHECK(wait_readable(std::array{process->output()}));
@@ -24,7 +24,7 @@ Process shell(const std::string& script) {
 }
 
 TEST(ProcessLook, FindsAllThatDescends) {
-  auto process = shell("setsid sh -c 'echo; sleep 1000; true' & exec sleep 1000");
+  auto process = ready_shell("setsid sh -c 'echo; sleep 1000; true' & exec sleep 1000");
   const pid_t program = first_child(process.guard_number());
   EXPECT_EQ(::kill(program, 0), 0);
   // The shell's own child is forked behind the line that was heard.
@@ -35,7 +35,7 @@ TEST(ProcessLook, FindsAllThatDescends) {
 }
 
 TEST(ProcessLook, SaysWhatIsUsed) {
-  auto process = shell("echo; while :; do :; done");
+  auto process = ready_shell("echo; while :; do :; done");
   auto all = descendants(process.guard_number());
   while (usage_of(all, false).processor < 50ms) ::sched_yield();
   auto usage = usage_of(all, true);
@@ -46,7 +46,7 @@ TEST(ProcessLook, SaysWhatIsUsed) {
 }
 
 TEST(ProcessLook, WhoHasGoneUsesNothing) {
-  auto process = shell("echo");
+  auto process = ready_shell("echo");
   ASSERT_TRUE(wait_readable(std::array{process.ended()}));
   process.poll_status();
   EXPECT_EQ(first_child(process.guard_number()), 0);

@@ -14,7 +14,7 @@ namespace {
 using Times = std::vector<std::int64_t>;
 using Sets = std::vector<Times>;
 
-Message at(std::int64_t time) {
+Message of_time(std::int64_t time) {
   Message message;
   message.header.time = time;
   return message;
@@ -30,7 +30,7 @@ struct Kept {
           for (const auto& message : set) sets.back().push_back(message.header.time);
         }) {}
   void push(std::size_t input, const Times& times) {
-    for (auto time : times) matcher.push(input, at(time));
+    for (auto time : times) matcher.push(input, of_time(time));
   }
 };
 
@@ -135,7 +135,7 @@ TEST(Matcher, LargeMessagesNeedRoomToo) {
   Kept kept(2);
   const std::vector<std::byte> bytes(1);
   for (std::int64_t time : {1, 2}) {
-    Message message = at(time);
+    Message message = of_time(time);
     message.elements = {bytes.data(), Matcher::kMaxWaitingBytes};  // nobody looks at them
     kept.matcher.push(0, message);
   }
@@ -183,9 +183,9 @@ TEST(Matcher, AnInputThatHasEndedMayBeginAgain) {
 
 TEST(Matcher, ASetWhoseHandlerFailsIsTaken) {
   Matcher matcher(2, [](auto) { throw std::runtime_error("no"); });
-  matcher.push(0, at(1));
-  EXPECT_THROW(matcher.push(1, at(1)), std::runtime_error);
-  matcher.push(1, at(1));
+  matcher.push(0, of_time(1));
+  EXPECT_THROW(matcher.push(1, of_time(1)), std::runtime_error);
+  matcher.push(1, of_time(1));
   EXPECT_EQ(matcher.dropped(0).total(), 0U);
 }
 

@@ -91,14 +91,14 @@ Message filled(const Info& info, std::int32_t width, std::int32_t height) {
   return std::move(draft).finish();
 }
 
-constexpr Info kRgb{MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary};
+constexpr Info kPicture{MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary};
 constexpr Info kTable{MatrixType::Table, 1, Scalar::I32, Encoding::Text};
 constexpr Info kDepth{MatrixType::IntensityImage, 1, Scalar::F32, Encoding::Binary};
 
 TEST(StreamReader, PiecesOfAnySizeGiveTheSameMessages) {
   std::vector<Message> sent;
   for (std::int32_t width : {1, 7, 100, 2000, 9000, 400})
-    for (const Info& info : {kRgb, kTable, kDepth}) sent.push_back(filled(info, width, 3));
+    for (const Info& info : {kPicture, kTable, kDepth}) sent.push_back(filled(info, width, 3));
   std::string bytes;
   for (const auto& message : sent) bytes += encode(message);
   for (std::size_t piece : {1U, 2U, 3U, 17U, 255U, 4096U, 65536U, 10000000U}) {
@@ -119,7 +119,7 @@ TEST(StreamReader, PiecesOfAnySizeGiveTheSameMessages) {
 }
 
 TEST(StreamReader, R2_EveryCutGivesTheMessagesBeforeIt) {
-  std::string one = encode(filled(kTable, 3, 2)), two = encode(filled(kRgb, 3, 2));
+  std::string one = encode(filled(kTable, 3, 2)), two = encode(filled(kPicture, 3, 2));
   std::string bytes = one + two;
   for (std::size_t size = 0; size <= bytes.size(); ++size) {
     StreamReader reader;
@@ -176,7 +176,7 @@ TEST(StreamReader, HeldMessagesKeepTheirElements) {
 }
 
 TEST(StreamReader, MemoryIsUsedAgainWhenNobodyHoldsIt) {
-  std::string bytes = encode(filled(kRgb, 800, 600));
+  std::string bytes = encode(filled(kPicture, 800, 600));
   StreamReader reader;
   Message message;
   std::size_t after_first = 0;
@@ -195,7 +195,7 @@ TEST(StreamReader, MemoryIsUsedAgainWhenNobodyHoldsIt) {
 }
 
 TEST(StreamReader, ElementsOfALargeMessageAfterAnotherAreReadWhereTheyStay) {
-  const Message sent = filled(kRgb, 800, 600);
+  const Message sent = filled(kPicture, 800, 600);
   const std::string bytes = encode(sent);
   StreamReader reader;
   for (bool is_first : {true, false}) {

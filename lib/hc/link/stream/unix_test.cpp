@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include <hc/testing/reconnect.h>
+#include <hc/testing/socket_link.h>
 
 namespace hc::testing {
 namespace {
@@ -24,7 +24,7 @@ std::string path() {
   return (fs::temp_directory_path() / abstract_name().substr(1)).string();
 }
 
-internal::Descriptor connect(const std::string& place) {
+internal::Descriptor connect_by_name(const std::string& place) {
   internal::Descriptor socket(::socket(AF_UNIX, SOCK_STREAM, 0));
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -38,10 +38,15 @@ internal::Descriptor connect(const std::string& place) {
 }
 
 const SocketScheme kAbstract{
-    "abstract",          abstract_name,        "unix:", "unix-listen:", connect,
+    "abstract",          abstract_name,        "unix:", "unix-listen:", connect_by_name,
     internal::unix_peer, internal::listen_unix};
-const SocketScheme kPath{
-    "path", path, "unix:", "unix-listen:", connect, internal::unix_peer, internal::listen_unix};
+const SocketScheme kPath{"path",
+                         path,
+                         "unix:",
+                         "unix-listen:",
+                         connect_by_name,
+                         internal::unix_peer,
+                         internal::listen_unix};
 
 INSTANTIATE_TEST_SUITE_P(Abstract, LinkConformance, ::testing::ValuesIn(both_ways(kAbstract)));
 INSTANTIATE_TEST_SUITE_P(Path, LinkConformance, ::testing::ValuesIn(both_ways(kPath)));
