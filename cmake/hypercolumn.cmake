@@ -55,7 +55,6 @@ if(HC_DEVELOPER_MODE)
   enable_testing()
   find_package(GTest REQUIRED)
   find_package(benchmark REQUIRED)
-  include(GoogleTest)
 endif()
 if(HC_SANITIZE)
   # UBSan's check of vptr asks the kernel for a pipe, and reports an error where there is none: where
@@ -84,19 +83,19 @@ endif()
 
 set(HC_LIBEXEC ${CMAKE_INSTALL_LIBEXECDIR}/hypercolumn)
 set(HC_TEST_SECONDS 120) # a test that takes longer hangs
+set(HC_LIBRARY_SECONDS 900) # all tests of a library, which names the one that hangs: [ RUN ] is its last line
 # What a sanitizer finds in other people's libraries is overlooked. ThreadSanitizer would have each
-# process wait for a second at its end, which tests that start many, or measure, take for ours. One
-# variable, since gtest_discover_tests() hands on the first of a list alone.
+# process wait for a second at its end, which tests that start many, or measure, take for ours.
 set(HC_TEST_ENVIRONMENT
     "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/leaks.supp:print_suppressions=0")
 if(HC_SANITIZE MATCHES thread)
   set(HC_TEST_ENVIRONMENT "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/races.supp:print_suppressions=0:die_after_fork=0:atexit_sleep_ms=0")
 endif()
 
-# hc_layer(mtp DEPENDS base HEADERS a.h SOURCES a.cpp TESTS a_test.cpp LIBS third::party)
-# One layer of the core: target hc::mtp, its headers installed, each of its tests a program.
+# hc_layer(mtp DEPENDS base HEADERS a.h SOURCES a.cpp TESTS a_test.cpp LIBS third::party TEST_LIBS gz)
+# One layer of the core: target hc::mtp, its headers installed, its tests one program, mtp_test.
 function(hc_layer name)
-  cmake_parse_arguments(arg "" "" "DEPENDS;HEADERS;SOURCES;TESTS;LIBS;PUBLIC_LIBS" ${ARGN})
+  cmake_parse_arguments(arg "" "" "DEPENDS;HEADERS;SOURCES;TESTS;LIBS;PUBLIC_LIBS;TEST_LIBS" ${ARGN})
   set(target hc_${name})
   set(scope PUBLIC)
   if(arg_SOURCES)
@@ -114,13 +113,17 @@ function(hc_layer name)
                                     FILES ${arg_HEADERS})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERIFY_INTERFACE_HEADER_SETS ON)
   install(TARGETS ${target} EXPORT hypercolumn FILE_SET HEADERS)
-  foreach(test ${arg_TESTS})
-    cmake_path(GET test STEM stem)
-    hc_test(${name}_${stem} SOURCES ${test} LIBS hc::${name})
-  endforeach()
+  if(arg_TESTS)
+    hc_test(${name}_test SOURCES ${arg_TESTS} LIBS hc::${name} ${arg_TEST_LIBS})
+  endif()
 endfunction()
 
 # hc_test(mtp_test SOURCES a_test.cpp LIBS hc::mtp)
+# All cases of a library in one process, in any order. build/tests/unit/mtp_test --gtest_filter=A.case
+# runs one.
+set(HC_LINK_CONFORMANCE ${PROJECT_SOURCE_DIR}/lib/hc/testing/link_conformance.cpp)
+set(HC_SOCKET_LINK ${PROJECT_SOURCE_DIR}/lib/hc/testing/socket_link.cpp
+                   ${PROJECT_SOURCE_DIR}/lib/hc/testing/reconnect.cpp)
 function(hc_test name)
   if(NOT HC_DEVELOPER_MODE)
     return()
@@ -129,15 +132,15 @@ function(hc_test name)
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE hc_flags ${arg_LIBS} GTest::gtest_main)
   target_compile_options(${name} PRIVATE -O1)  # most of what a build takes is tests
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${HC_TEST_SECONDS}
-                       ENVIRONMENT "${HC_TEST_ENVIRONMENT}"
-                       DISCOVERY_TIMEOUT 60)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/unit)
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${HC_LIBRARY_SECONDS} ENVIRONMENT "${HC_TEST_ENVIRONMENT}")
 endfunction()
 
 # hc_module(depth LIBS hc::opencv hc::vision)
-# A module: main.cpp, with program.cpp, depth.h, depth.cpp and their test where they exist, and its
-# cases/. SOURCES and TESTS are what else it has. Not built where one of LIBS is missing (HC_HEAD), not
-# installed where it is TEST_ONLY.
+# A module: main.cpp; a library of program.cpp, depth.cpp, where they exist, and SOURCES; depth_test.cpp
+# and TESTS, which are in the program modules_test with those of other modules; and cases/. Not built
+# where one of LIBS is missing (HC_HEAD), not installed where it is TEST_ONLY.
 function(hc_module name)
   cmake_parse_arguments(arg "TEST_ONLY" "" "SOURCES;TESTS;LIBS" ${ARGN})
   foreach(lib ${arg_LIBS})
@@ -145,18 +148,17 @@ function(hc_module name)
       return()
     endif()
   endforeach()
+  foreach(source program ${name})
+    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${source}.cpp)
+      list(APPEND arg_SOURCES ${source}.cpp)
+    endif()
+  endforeach()
   if(arg_SOURCES)
     add_library(module_${name}_parts STATIC ${arg_SOURCES})
     target_link_libraries(module_${name}_parts PRIVATE hc_flags hc::module ${arg_LIBS})
     list(APPEND arg_LIBS module_${name}_parts)
   endif()
-  set(sources main.cpp)
-  foreach(source program.cpp ${name}.cpp)
-    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${source})
-      list(APPEND sources ${source})
-    endif()
-  endforeach()
-  add_executable(module_${name} ${sources})
+  add_executable(module_${name} main.cpp)
   set(folder libexec/hypercolumn)
   if(arg_TEST_ONLY)
     set(folder tests/programs)
@@ -168,17 +170,23 @@ function(hc_module name)
     install(TARGETS module_${name} DESTINATION ${HC_LIBEXEC})
     add_dependencies(programs module_${name})
   endif()
-  if(arg_TESTS)
-    hc_test(module_${name}_parts_test SOURCES ${arg_TESTS} LIBS ${arg_LIBS})
-  endif()
   if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
-    set(test_sources ${name}_test.cpp)
-    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}.cpp)
-      list(APPEND test_sources ${name}.cpp)
-    endif()
-    hc_test(module_${name}_test SOURCES ${test_sources} LIBS hc::module ${arg_LIBS})
+    list(APPEND arg_TESTS ${name}_test.cpp)
+  endif()
+  if(arg_TESTS)
+    list(TRANSFORM arg_TESTS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+    set_property(GLOBAL APPEND PROPERTY HC_MODULE_TESTS ${arg_TESTS})
+    set_property(GLOBAL APPEND PROPERTY HC_MODULE_TEST_LIBS hc::module ${arg_LIBS})
   endif()
   hc_cases(${name})
+endfunction()
+
+# The program of all tests of modules, once all modules are known.
+function(hc_module_tests)
+  get_property(tests GLOBAL PROPERTY HC_MODULE_TESTS)
+  get_property(libs GLOBAL PROPERTY HC_MODULE_TEST_LIBS)
+  list(REMOVE_DUPLICATES libs)
+  hc_test(modules_test SOURCES ${tests} LIBS ${libs})
 endfunction()
 
 # Every folder of cases/ here is a test: the command in `cmd`, fed with `in`, prints `out`.
@@ -197,24 +205,49 @@ function(hc_cases name)
   endforeach()
 endfunction()
 
-# hc_fuzz(header LIBS hc::mtp): tests/fuzz/header.cpp, a fuzzer where libFuzzer is linked, and in
-# every other build a program that replays tests/fuzz/corpus/header as a test.
+# hc_fuzz(header LIBS hc::mtp): fuzz_header() of tests/fuzz/header.cpp, a fuzzer where libFuzzer is
+# linked, and in every other build a test that replays tests/fuzz/corpus/header.
 function(hc_fuzz name)
   cmake_parse_arguments(arg "" "" "LIBS" ${ARGN})
-  add_executable(fuzz_${name} ${name}.cpp)
-  target_link_libraries(fuzz_${name} PRIVATE hc_flags ${arg_LIBS})
-  add_dependencies(fuzz_targets fuzz_${name})
-  set_target_properties(fuzz_${name} PROPERTIES
-    RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz OUTPUT_NAME ${name})
+  set(program fuzz_replay)
+  set(options ${name})
   if(HC_LIBFUZZER)
-    target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+    set(entry ${CMAKE_CURRENT_BINARY_DIR}/${name}_entry.cpp)
+    configure_file(entry.cpp.in ${entry} @ONLY)
+    set(program fuzz_${name})
+    set(options -runs=0)
+    add_executable(${program} ${name}.cpp ${entry})
+    target_link_libraries(${program} PRIVATE hc_flags ${arg_LIBS})
+    target_link_options(${program} PRIVATE -fsanitize=fuzzer)
+    add_dependencies(fuzz_targets ${program})
+    set_target_properties(${program} PROPERTIES
+      RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz OUTPUT_NAME ${name})
   else()
-    target_sources(fuzz_${name} PRIVATE replay_main.cpp)
+    set_property(GLOBAL APPEND PROPERTY HC_FUZZ_NAMES ${name})
+    set_property(GLOBAL APPEND PROPERTY HC_FUZZ_LIBS ${arg_LIBS})
   endif()
-  add_test(NAME fuzz.${name}
-           COMMAND fuzz_${name} -runs=0 ${CMAKE_CURRENT_SOURCE_DIR}/corpus/${name})
+  add_test(NAME fuzz.${name} COMMAND ${program} ${options} ${CMAKE_CURRENT_SOURCE_DIR}/corpus/${name})
   set_tests_properties(fuzz.${name} PROPERTIES TIMEOUT ${HC_TEST_SECONDS}
                        ENVIRONMENT "${HC_TEST_ENVIRONMENT}")
+endfunction()
+
+# The one program that replays the corpus of every target, where there is no libFuzzer.
+function(hc_fuzz_replay)
+  if(HC_LIBFUZZER)
+    return()
+  endif()
+  get_property(names GLOBAL PROPERTY HC_FUZZ_NAMES)
+  get_property(libs GLOBAL PROPERTY HC_FUZZ_LIBS)
+  list(REMOVE_DUPLICATES libs)
+  list(TRANSFORM names PREPEND fuzz_ OUTPUT_VARIABLE functions)
+  list(JOIN functions ", " functions)
+  list(TRANSFORM names REPLACE "(.+)" "{\"\\1\", fuzz_\\1}" OUTPUT_VARIABLE targets)
+  list(JOIN targets ", " targets)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/replay.cpp)
+  configure_file(replay.cpp.in ${source} @ONLY)
+  list(TRANSFORM names APPEND .cpp)
+  add_executable(fuzz_replay ${source} ${names})
+  target_link_libraries(fuzz_replay PRIVATE hc_flags ${libs})
 endfunction()
 
 # hc_bench(header LIBS hc::mtp): bench/header.cpp with Google Benchmark.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // TLS links do what all links do, and those of sockets.
-#include <hc/testing/reconnect.h>
+#include <hc/testing/socket_link.h>
 #include <tls/acceptor.h>
 #include <tls/peer_test.h>
 

@@ -4,7 +4,7 @@
 #include <hc/mtp/codec.h>
 #include <hc/testing/decode.h>
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_compressed(const std::uint8_t* data, std::size_t size) {
   hc::Message message;
   auto used =
       hc::decode(std::as_bytes(std::span(data, size)), message, hc::Limits{std::uint64_t{1} << 20});

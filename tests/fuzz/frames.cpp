@@ -2,7 +2,7 @@
 // Any text: the frames of a graph, each of which is joined to the root, or one line.
 #include <frames/graph_frames.h>
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_frames(const std::uint8_t* data, std::size_t size) {
   auto frames = hc::frames::read_frames({reinterpret_cast<const char*>(data), size});
   if (!frames) {
     HC_CHECK(frames.error().detail.starts_with("frames: "), frames.error().detail);

@@ -23,7 +23,7 @@ std::string describe(const std::string& program) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_graph_file(const std::uint8_t* data, std::size_t size) {
   std::string_view text{reinterpret_cast<const char*>(data), size};
   hc::Problems problems("fuzz.toml");
   auto graph = hc::parse_graph(

@@ -3,7 +3,7 @@
 #include <hc/base/check.h>
 #include <hc/mtp/header.h>
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_header(const std::uint8_t* data, std::size_t size) {
   std::string_view line{reinterpret_cast<const char*>(data), size};
   if (size > hc::kMaxHeaderBytes || line.find('\n') != std::string_view::npos) return 0;
   auto header = hc::parse_header(line);

@@ -51,7 +51,7 @@ std::string read_messages(const hc::Uri& uri) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_mcap(const std::uint8_t* data, std::size_t size) {
   static const int kFile = ::memfd_create("fuzz", MFD_CLOEXEC);
   HC_CHECK(kFile >= 0 && ::ftruncate(kFile, 0) == 0);
   HC_CHECK(::pwrite(kFile, data, size, 0) == static_cast<ssize_t>(size));

@@ -17,7 +17,7 @@ static std::string replies(std::string_view bytes, std::size_t piece, bool may_f
   return all;
 }
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_pan_tilt(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   HC_CHECK(replies(bytes, size + 1) == replies(bytes, size == 0 ? 1 : 1 + data[0] % 7U), bytes);
   hc::pan_tilt::Unit unit;

@@ -8,7 +8,7 @@
 #include <vision/stereo/matcher.h>
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it so
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_stereo(const std::uint8_t* data, std::size_t size) {
   constexpr std::size_t kHead = 6;
   if (size < kHead) return 0;
   constexpr int kTypes[] = {CV_8U, CV_8UC3, CV_16U, CV_8UC4, CV_32F};

@@ -37,7 +37,7 @@ struct Stream {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_stream(const std::uint8_t* data, std::size_t size) {
   if (size < 1) return 0;
   constexpr std::size_t kWhole = 65536;
   auto bytes = std::as_bytes(std::span(data + 1, size - 1));

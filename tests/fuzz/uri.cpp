@@ -2,7 +2,7 @@
 // Any text: what is a URI is the same URI when it is written and read again.
 #include <hc/base/uri.h>
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_uri(const std::uint8_t* data, std::size_t size) {
   std::string_view text{reinterpret_cast<const char*>(data), size};
   static_cast<void>(hc::parse_host_port(text));
   auto uri = hc::parse_uri(text);

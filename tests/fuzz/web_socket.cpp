@@ -55,7 +55,7 @@ constexpr std::string_view kHandshake =
 }  // namespace
 
 /// The first byte says whether the others come in a WebSocket.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int fuzz_web_socket(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   sockaddr_in address{};
   address.sin_family = AF_INET;

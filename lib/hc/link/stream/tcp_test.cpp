@@ -10,7 +10,7 @@
 #include <hc/link/stream/ends.h>
 #include <hc/os/peer_user.h>
 #include <hc/os/wait_readable.h>
-#include <hc/testing/reconnect.h>
+#include <hc/testing/socket_link.h>
 
 namespace {
 

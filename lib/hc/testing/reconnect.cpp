@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
 // What tcp and unix links do that outlive their connections.
 
 #include <memory>

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hc/testing/link_conformance.h>
+
+namespace hc::testing {
+
+TEST_P(LinkConformance, CarriesOneMessageAndEnds) {
+  open();
+  transfer(1, 3);
+}
+TEST_P(LinkConformance, CarriesManySmallOnes) {
+  open();
+  transfer(20000, 24);
+}
+TEST_P(LinkConformance, CarriesHugeOnes) {
+  open();
+  transfer(3, 40'000'000);
+}
+TEST_P(LinkConformance, CarriesEmptyOnes) {
+  open();
+  transfer(10, 0);
+}
+
+TEST_P(LinkConformance, EndsWithoutAMessageOrWaitsForTheNextWriter) {
+  open();
+  std::thread sender([&] { ASSERT_TRUE(sink_->close()); });
+  Message message;
+  if (GetParam().ends) {
+    EXPECT_FALSE(*receive(*source_, message));
+    EXPECT_FALSE(*receive(*source_, message));
+  } else {
+    EXPECT_EQ(*source_->take(message), Got::Nothing);
+  }
+  sender.join();
+}
+
+TEST_P(LinkConformance, NothingIsNoEnd) {
+  open();
+  Message message;
+  EXPECT_EQ(*source_->take(message), Got::Nothing);
+  transfer(1, 1);
+}
+
+TEST_P(LinkConformance, ASlowReaderLosesNothing) {
+  open();
+  std::thread sender([&] {
+    for (int i = 0; i < 500; ++i) ASSERT_TRUE(sink_->send(numbered(i, 100'000)));
+    ASSERT_TRUE(sink_->close());
+  });
+  Message message;
+  for (int i = 0; i < 500; ++i) {
+    // One look at the descriptor between any two messages, so that the sender runs ahead.
+    auto got = receive(*source_, message);
+    ASSERT_TRUE(got && *got);
+    ASSERT_EQ(message.header.seq, i);
+    std::this_thread::yield();
+  }
+  sender.join();
+}
+
+TEST_P(LinkConformance, AReaderThatTakesNothingIsGivenUpUntilItDoes) {
+  constexpr std::int64_t kPlenty = 1200;  // more than any memory takes
+  LinkOptions options;
+  std::vector<bool> awaits;
+  options.awaits_reader = [&](bool does) { awaits.push_back(does); };
+  open("timeout=1", "", options);
+  std::int64_t count = 0;
+  while (count < kPlenty) ASSERT_TRUE(sink_->send(numbered(count++, 100'000)));
+  ASSERT_GE(awaits.size(), 2U) << "it waited for it";
+  EXPECT_FALSE(awaits.back()) << "and does not any more";
+  std::atomic<bool> is_heard_again{false};
+  std::thread reader([&] {
+    Message message;
+    std::int64_t seq = -1;
+    while (seq < kPlenty) {
+      auto got = receive(*source_, message);
+      ASSERT_TRUE(got && *got && message.header.seq > seq) << "behind " << seq;
+      seq = message.header.seq;
+      ASSERT_EQ(message.characters(), numbered(seq, 100'000).characters());
+    }
+    is_heard_again = true;
+    while (message.elements.size() > 1) ASSERT_TRUE(*receive(*source_, message));
+  });
+  while (!is_heard_again) ASSERT_TRUE(sink_->send(numbered(count++, 100'000)));
+  ASSERT_TRUE(sink_->send(numbered(count, 1)));
+  reader.join();
+  EXPECT_GT(losses().timed_out, 0U);
+  EXPECT_EQ(losses().timed_out, losses().lost());
+}
+
+TEST_P(LinkConformance, AMessageMayBeHeldForAsLongAsOneLikes) {
+  open();
+  std::thread sender([&] {
+    for (int i = 0; i < 100; ++i) ASSERT_TRUE(sink_->send(numbered(i, 1 + i * 500)));
+    ASSERT_TRUE(sink_->close());
+  });
+  std::vector<Message> held(100);
+  for (auto& message : held) ASSERT_TRUE(*receive(*source_, message));
+  sender.join();
+  for (int i = 0; i < 100; ++i)
+    EXPECT_EQ(held[static_cast<std::size_t>(i)].characters(),
+              numbered(i, 1 + i * 500).characters());
+}
+
+TEST_P(LinkConformance, AReaderThatLeavesIsNoticed) {
+  open();
+  std::thread reader([&] {
+    Message message;
+    ASSERT_TRUE(*receive(*source_, message));
+    source_.reset();
+  });
+  Status sent;
+  for (int i = 0; sent; ++i) sent = sink_->send(numbered(i, 100'000));
+  reader.join();
+  EXPECT_EQ(sent.error().code, Code::Closed);
+}
+
+TEST_P(LinkConformance, SmallAndLargeOnesStayInOrder) {
+  open();
+  constexpr int kCount = 2000;
+  std::thread sender([&] {
+    for (int i = 0; i < kCount; ++i)
+      ASSERT_TRUE(sink_->send(numbered(i, i % 100 == 99 ? 200'000 : i % 50)));
+    ASSERT_TRUE(sink_->close());
+  });
+  Message message;
+  for (int i = 0; i < kCount; ++i) {
+    ASSERT_TRUE(*receive(*source_, message));
+    ASSERT_EQ(message.characters(), numbered(i, i % 100 == 99 ? 200'000 : i % 50).characters());
+  }
+  sender.join();
+}
+
+TEST_P(LinkConformance, WithKeepLatestTheWriterNeverWaits) {
+  open("keep=latest");
+  auto count = send_too_many(100'000);  // nobody reads, and this ends all the same
+  take_to(count - 1);
+  EXPECT_GE(losses().superseded, 10U);
+  EXPECT_EQ(losses().superseded, losses().lost());
+}
+
+TEST_P(LinkConformance, WithKeepLatestSmallOnesAreWholeToo) {
+  open("keep=latest");
+  auto count = send_too_many(30);
+  take_to(count - 1);
+}
+
+TEST_P(LinkConformance, KeepsAsManyAsAsked) {
+  open("keep=5");
+  auto count = send_too_many(100'000);
+  auto lost_until_now = losses().lost();
+  auto received = take_to(count - 1);
+  EXPECT_GE(received, 5U);  // and what the kernel had taken
+  if (GetParam().drops_at_source)
+    EXPECT_EQ(received, 5U);
+  else
+    EXPECT_EQ(losses().lost(), lost_until_now);
+}
+
+TEST_P(LinkConformance, MemoryIsBounded) {
+  open("keep=1000&memory=2M");
+  auto count = send_too_many(100'000);
+  take_to(count - 1);
+  EXPECT_GE(losses().over_memory, 10U);
+  EXPECT_EQ(losses().superseded, 0U);
+}
+
+TEST_P(LinkConformance, ARateKeepsMessagesBack) {
+  open("keep=2", "rate=20&burst=3");
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(sink_->send(numbered(i, 10)));
+  take_to(9);
+  EXPECT_GE(losses().kept_back, losses().over_rate);
+  EXPECT_EQ(losses().over_memory + losses().cut, 0U);
+}
+
+TEST_P(LinkConformance, AWriterThatLosesNothingWaitsForItsTurn) {
+  open("", "rate=1000");
+  transfer(20, 10);
+  EXPECT_EQ(sink_->traffic().lost(), 0U);
+}
+
+TEST_P(LinkConformance, AReaderThatLeavesIsNoticedByAWriterThatDoesNotWait) {
+  open("keep=latest");
+  ASSERT_TRUE(sink_->send(numbered(0, 10)));
+  Message message;
+  ASSERT_TRUE(*receive(*source_, message));
+  source_.reset();
+  Status sent;
+  for (int i = 0; sent; ++i) sent = sink_->send(numbered(i, 100'000));
+  EXPECT_EQ(sent.error().code, Code::Closed);
+}
+
+TEST_P(LinkConformance, OptionsOfAnotherTransportAreRefused) {
+  auto [from, to] = GetParam().make();
+  auto source = open_source(*parse_uri(with(from, "flavour=sweet")));
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().code, Code::Invalid);
+}
+
+}  // namespace hc::testing
