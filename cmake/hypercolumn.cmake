@@ -42,6 +42,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
   # False for every "text" + std::string: https://gcc.gnu.org/bugzilla/show_bug.cgi?id=105651
   target_compile_options(hc_flags INTERFACE -Wno-restrict)
 endif()
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  # It is about headers, for which a .cpp of a unity build is taken.
+  target_compile_options(hc_flags INTERFACE -Wno-subobject-linkage)
+endif()
 if(HC_WERROR)
   target_compile_options(hc_flags INTERFACE -Werror)
 endif()
@@ -131,7 +135,8 @@ function(hc_test name)
   cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE hc_flags ${arg_LIBS} GTest::gtest_main)
-  target_compile_options(${name} PRIVATE -O1)  # most of what a build takes is tests
+  # Most of what a build takes is tests; and in a unity build the names of one file shadow another's.
+  target_compile_options(${name} PRIVATE -O1 $<$<BOOL:${CMAKE_UNITY_BUILD}>:-Wno-shadow>)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/unit)
   add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES TIMEOUT ${HC_LIBRARY_SECONDS} ENVIRONMENT "${HC_TEST_ENVIRONMENT}")
@@ -164,7 +169,7 @@ function(hc_module name)
     set(folder tests/programs)
   endif()
   set_target_properties(module_${name} PROPERTIES
-    OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${folder})
+    OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${folder} UNITY_BUILD OFF)
   target_link_libraries(module_${name} PRIVATE hc_flags hc::module hc::transports ${arg_LIBS})
   if(NOT arg_TEST_ONLY)
     install(TARGETS module_${name} DESTINATION ${HC_LIBEXEC})
