@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The robot head's ears and mouth: microphone, speaker, speech."""
 
-import array
 import json
-import math
 import os
 import pathlib
 import re
@@ -28,23 +26,6 @@ class Sound(Bodies):
             )
             self.assertEqual(self.read_wav("out%d.wav" % channels), (16000, channels, samples))
 
-    def test_the_side_that_a_sound_comes_from(self):
-        mono = tone(16000, 0.3)
-        late = 6  # frames, of the 8 that lie between the ears
-        for first, sign in ((0, 1), (1, -1)):  # the left ear, the right one
-            stereo = array.array("h", bytes(4 * (len(mono) + late)))
-            stereo[first : first + 2 * len(mono) : 2] = mono
-            stereo[2 * late + 1 - first :: 2] = mono
-            self.write_wav("in.wav", stereo, 16000, 2)
-            out = self.shell(
-                "hc microphone in.wav --channels 2 --paced=false | "
-                "hc hearing --out direction=- | hc cat --json"
-            )
-            pans = [json.loads(line)["elements"][0][0][2] for line in out.splitlines()]
-            self.assertGreater(len(pans), 5)
-            for pan in pans[1:-1]:
-                self.assertAlmostEqual(sign * math.sin(pan), 0.71, delta=0.05)
-
     def test_pieces_follow_one_another_in_time(self):
         self.write_wav("in.wav", tone(22050, 0.1), 22050)
         out = self.shell(
@@ -55,25 +36,6 @@ class Sound(Bodies):
         times = [int(time) for time in re.findall(r'"time":(\d+)', out)]
         self.assertEqual([b - a for a, b in zip(times, times[1:])], [20_000_000] * 4)
 
-    def test_a_paced_file_takes_its_time(self):
-        self.write_wav("in.wav", tone(8000, 0.3), 8000)
-        self.shell(
-            "hc microphone in.wav --rate 8000 >paced.mtp; hc microphone in.wav --rate 8000 "
-            "--paced=false >fast.mtp"
-        )
-        paced = self.read_bytes("paced.mtp")
-        fast = self.read_bytes("fast.mtp")
-        self.assertEqual(len(paced), len(fast))
-
-    def test_what_is_no_wav_file_is_refused(self):
-        self.write("no.wav", b"RIFF\xff\xff\xff\xffWAVEfmt ")
-        self.shell("hc microphone no.wav", status=1)
-        self.assertIn("microphone: Malformed: no.wav: has no samples", self.err)
-        self.shell("hc microphone gone.wav", status=1)
-        self.assertIn("microphone: NotFound: gone.wav: No such file", self.err)
-        self.shell("hc microphone --rate 11025", status=2)
-        self.assertIn("11025 is not 8000, 16000, 22050, 44100 or 48000", self.err)
-
     def test_disk_driver_hears_what_is_played(self):
         samples = tone(16000, 0.5)
         self.write_wav("in.wav", samples, 16000)
@@ -83,25 +45,6 @@ class Sound(Bodies):
         )
         heard = self.read_bytes("heard.raw")
         self.assertIn(samples.tobytes(), heard)
-
-    def test_a_file_is_whole_after_the_speaker_was_killed_and_is_not_overwritten(self):
-        samples = tone(8000, 0.2)
-        self.write_wav("in.wav", samples, 8000)
-        for name in "out.wav", "out_2.wav", "out_3.wav":
-            path = pathlib.Path(self.path(name))
-            port = free_port()
-            process = self.run_module(
-                "hc speaker --device none --save out.wav --in tcp-listen:%d" % port
-            )
-            wait_until(lambda: listens(port))
-            self.shell(
-                "hc microphone in.wav --rate 8000 --paced=false --out mono=tcp:127.0.0.1:%d" % port
-            )
-            size = 44 + 2 * len(samples)
-            wait_until(lambda: path.exists() and path.stat().st_size == size)
-            os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
-            self.assertEqual(self.read_wav(name), (8000, 1, samples))
 
     def test_a_long_sound_does_not_keep_the_speaker_from_its_end(self):
         port = free_port()
@@ -117,16 +60,6 @@ class Sound(Bodies):
             # The second waits until there is room for it.
             wait_until(lambda: path.exists() and path.stat().st_size == 44 + 4 * frames)
             self.stop(process)
-
-    def test_without_a_device_sound_is_dropped_and_counted(self):
-        self.write_wav("in.wav", tone(16000, 0.1), 16000)
-        self.shell(
-            "hc microphone in.wav --paced=false | "
-            "SDL_AUDIODRIVER=no_such_driver hc speaker --save out.wav"
-        )
-        self.assertEqual(self.err.count("speaker: no sound: "), 1, self.err)
-        self.assertIn("speaker: 5 messages were dropped without a loudspeaker", self.err)
-        self.assertEqual(len(self.read_wav("out.wav")[2]), 1600)
 
     def test_sound_without_a_rate_is_dropped_and_told_once(self):
         message = b"1 1 0 0 8 0 100130 0 0 1 1\n7\n"

@@ -53,45 +53,6 @@ class SharedMemory(harness.Pipes):
         self.assertFalse(listens_at(self.name))
         self.test_two_readers_get_the_same_bytes()
 
-    def test_who_reconnects_finds_the_next_publisher(self):
-        self.many(50)
-        uri = self.uri + "?reconnect=60"
-        reader = self.start("exec hc record got.mtp --in '%s' 2>said" % uri)
-        publisher = self.start("exec hc play --loop --speed max many.mtp --out %s" % self.uri)
-        got, said = (pathlib.Path(self.path(name)) for name in ("got.mtp", "said"))
-        wait_until(lambda: got.exists() and got.stat().st_size > 100_000)
-        os.kill(publisher.pid, signal.SIGKILL)
-        line = uri + ": the publisher has died; reconnecting\n"
-        wait_until(lambda: line in said.read_text())
-        before = got.stat().st_size
-        self.shell("hc play --speed max many.mtp --out '%s?readers=1'" % self.uri)
-        wait_until(lambda: got.stat().st_size >= before + 50 * 20000)
-        reader.terminate()
-        self.assertEqual(reader.wait(WATCHDOG), 0)
-
-    def test_a_killed_reader_does_not_hold_up_the_publisher(self):
-        self.many(50)
-        publisher = self.start(
-            "exec hc play --loop --speed max many.mtp --out '%s?readers=2&memory=2M'" % self.uri
-        )
-        victim = self.start("exec hc cat --raw '%s?wait=60'" % self.uri)  # nobody reads its output
-        steady = self.start("hc cat --raw --count 20000 '%s?wait=60' | wc -c" % self.uri)
-        os.read(victim.stdout.fileno(), 1000)
-        os.kill(victim.pid, signal.SIGKILL)
-        out, _ = steady.communicate(timeout=WATCHDOG)
-        self.assertGreater(int(out), 20000 * 20000)
-        publisher.terminate()
-
-    def test_who_keeps_the_latest_is_reported_what_it_lost(self):
-        self.many(2000)
-        slow = self.start("exec hc cat --raw '%s?wait=60&keep=latest'" % self.uri)
-        self.shell("hc play --speed max many.mtp --out '%s?readers=1'" % self.uri)
-        out, err = slow.communicate(timeout=WATCHDOG)
-        count = out.count(b"1 5 0 ")
-        self.assertIn(b": %d dropped (newer arrived)" % (2000 - count), err)
-        # The newest one is never dropped, and may be the only one.
-        self.assertIn(b"\n1 5 0 1999 8 0 40101 ", b"\n" + out)
-
     def test_options_that_make_no_sense_are_refused(self):
         for command, status, words in (
             ("hc cat '%s?spin=often'", 2, "option spin is a whole number"),
