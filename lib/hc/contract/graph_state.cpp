@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 7> kStatusNames = {
     "starting", "running", "stalled", "waiting", "stopping", "ended", "given up"};
 
 /// Writes the fields of a struct into a JSON object.
-struct Writer {
+struct FieldWriter {
   Json& json;
 
   template <typename T>
@@ -32,7 +32,7 @@ struct Writer {
 
 /// Reads them; throws what Json throws. A key that is absent leaves its field as it is, so that a
 /// newer tool reads an older graph.
-struct Reader {
+struct FieldReader {
   const Json& json;
 
   template <typename T>
@@ -168,7 +168,7 @@ std::string GraphState::stopped_in_words() const {
 
 std::string to_json(const GraphState& state) {
   Json json = Json::object();
-  visit_graph(state, Writer{json});
+  visit_graph(state, FieldWriter{json});
   json["status"] = state.is_stopping ? "stopping" : "running";
   auto& focus = json["focus"] = Json::object();
   for (const auto& [workspace, number] : state.focus)
@@ -176,11 +176,11 @@ std::string to_json(const GraphState& state) {
         number == 0 ? Json(nullptr) : Json{{"mode", state.mode_name(number)}, {"number", number}};
   for (const char* list : {"hosts", "modules", "links"}) json[list] = Json::array();
   for (const auto& host : state.hosts)
-    visit_host(host, Writer{json["hosts"].emplace_back(Json::object())});
+    visit_host(host, FieldWriter{json["hosts"].emplace_back(Json::object())});
   for (const auto& module : state.modules)
-    visit_module(module, Writer{json["modules"].emplace_back(Json::object())});
+    visit_module(module, FieldWriter{json["modules"].emplace_back(Json::object())});
   for (const auto& link : state.links)
-    visit_link(link, Writer{json["links"].emplace_back(Json::object())});
+    visit_link(link, FieldWriter{json["links"].emplace_back(Json::object())});
   // Texts of modules and files may be no UTF-8.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -189,15 +189,15 @@ Result<GraphState> parse_graph_state(std::string_view text) {
   try {
     const auto json = Json::parse(text);
     GraphState state;
-    visit_graph(state, Reader{json});
+    visit_graph(state, FieldReader{json});
     state.is_stopping = json.at("status") == "stopping";
     for (const auto& [workspace, mode] : json.at("focus").items())
       state.focus[workspace] = mode.is_null() ? 0 : mode.at("number").get<std::int64_t>();
     for (const auto& host : json.value("hosts", Json::array()))
-      visit_host(state.hosts.emplace_back(), Reader{host});
+      visit_host(state.hosts.emplace_back(), FieldReader{host});
     for (const auto& module : json.at("modules"))
-      visit_module(state.modules.emplace_back(), Reader{module});
-    for (const auto& link : json.at("links")) visit_link(state.links.emplace_back(), Reader{link});
+      visit_module(state.modules.emplace_back(), FieldReader{module});
+    for (const auto& link : json.at("links")) visit_link(state.links.emplace_back(), FieldReader{link});
     return state;
   } catch (const Json::exception& error) {
     return Error{Code::Malformed, std::string("the state of a graph: ") + error.what()};

@@ -76,6 +76,7 @@ inline void succeed_or_drop(const Status& status) {
 
 namespace internal {
 struct Arguments;
+class Management;
 }
 class Module;
 
