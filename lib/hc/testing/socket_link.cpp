@@ -99,7 +99,7 @@ TEST_P(SocketLink, AReaderThatHasShutItsOwnSideReadsOn) {
     for (int i = 0; i < 20; ++i) ASSERT_TRUE(sink->send(numbered(i, 100'000)));
     ASSERT_TRUE(sink->close());
   });
-  internal::StreamSource source(std::move(peer), {});
+  internal::StreamSource source({std::move(peer)}, {});
   Message message;
   for (int i = 0; i < 20; ++i) {
     ASSERT_TRUE(*receive(source, message));

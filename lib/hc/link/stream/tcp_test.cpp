@@ -208,7 +208,7 @@ TEST(Tcp, AConnectionWithItselfIsNone) {
 TEST(Tcp, WhoWaitsInsideALargeMessageIsWokenForAGoodPart) {
   auto [peer, accepted] = make_connection();
   const int reading = accepted.get();
-  internal::StreamSource source(std::move(accepted), {});
+  internal::StreamSource source({std::move(accepted)}, {});
   auto wakes_at = [&] {
     int bytes = 0;
     socklen_t length = sizeof bytes;

@@ -59,7 +59,7 @@ struct Connection {
 
 class StreamWriterTest : public ::testing::Test {
  protected:
-  StreamWriterTest() { writer_.start(std::move(connection_.writing)); }
+  StreamWriterTest() { writer_.start({std::move(connection_.writing)}); }
 
   void add_small(const std::string& text) {
     EXPECT_TRUE(writer_.add({pieces_of(text), nullptr}));
@@ -69,7 +69,7 @@ class StreamWriterTest : public ::testing::Test {
   /// Goes over to another connection; what had come over the last one is forgotten.
   void reconnect() {
     connection_ = Connection();
-    writer_.start(std::move(connection_.writing));
+    writer_.start({std::move(connection_.writing)});
   }
   /// Writes and reads in turn until all has been written.
   std::string transfer() {
@@ -255,7 +255,7 @@ TEST_F(StreamWriterTest, ANewConnectionGetsTheSmallOneThatWasBegunAndThoseBehind
 
 TEST_F(StreamWriterTest, WithoutAConnectionItKeepsWhatThereIs) {
   add_small(small_);
-  writer_.start(Descriptor());
+  writer_.start({});
   EXPECT_EQ(writer_.descriptor(), -1);
   add_small(other_);
   reconnect();
@@ -295,7 +295,7 @@ TEST_F(StreamWriterTest, APipeWithoutAReaderRaisesNoSignal) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe2(ends.data(), O_NONBLOCK | O_CLOEXEC), 0);
   Descriptor reading(ends[0]);
-  writer_.start(Descriptor(ends[1]));
+  writer_.start({Descriptor(ends[1])});
   EXPECT_FALSE(writer_.is_socket());
   add_small(small_);
   EXPECT_TRUE(*writer_.write());
