@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks the direction of every #include: check_layers.py [ROOT]. Prints FILE:LINE: what is wrong."""
 
+import collections
 import pathlib
 import re
 import sys
@@ -78,6 +79,22 @@ ALLOWED = {
         "hosts",
     },
 }
+# How often a layer names what is internal to another, or to itself; these numbers may only fall, and no
+# other layer does.
+INTERNAL = {
+    "dds": 33,
+    "drivers": 4,
+    "frames": 2,
+    "hosts": 34,
+    "mcap": 14,
+    "modules": 7,
+    "python": 6,
+    "ros": 6,
+    "sound": 2,
+    "tls": 35,
+    "tools": 4,
+    "web": 16,
+}
 CORE = {"base", "os", "mtp", "contract", "compress", "link", "module", "client", "graph"}
 # The mtp layer is pure: no input or output, no threads, no clock.
 IMPURE = re.compile(
@@ -103,12 +120,14 @@ def layer_of_include(name):
     if inner.startswith("dds/"):  # as Cyclone DDS has them too
         return "dds" if (pathlib.Path(__file__).parents[1] / "lib" / inner).exists() else None
     match = re.match(r"hc/([a-z]+)/", inner) or re.match(
-        r"(client|graph|frames|vision|graphics|room|sound|gaze|web|ros|mcap|tls|transports|hosts|drivers)/", inner
+        r"(client|graph|frames|vision|graphics|room|sound|gaze|web|ros|mcap|tls|transports|hosts|drivers)/",
+        inner,
     )
     return match[1] if match else None
 
 
 def problems(root):
+    internal = collections.Counter()
     for path in sorted(root.glob("*/**/*")):
         if path.suffix not in (".h", ".cpp"):
             continue
@@ -119,6 +138,8 @@ def problems(root):
         is_test = path.stem.endswith("_test") or layer == "testing"
         is_messages = layer in PACKAGES and path.stem in ("messages", "module_frames")
         allowed = ALLOWED.get(layer, set()) | ({"mtp", "module"} if is_messages else set())
+        if layer not in CORE | {"testing"} and not is_test:
+            internal[layer] += len(re.findall(r"\binternal::", path.read_text()))
         for number, line in enumerate(path.read_text().splitlines(), 1):
             where = "%s:%d: " % (local, number)
             if layer != "tools" and not is_test:
@@ -139,6 +160,10 @@ def problems(root):
             if layer in CORE and path.suffix == ".h" and not is_test and not target:
                 if not STANDARD.match(name):
                     yield where + "a header of the core shows no other library (%s)" % name
+    for layer, count in sorted(internal.items()):
+        most = INTERNAL.get(layer, 0)
+        if count > most:
+            yield "%s: internal:: stands %d times, at most %d" % (layer, count, most)
 
 
 if __name__ == "__main__":
