@@ -3,6 +3,7 @@
 // Runs a planned graph: starts its processes and supervises them, has them changed while they run,
 // reports what they do, and takes all of them down together.
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -22,6 +23,10 @@ struct RunReport {
   GraphState state;              ///< at its end
   std::vector<LogLine> results;  ///< and errors, by module
   bool stopped = false;          ///< ended because it was asked to
+
+  [[nodiscard]] bool has_errors() const {
+    return std::ranges::find(results, Level::Error, &LogLine::level) != results.end();
+  }
 };
 
 struct RunOptions {

@@ -65,9 +65,9 @@ std::string answer(int socket) {
 }
 
 TEST(Service, serves_a_site_and_closes_it_at_the_end) {
-  Inbox inbox;
+  const auto loop = *internal::Loop::make();
   std::atomic<int> closed = 0;  // when the service ends, too
-  auto service = Service::open({}, inbox, [](std::string_view) {});
+  auto service = Service::open({}, *loop, [](std::string_view) {});
   ASSERT_TRUE(service) << service.error().text();
   (*service)->serve(std::make_unique<Hello>(closed));
   const auto port = (*service)->server().port();
@@ -105,42 +105,42 @@ TEST(Server, hosts_of_ipv4_are_told_apart_at_a_socket_of_ipv6) {
   thread.join();
 }
 
-TEST(Service, logs_by_the_inbox_alone) {
-  Inbox inbox;
+TEST(Service, logs_in_the_loop_alone) {
+  const auto loop = *internal::Loop::make();
   std::string logged;
   std::atomic<int> closed = 0;  // when the service ends, too
-  auto service = Service::open({}, inbox, [&](std::string_view line) { logged = line; });
+  auto service = Service::open({}, *loop, [&](std::string_view line) { logged = line; });
   ASSERT_TRUE(service) << service.error().text();
   (*service)->serve(std::make_unique<Hello>(closed));
   const auto failed = ask((*service)->server().port(), "/fail");
-  ASSERT_TRUE(is_readable(inbox.descriptor()));
+  ASSERT_TRUE(is_readable(loop->descriptor()));
   EXPECT_EQ(logged, "");
-  inbox.work_off();
+  ASSERT_TRUE(loop->turn(std::chrono::milliseconds(0)));
   EXPECT_EQ(logged, "server: it fails");
 }
 
 TEST(Service, a_call_that_throws_is_logged_and_made_again) {
-  Inbox inbox;
+  const auto loop = *internal::Loop::make();
   std::vector<std::string> logged;
   std::atomic<int> closed = 0, calls = 0;
   auto service =
-      Service::open({}, inbox, [&](std::string_view line) { logged.emplace_back(line); });
+      Service::open({}, *loop, [&](std::string_view line) { logged.emplace_back(line); });
   ASSERT_TRUE(service) << service.error().text();
   (*service)->server().every(std::chrono::milliseconds(1), [&] {
     if (++calls < 3) throw std::runtime_error("it fails");
   });
   (*service)->serve(std::make_unique<Hello>(closed));
   while (logged.size() < 2) {
-    ASSERT_TRUE(is_readable(inbox.descriptor()));
-    inbox.work_off();
+    ASSERT_TRUE(is_readable(loop->descriptor()));
+    ASSERT_TRUE(loop->turn(std::chrono::milliseconds(0)));
   }
   EXPECT_EQ(logged[1], "server: it fails");
   EXPECT_TRUE(answer(ask((*service)->server().port(), "/").get()).ends_with("\r\n\r\nhello"));
 }
 
 TEST(Service, ends_though_it_served_nothing) {
-  Inbox inbox;
-  EXPECT_TRUE(Service::open({}, inbox, [](std::string_view) {}));
+  const auto loop = *internal::Loop::make();
+  EXPECT_TRUE(Service::open({}, *loop, [](std::string_view) {}));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <hc/base/backoff.h>
 #include <hc/base/clock.h>
 #include <hc/base/result.h>
+#include <hc/contract/log_line.h>
 #include <hc/mtp/message.h>
 #include <sound/converter.h>
 #include <sound/playback.h>

@@ -65,7 +65,7 @@ void print_summary(const RunOptions& options, const hc::RunReport& report) {
   if (!lost.empty()) text += lost + (options.links ? "\n" : " (--links: at which links)\n");
   if (!options.record.empty())
     text +=
-        hc::format("  recorded{} into {}\n", report.has_errors ? " in part" : "", options.record);
+        hc::format("  recorded{} into {}\n", report.has_errors() ? " in part" : "", options.record);
   print(text);
 }
 
@@ -202,9 +202,7 @@ void run(RunOptions options) {
     if (module.status == hc::ModuleStatus::GivenUp)
       given_up += (given_up.empty() ? "" : ", ") + module.name;
   if (!given_up.empty()) fail(status, {hc::Code::Closed, "given up: " + given_up});
-  if (std::ranges::any_of(report->results,
-                          [](const auto& line) { return line.level == hc::Level::Error; }))
-    throw Failure(1);  // they are in the summary
+  if (report->has_errors()) throw Failure(1);  // they are in the summary
 }
 
 }  // namespace

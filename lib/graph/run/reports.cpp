@@ -65,7 +65,7 @@ bool Reports::take(const Message& message, MonotonicTime now) {
       const auto state = read_state(message);
       return state && take_state(*state);
     }
-    case Report::Refusal:
+    case Report::Log:
       return false;
     case Report::Counters:
       break;

@@ -318,8 +318,8 @@ TEST_F(RunningModule, AFocusLinkIsTakenAwayAlone) {
   ASSERT_TRUE(send_command(*control_, "unlink in focus=" + uri("one")));
   ASSERT_TRUE(send_command(*control_, "unlink in focus=" + uri("one")));
   next(*reports_, Report::Links);
-  EXPECT_EQ(rows_of(next(*reports_, Report::Refusal)),
-            std::vector{"command \"unlink in focus=" + uri("one") + "\": there is no such link"});
+  EXPECT_EQ(read_log(next(*reports_, Report::Log))->text,
+            "command \"unlink in focus=" + uri("one") + "\": there is no such link");
   ASSERT_TRUE(other->send(table<std::int32_t>({7})));
   EXPECT_EQ(next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 1), 7);
   ASSERT_TRUE(control_->close());
@@ -364,7 +364,7 @@ TEST_F(RunningModule, ALinkOfAGraphIsNamedByItsPort) {
   module.on(module.input("in", table<double>(), ""), [](const auto&) {});
   start_managed(module);
   ASSERT_TRUE(send_command(*control_, "link in in=" + nowhere));
-  const auto refusal = rows_of(next(*reports_, Report::Refusal)).at(0);
+  const auto refusal = read_log(next(*reports_, Report::Log))->text;
   EXPECT_TRUE(refusal.starts_with("command \"link in in=" + nowhere + "\": Closed: in: "))
       << refusal;
   ASSERT_TRUE(control_->close());

@@ -129,7 +129,7 @@ TEST_F(RunningModule, IsTracedFromACommandOn) {
   EXPECT_EQ(rows_of(next(*reports_, Report::Links)).size(), 1U);
   EXPECT_FALSE(*receive(*trace, message));
   ASSERT_TRUE(send_command(*control_, "unlink out trace=" + uri("trace")));
-  EXPECT_EQ(rows_of(next(*reports_, Report::Refusal))[0],
+  EXPECT_EQ(read_log(next(*reports_, Report::Log))->text,
             "command \"unlink out trace=" + uri("trace") + "\": there is no such link");
   ASSERT_TRUE(sink->close());
   EXPECT_EQ(join(), 0);
