@@ -14,20 +14,25 @@
 namespace hc {
 namespace {
 
-/// In a process of its own, since what is caught stays so; before this one catches anything.
-bool is_stopped_by(int signal, bool is_ignored) {
+/// Whether something holds in a process of its own: what catches signals does so from then on.
+template <typename Function>
+bool holds_in_child(Function function) {
   const pid_t child = ::fork();
-  if (child == 0) {
-    std::signal(signal, is_ignored ? SIG_IGN : SIG_DFL);
-    static_cast<void>(stop_descriptor());
-    std::raise(signal);
-    std::raise(signal);  // as `timeout` does
-    ::_exit(stop_requested() ? 1 : 0);
-  }
+  if (child == 0) ::_exit(function() ? 1 : 0);
   int status = 0;
   EXPECT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status));
   return WEXITSTATUS(status) == 1;
+}
+
+bool is_stopped_by(int signal, bool is_ignored) {
+  return holds_in_child([&] {
+    std::signal(signal, is_ignored ? SIG_IGN : SIG_DFL);
+    static_cast<void>(stop_descriptor());
+    std::raise(signal);
+    std::raise(signal);  // as `timeout` does
+    return stop_requested();
+  });
 }
 
 TEST(Program, AClosedTerminalStopsItUnlessThatIsIgnored) {
@@ -37,14 +42,15 @@ TEST(Program, AClosedTerminalStopsItUnlessThatIsIgnored) {
 }
 
 TEST(Program, ASignalIsNoticedByThoseWhoWaitAndThoseWhoAsk) {
-  EXPECT_FALSE(stop_requested());
-  int stop = stop_descriptor();
-  EXPECT_EQ(stop_descriptor(), stop);
-  pollfd waiting{stop, POLLIN, 0};
-  EXPECT_EQ(::poll(&waiting, 1, 0), 0);
-  std::raise(SIGTERM);
-  EXPECT_TRUE(stop_requested());
-  EXPECT_EQ(::poll(&waiting, 1, 0), 1);
+  EXPECT_TRUE(holds_in_child([] {
+    if (stop_requested()) return false;
+    const int stop = stop_descriptor();
+    if (stop_descriptor() != stop) return false;
+    pollfd waiting{stop, POLLIN, 0};
+    if (::poll(&waiting, 1, 0) != 0) return false;
+    std::raise(SIGTERM);
+    return stop_requested() && ::poll(&waiting, 1, 0) == 1;
+  }));
 }
 
 TEST(WriteAll, WaitsForASlowReader) {
