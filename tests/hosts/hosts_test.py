@@ -108,10 +108,24 @@ class Hosts(HostsTest):
         process = self.run_graph("")
         messages = self.observe(process)
         self.state(messages, lambda state: self.rate(state, "camera.left", "brightness.image"))
-        more = BRIGHTNESS.replace("brightness", "more") % 'program = "brightness"\nhost = "h1"\n'
-        self.write_graph(self.tables(host) + here + more)
-        state = self.state(messages, lambda state: self.rate(state, "camera.left", "more.image"))
-        self.assertEqual(self.link(state, "camera.left", "more.image")["transport"], "tls")
+        more = BRIGHTNESS.replace("brightness", "more") % 'program = "brightness"\n%s'
+
+        def runs_at(place):
+            def is_there(state):
+                link = self.link(state, "camera.left", "more.image")
+                return (
+                    self.rate(state, "camera.left", "more.image")
+                    and (link["transport"] == "tls") == bool(place)
+                    and self.module(state, "more")["host"] == place
+                )
+
+            return is_there
+
+        # It moves from one host to the other, and back.
+        for place in "h1", "", "h1":
+            self.write_graph(self.tables(host) + here + more % (place and 'host = "h1"\n'))
+            state = self.state(messages, runs_at(place))
+            self.assertEqual("more" in self.modules_of(host), bool(place))
         self.assertEqual(self.module(state, "camera")["restarts"], 0)
         self.stop(process)
         self.assert_empty(host)
