@@ -8,7 +8,7 @@ import time
 import unittest
 
 from bad_messages import CLOSES, bad_messages
-from head import IS_FULL, Safety  # which knows the way to the others
+from head import Safety  # which knows the way to the others
 from feeder import Feeder
 from streams import bid, message, rotation, stick
 
@@ -18,9 +18,7 @@ HOUR = 3600 * 10**9  # [ns]
 
 
 class BadMessages(Safety):
-    # Its own images are as large as bad ones, since memory is measured.
-    FEW = {"is_calibrated": False, "calibrate.salience": 0, "head_eyes.rate": 4}
-    begin = {} if IS_FULL else FEW
+    begin = {}  # its own images are as large as bad ones, since memory is measured
 
     def inputs(self):
         """All inputs that have links, and their types."""

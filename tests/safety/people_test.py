@@ -42,13 +42,16 @@ class People(Safety):
         self.hold()
 
     def note_turns(self, begun, *feeders):
-        """Of two sources that began after a time [ns], from when the head moves. Where one got no
-        processor for so long that it was silent, the other's turn is excused."""
+        """Of two sources that began after a time [ns], from when the head moves. Where one, or what
+        a command passes through, got no processor for so long that it was silent, a turn is excused.
+        """
         motion = self.head.motion
         moves = lambda: motion.moves(motion.since(begun))
         self.head.wait(moves, "the head moves")
-        motion.wait_until(time.time_ns() + int(SECONDS * 1e9))
+        with self.head.waits() as waits:
+            motion.wait_until(time.time_ns() + int(SECONDS * 1e9))
         silences = sum(pause > SILENCE for each in feeders for pause in each.pauses)
+        silences += int(waits.until(time.time_ns()) / SILENCE)
         where = "beside others who had the processor %d times" % silences
         self.note("turns", motion.turns(moves()[0]), where, silences)
         self.hold()
