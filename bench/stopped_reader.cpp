@@ -45,7 +45,7 @@ struct Plan {
 
 /// What a process has to say at its end.
 struct Report {
-  std::uint64_t sent = 0, received = 0, superseded = 0, lost = 0;
+  std::uint64_t sent = 0, received = 0, dropped_newer = 0, lost = 0;
   std::array<std::array<double, 4>, 2> latencies{};  // of each half, see summary() [µs]
   std::int64_t woken = 0;                            // of the first message after the longest gap
   double age_us = 0;                                 // of that message then
@@ -78,7 +78,7 @@ Report publish(const Plan& plan) {
   if (auto closed = (*sink)->close(); !closed) fail(closed.error().text());
   Report report;
   report.sent = (*sink)->traffic().messages;
-  report.lost = (*sink)->traffic().over_memory;
+  report.lost = (*sink)->traffic().dropped_memory;
   return report;
 }
 
@@ -126,7 +126,7 @@ Report read(const Plan& plan, const std::string& keep) {
   auto middle = latencies.begin() + static_cast<std::ptrdiff_t>(count);
   report.latencies = {summary({latencies.begin(), middle}), summary({middle, latencies.end()})};
   report.received = (*source)->traffic().messages;
-  report.superseded = (*source)->traffic().superseded;
+  report.dropped_newer = (*source)->traffic().dropped_newer;
   return report;
 }
 
@@ -213,11 +213,11 @@ int main(int argc, char** argv) {
       shared, resident_before, resident_most);
   std::printf("first message %.2f ms after waking, %.2f ms old\n",
               static_cast<double>(some.woken - resumed) / 1e6, some.age_us / 1000);
-  auto counted = some.received + some.superseded;
+  auto counted = some.received + some.dropped_newer;
   std::printf("the other has %llu; the one has %llu and lost %llu: %s\n",
               static_cast<unsigned long long>(all.received),
               static_cast<unsigned long long>(some.received),
-              static_cast<unsigned long long>(some.superseded),
+              static_cast<unsigned long long>(some.dropped_newer),
               counted == sent.sent && all.received == sent.sent && sent.lost == 0
                   ? "every message is counted"
                   : "SOME MESSAGES ARE NOT COUNTED");

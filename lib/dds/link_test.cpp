@@ -155,7 +155,7 @@ TEST(Dds, OfASharedSampleWhoKeepsTheLatestGetsTheLast) {
   Message message;
   ASSERT_TRUE(*receive(*source, message));
   EXPECT_EQ(message.header.seq, kCount - 1);
-  EXPECT_EQ(source->traffic().superseded, kCount - 1U);
+  EXPECT_EQ(source->traffic().dropped_newer, kCount - 1U);
   EXPECT_FALSE(*receive(*source, message));
   EXPECT_EQ(sink->traffic().messages, std::uint64_t{kCount});
 }
@@ -183,8 +183,8 @@ TEST(Dds, WhatIsDeliveredIsNotCountedAsCut) {
   receiver.join();
   std::uint64_t cut = 0;
   for (std::size_t i = 0; i < kSinks; ++i) {
-    EXPECT_LE(received.at(i), sent.at(i).messages - sent.at(i).cut) << i;
-    cut += sent.at(i).cut;
+    EXPECT_LE(received.at(i), sent.at(i).messages - sent.at(i).dropped_disconnect) << i;
+    cut += sent.at(i).dropped_disconnect;
   }
   EXPECT_EQ(received.at(0), 900U);  // it waited for its reader
   // Some of the others were abandoned while samples were on their way.
@@ -240,8 +240,9 @@ TEST(Dds, AReaderMayLeaveAndComeBack) {
     for (bool has_come = false; !has_come; has_come = *source->take(message) == Got::Message)
       ASSERT_TRUE(sink->send(numbered(sent++, 10)));
     source.reset();
-    const auto before = sink->traffic().cut;
-    while (sink->traffic().cut == before) ASSERT_TRUE(sink->send(numbered(sent++, 10)));
+    const auto before = sink->traffic().dropped_disconnect;
+    while (sink->traffic().dropped_disconnect == before)
+      ASSERT_TRUE(sink->send(numbered(sent++, 10)));
   }
   EXPECT_EQ(sink->traffic().messages, static_cast<std::uint64_t>(sent));
 }
@@ -257,8 +258,8 @@ TEST(Dds, WhoHasLeftIsGivenUpUntilAnotherComes) {
       for (bool has_come = false; !has_come; has_come = *source->take(message) == Got::Message)
         ASSERT_TRUE(sink->send(numbered(i, 10)));
       source.reset();
-      const auto before = sink->traffic().timed_out;
-      while (sink->traffic().timed_out < before + 3) ASSERT_TRUE(sink->send(numbered(i, 10)));
+      const auto before = sink->traffic().dropped_timeout;
+      while (sink->traffic().dropped_timeout < before + 3) ASSERT_TRUE(sink->send(numbered(i, 10)));
     }
   }
 }
@@ -315,9 +316,9 @@ TEST(Dds, ASlowReaderThatKeepsTheLatestHoldsUpNobody) {
   ASSERT_TRUE(*receive(*slow, message));
   EXPECT_EQ(message.header.seq, kCount - 1);
   EXPECT_FALSE(*receive(*slow, message));
-  EXPECT_EQ(slow->traffic().superseded, kCount - 1U);
+  EXPECT_EQ(slow->traffic().dropped_newer, kCount - 1U);
   while (*receive(*some, message)) continue;
-  EXPECT_EQ(some->traffic().messages + some->traffic().over_memory, std::uint64_t{kCount});
+  EXPECT_EQ(some->traffic().messages + some->traffic().dropped_memory, std::uint64_t{kCount});
   EXPECT_LE(some->traffic().messages, 105U);
 }
 
@@ -326,7 +327,7 @@ TEST(Dds, OfASlowReaderThatLosesNothingLittleWaits) {
   const auto source = source_of(uri);
   const auto sink = sink_of(uri + "&readers=1&keep=latest");
   int count = 0;
-  while (sink->traffic().superseded < 10) ASSERT_TRUE(sink->send(numbered(count++, 100'000)));
+  while (sink->traffic().dropped_newer < 10) ASSERT_TRUE(sink->send(numbered(count++, 100'000)));
   EXPECT_LT(count, 200);  // 2 MiB with the reader, 4 MB on the way
 }
 
@@ -341,7 +342,7 @@ TEST(Dds, ARateIsKeptByEitherEnd) {
   while (*receive(*source, message)) ++received;
   EXPECT_EQ(message.header.seq, 0);  // none
   EXPECT_EQ(received + source->traffic().lost(), 10U);
-  EXPECT_GE(source->traffic().kept_back, 1U);
+  EXPECT_GE(source->traffic().delayed, 1U);
 }
 
 TEST(Dds, WhatIsNoMessageIsDroppedAndDisturbsNobody) {
@@ -440,7 +441,7 @@ TEST(Dds, ItIsInterruptedWhileItWaitsForAReader) {
 TEST(Dds, WithNoReadersToWaitForItNeverWaits) {
   const auto sink = sink_of(fresh_topic() + "&readers=0");
   ASSERT_TRUE(sink->send(numbered(1, 1)));
-  EXPECT_EQ(sink->traffic().cut, 1U);
+  EXPECT_EQ(sink->traffic().dropped_disconnect, 1U);
   EXPECT_TRUE(sink->close());
 }
 

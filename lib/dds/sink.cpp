@@ -90,10 +90,10 @@ class DdsSink final : public Sink {
         return {};
       }
       if (!waits_ || (queue_.messages() < kCapacity && queue_.has_memory(size))) break;
-      const auto taken = traffic_.messages - traffic_.timed_out - queue_.messages();
+      const auto taken = traffic_.messages - traffic_.dropped_timeout - queue_.messages();
       if (patience_.is_over(taken) || !patience_.waits(taken, steady_clock::now())) {
         ++traffic_.messages;
-        ++traffic_.timed_out;
+        ++traffic_.dropped_timeout;
         return {};
       }
       if (auto waited = wait(lock, patience_.due()); !waited) {
@@ -163,7 +163,7 @@ class DdsSink final : public Sink {
   /// Sends no more. With the mutex.
   void give_up() {
     has_ended_ = true;
-    traffic_.cut += queue_.clear(traffic_);
+    traffic_.dropped_disconnect += queue_.clear(traffic_);
     event_.raise();
     changed_.notify_one();
   }
@@ -232,7 +232,7 @@ class DdsSink final : public Sink {
         pause = std::min(2 * pause, kLongest);
         lock.lock();
       } else {
-        if (readers_ == 0) ++traffic_.cut;
+        if (readers_ == 0) ++traffic_.dropped_disconnect;
         queue_.pop(now);
         pause = kShortest;
         event_.raise();

@@ -17,6 +17,7 @@
 #include <graph/process.h>
 #include <graph/programs.h>
 #include <hc/base/suggestion.h>
+#include <hc/os/aside.h>
 #include <hc/os/program.h>
 #include <hosts/conversation.h>
 #include <hosts/key_file.h>

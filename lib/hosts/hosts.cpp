@@ -7,6 +7,7 @@
 
 #include <hc/base/clock.h>
 #include <hc/base/format.h>
+#include <hc/os/aside.h>
 #include <hosts/answer.h>
 #include <hosts/connection.h>
 #include <hosts/key_file.h>

@@ -48,7 +48,7 @@ class FolderRecording : public Recording {
       auto closed = sink->close();
       if (!closed && status_)
         status_ = hc::Error{closed.error().code, path + ": " + closed.error().detail};
-      lost_ += sink->traffic().cut;
+      lost_ += sink->traffic().dropped_disconnect;
       sink.reset();
     }
     return status_;

@@ -136,11 +136,11 @@ class ShmCrash : public ::testing::TestWithParam<Point> {
     auto count = std::stoll(sent.substr(5));
     for (Child* reader : {&steady_, &latest_}) {
       std::string line = reader->line();
-      std::int64_t received = 0, superseded = 0, last = 0;
-      ASSERT_EQ(std::sscanf(line.c_str(), "end %ld %ld %ld", &received, &superseded, &last), 3)
+      std::int64_t received = 0, dropped_newer = 0, last = 0;
+      ASSERT_EQ(std::sscanf(line.c_str(), "end %ld %ld %ld", &received, &dropped_newer, &last), 3)
           << line;
-      EXPECT_EQ(received + superseded, count);
-      EXPECT_TRUE(superseded == 0 || reader == &latest_);
+      EXPECT_EQ(received + dropped_newer, count);
+      EXPECT_TRUE(dropped_newer == 0 || reader == &latest_);
       EXPECT_EQ(last, std::int64_t{id_} << 40 | (count - 1));
       reader->finish();
     }

@@ -89,11 +89,11 @@ bool send(hc::Sink& sink, const hc::Message& message, const std::string& uri) {
 
 std::string losses_in_words(const hc::Traffic& traffic) {
   std::string reasons;
-  for (auto [count, reason] : {std::pair(traffic.over_rate, "throttled"),
-                               {traffic.superseded, "dropped (newer arrived)"},
-                               {traffic.over_memory, "dropped (no memory left)"},
-                               {traffic.cut, "lost without a reader"},
-                               {traffic.timed_out, "dropped (the reader hung)"}})
+  for (auto [count, reason] : {std::pair(traffic.throttled, "throttled"),
+                               {traffic.dropped_newer, "dropped (newer arrived)"},
+                               {traffic.dropped_memory, "dropped (no memory left)"},
+                               {traffic.dropped_disconnect, "lost without a reader"},
+                               {traffic.dropped_timeout, "dropped (the reader hung)"}})
     if (count > 0) reasons += hc::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
   return reasons;
 }

@@ -44,8 +44,8 @@ hc::GraphState some_state(int modules) {
     link.rate = i == 1 ? 30 : 0;
     link.per_second = 30;
     link.bytes_per_second = 43.2e6;
-    link.traffic.superseded = static_cast<std::uint64_t>(i);
-    link.traffic.over_rate = static_cast<std::uint64_t>(2 * i);
+    link.traffic.dropped_newer = static_cast<std::uint64_t>(i);
+    link.traffic.throttled = static_cast<std::uint64_t>(2 * i);
     link.ignored = i == 0 ? 1234 : 0;
     link.age = {0.0021, 0.0102, 0.5};
     link.in_workspace = i == 1;

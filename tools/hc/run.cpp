@@ -58,8 +58,8 @@ void print_summary(const RunOptions& options, const hc::RunReport& report) {
       bytes_in_words(static_cast<double>(sum.bytes)));
   for (const auto& line : report.results) text += "  " + line.line() + "\n";
   std::string lost;
-  for (auto [count, word] : {std::pair(sum.over_rate, "throttled"),
-                             {sum.lost() - sum.over_rate, "dropped"},
+  for (auto [count, word] : {std::pair(sum.throttled, "throttled"),
+                             {sum.lost() - sum.throttled, "dropped"},
                              {ignored, "ignored out of focus"}})
     if (count > 0) lost += hc::format("{}{} {}", lost.empty() ? "  " : ", ", count, word);
   if (!lost.empty()) text += lost + (options.links ? "\n" : " (--links: at which links)\n");

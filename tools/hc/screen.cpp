@@ -175,9 +175,9 @@ void add_links(const hc::GraphState& state, std::size_t width, std::vector<Line>
       {"B/s", 7, [](const auto& l) { return short_number(l.bytes_per_second) + "B"; }},
       {"AGE", 7, [](const auto& l) { return l.age ? short_time(l.age->at(0)) : "-"; }},
       {"p99", 7, [](const auto& l) { return l.age ? short_time(l.age->at(1)) : "-"; }},
-      {"THROTTLED", 10, [](const auto& l) { return short_count(l.traffic.over_rate); }},
+      {"THROTTLED", 10, [](const auto& l) { return short_count(l.traffic.throttled); }},
       {"DROPPED", 8,
-       [](const auto& l) { return short_count(l.traffic.lost() - l.traffic.over_rate); }},
+       [](const auto& l) { return short_count(l.traffic.lost() - l.traffic.throttled); }},
       {"IGNORED", 8, [](const auto& l) { return short_count(l.ignored); }},
   };
   constexpr std::size_t kWide = 100;

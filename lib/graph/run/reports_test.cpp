@@ -163,7 +163,7 @@ TEST_F(ReportsTest, LinksThatThePlanDoesNotKnowAreForgotten) {
 TEST_F(ReportsTest, AllColumnsAreTaken) {
   count({{1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12, 20, 21, 22}});
   const auto* report = reports_.find(in_);
-  EXPECT_EQ(report->traffic.cut, 7U);
+  EXPECT_EQ(report->traffic.dropped_disconnect, 7U);
   EXPECT_EQ(report->ignored, 8U);
   EXPECT_EQ(report->age, (std::array<std::int64_t, 3>{10, 11, 12}));
   EXPECT_EQ(report->gap, (std::array<std::int64_t, 3>{20, 21, 22}));

@@ -16,6 +16,7 @@
 #include <graph/run.h>
 #include <graph/run/graph_server.h>
 #include <graph/run/supervised.h>
+#include <hc/os/aside.h>
 #include <hc/os/file_watch.h>
 #include <hc/os/loop.h>
 

@@ -104,12 +104,12 @@ void visit_link(Link& link, Visit visit) {
   visit("bytes", link.traffic.bytes);
   visit("per_second", link.per_second);
   visit("bytes_per_second", link.bytes_per_second);
-  visit("delayed", link.traffic.kept_back);
-  visit("throttled", link.traffic.over_rate);
-  visit("dropped_newer", link.traffic.superseded);
-  visit("dropped_memory", link.traffic.over_memory);
-  visit("dropped_disconnect", link.traffic.cut);
-  visit("dropped_timeout", link.traffic.timed_out);
+  visit("delayed", link.traffic.delayed);
+  visit("throttled", link.traffic.throttled);
+  visit("dropped_newer", link.traffic.dropped_newer);
+  visit("dropped_memory", link.traffic.dropped_memory);
+  visit("dropped_disconnect", link.traffic.dropped_disconnect);
+  visit("dropped_timeout", link.traffic.dropped_timeout);
   visit("ignored", link.ignored);
   visit("bad", link.traffic.bad);
   visit("age", link.age);
@@ -197,7 +197,8 @@ Result<GraphState> parse_graph_state(std::string_view text) {
       visit_host(state.hosts.emplace_back(), FieldReader{host});
     for (const auto& module : json.at("modules"))
       visit_module(state.modules.emplace_back(), FieldReader{module});
-    for (const auto& link : json.at("links")) visit_link(state.links.emplace_back(), FieldReader{link});
+    for (const auto& link : json.at("links"))
+      visit_link(state.links.emplace_back(), FieldReader{link});
     return state;
   } catch (const Json::exception& error) {
     return Error{Code::Malformed, std::string("the state of a graph: ") + error.what()};

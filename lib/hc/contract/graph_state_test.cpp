@@ -42,8 +42,8 @@ GraphState some_state() {
   link.keep = "latest";
   link.rate = 5;
   link.traffic.messages = 7;
-  link.traffic.superseded = 3;
-  link.traffic.over_rate = 4;
+  link.traffic.dropped_newer = 3;
+  link.traffic.throttled = 4;
   link.age = {0.5, 1, 2};
   state.links = {link};
   return state;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/contract/log_line.h>
 
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include <hc/mtp/rows.h>

@@ -17,7 +17,7 @@ TEST(Report, CountersComeBackAsTheyWere) {
             (std::vector<std::int64_t>{1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12, 20, 21, 22}));
   const auto rows = read_counters(message);
   ASSERT_EQ(rows.size(), 2U);
-  EXPECT_EQ(rows[0].traffic.cut, 7U);
+  EXPECT_EQ(rows[0].traffic.dropped_disconnect, 7U);
   EXPECT_EQ(rows[0].ignored, 8U);
   EXPECT_EQ(rows[0].age, link.age);
   EXPECT_EQ(rows[0].gap, link.gap);

@@ -45,7 +45,7 @@ Audience::Fate Audience::decide(std::size_t present) {
 
 void Audience::count_lost(Traffic& traffic) const {
   ++traffic.messages;
-  ++(absence_.is_over() ? traffic.timed_out : traffic.cut);
+  ++(absence_.is_over() ? traffic.dropped_timeout : traffic.dropped_disconnect);
 }
 
 Status Audience::await(int descriptor, LinkOptions& options,

@@ -3,7 +3,8 @@
 // - `append=1`: continues behind the last whole message of the file. Without, a file that has
 //   contents stays as it is, and another begins beside it: x_2.mtp.
 // - `optional=1`: that the file cannot be written is logged once as an error, and what is sent is
-//   lost (Traffic::cut): a recording ends on a full disk, and not the work of its writer.
+//   lost (Traffic::dropped_disconnect): a recording ends on a full disk, and not the work of its
+//   writer.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -99,7 +100,7 @@ class OptionalFile final : public Sink {
   [[nodiscard]] Traffic traffic() const override {
     Traffic traffic = sink_ ? sink_->traffic() : Traffic();
     traffic.messages += lost_;
-    traffic.cut += lost_;
+    traffic.dropped_disconnect += lost_;
     return traffic;
   }
 

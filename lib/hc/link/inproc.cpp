@@ -127,7 +127,7 @@ class InprocSink final : public Sink {
         }
         if (!has_patience()) {
           ++messages_;
-          ++channel_->losses.timed_out;
+          ++channel_->losses.dropped_timeout;
           break;
         }
         channel_->writable.clear();

@@ -52,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(Schemes, LastingLink, ::testing::Values("tcp", "unix", 
 TEST_P(LastingLink, WhoDropsGoesOnWithoutReadersAndCounts) {
   begin("&stay=1&keep=latest");
   source_.reset();
-  while (sink_->traffic().cut == 0) ASSERT_TRUE(sink_->send(numbered(1, 10)));
+  while (sink_->traffic().dropped_disconnect == 0) ASSERT_TRUE(sink_->send(numbered(1, 10)));
   source_ = source_of(ends_.source);
   std::atomic<bool> heard = false;
   std::thread sender([&] {
@@ -82,8 +82,8 @@ TEST_P(QueuedLink, WhatWaitsWhenItIsAbandonedIsLost) {
   sink->abandon();
   const auto traffic = sink->traffic();
   EXPECT_EQ(traffic.messages, 4U);
-  EXPECT_EQ(traffic.cut, 2U);
-  EXPECT_EQ(traffic.over_rate, 1U);
+  EXPECT_EQ(traffic.dropped_disconnect, 2U);
+  EXPECT_EQ(traffic.throttled, 1U);
   EXPECT_EQ(traffic.bytes, bytes_of_one) << "what was never sent has no bytes";
   sink.reset();
   EXPECT_FALSE(*receive(*source, message));
@@ -102,7 +102,7 @@ TEST_P(LastingLink, WhoLosesNothingWaitsForTheNextReader) {
   heard = true;
   while (!done) ASSERT_TRUE(source_->take(message_));
   sender.join();
-  EXPECT_LE(sink_->traffic().cut, 1U);  // the one in flight to the reader that left
+  EXPECT_LE(sink_->traffic().dropped_disconnect, 1U);  // the one in flight to the reader that left
 }
 
 TEST_P(LastingLink, WhoHasLeftIsGivenUpUntilAnotherComes) {
@@ -116,7 +116,7 @@ TEST_P(LastingLink, WhoHasLeftIsGivenUpUntilAnotherComes) {
     ASSERT_TRUE(*receive(*source, message));
     first.join();
     source.reset();
-    while (sink->traffic().timed_out < 3) ASSERT_TRUE(sink->send(numbered(1, 10)));
+    while (sink->traffic().dropped_timeout < 3) ASSERT_TRUE(sink->send(numbered(1, 10)));
     source = source_of(ends.source);
     std::atomic<bool> heard = false, done = false;
     std::thread sender([&] {

@@ -115,7 +115,8 @@ class Sink {
   virtual Status close() = 0;
 
   /// Ends the link and waits for nobody: what is still on its way to a reader is lost, and counted
-  /// (Traffic::cut), unless the reader has the memory where it is. Nothing is sent any more.
+  /// (Traffic::dropped_disconnect), unless the reader has the memory where it is. Nothing is sent
+  /// any more.
   virtual void abandon() {}
 
   /// What send() has taken so far; a message to several readers counts once.

@@ -24,9 +24,9 @@ class PacedSource final : public Source {
     }
     const bool was_held = static_cast<bool>(timer_);
     if (auto watched = watch(); !watched) return watched.error();
-    const auto overtaken = source_->traffic().superseded;
+    const auto overtaken = source_->traffic().dropped_newer;
     auto got = source_->take(message);
-    if (was_held) overtaken_ += source_->traffic().superseded - overtaken;
+    if (was_held) overtaken_ += source_->traffic().dropped_newer - overtaken;
     if (!got || *got != Got::Message) return got;
     pace_.take(now);
     if (was_held) ++kept_back_;
@@ -39,9 +39,9 @@ class PacedSource final : public Source {
 
   [[nodiscard]] Traffic traffic() const override {
     Traffic traffic = source_->traffic();
-    traffic.superseded -= overtaken_;
-    traffic.over_rate += overtaken_;
-    traffic.kept_back += kept_back_;
+    traffic.dropped_newer -= overtaken_;
+    traffic.throttled += overtaken_;
+    traffic.delayed += kept_back_;
     return traffic;
   }
 

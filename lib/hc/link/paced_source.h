@@ -11,7 +11,7 @@
 namespace hc::internal {
 
 /// A source that gives what `source` gives, at the rate of `policy`. What is overtaken meanwhile is
-/// counted as Traffic::over_rate, what is delayed as Traffic::kept_back.
+/// counted as Traffic::throttled, what is delayed as Traffic::delayed.
 ///
 /// @returns  `source` itself where there is no rate. Errors: System.
 Result<std::unique_ptr<Source>> make_paced(std::unique_ptr<Source> source, const Policy& policy);

@@ -165,7 +165,7 @@ TEST(SendQueue, KeepsAllThatAreToBeKept) {
   Traffic traffic;
   SendQueue<int> queue(*policy_of(""));
   EXPECT_EQ(left_of(queue, 1000, 10, traffic).size(), 1000U);
-  EXPECT_EQ(traffic.superseded, 0U);
+  EXPECT_EQ(traffic.dropped_newer, 0U);
   EXPECT_EQ(queue.bytes(), 0U);
 }
 
@@ -173,16 +173,18 @@ TEST(SendQueue, DropsTheOldestAndCountsThem) {
   Traffic traffic;
   SendQueue<int> queue(*policy_of("?keep=3"));
   EXPECT_EQ(left_of(queue, 10, 10, traffic), (std::vector<int>{7, 8, 9}));
-  EXPECT_EQ(traffic.superseded, 7U);
-  EXPECT_EQ(traffic.kept_back + traffic.over_rate + traffic.over_memory + traffic.cut, 0U);
+  EXPECT_EQ(traffic.dropped_newer, 7U);
+  EXPECT_EQ(
+      traffic.delayed + traffic.throttled + traffic.dropped_memory + traffic.dropped_disconnect,
+      0U);
 }
 
 TEST(SendQueue, IsBoundedInMemoryToo) {
   Traffic traffic;
   SendQueue<int> queue(*policy_of("?keep=100&memory=1K"));
   EXPECT_EQ(left_of(queue, 10, 300, traffic), (std::vector<int>{7, 8, 9}));
-  EXPECT_EQ(traffic.over_memory, 7U);
-  EXPECT_EQ(traffic.superseded, 0U);
+  EXPECT_EQ(traffic.dropped_memory, 7U);
+  EXPECT_EQ(traffic.dropped_newer, 0U);
 }
 
 TEST(SendQueue, DropsNothingForMemoryWhereAllAreKept) {
@@ -193,14 +195,14 @@ TEST(SendQueue, DropsNothingForMemoryWhereAllAreKept) {
   EXPECT_FALSE(queue.has_memory(1));
   queue.push(1, 5000, traffic);
   EXPECT_EQ(queue.messages(), 2U);
-  EXPECT_EQ(traffic.over_memory, 0U);
+  EXPECT_EQ(traffic.dropped_memory, 0U);
 }
 
 TEST(SendQueue, TheNewestStaysHoweverLarge) {
   Traffic traffic;
   SendQueue<int> queue(*policy_of("?keep=100&memory=1K"));
   EXPECT_EQ(left_of(queue, 3, 5000, traffic), std::vector<int>{2});
-  EXPECT_EQ(traffic.over_memory, 2U);
+  EXPECT_EQ(traffic.dropped_memory, 2U);
 }
 
 TEST(SendQueue, WhatThePaceKeepsBackIsCountedOnce) {
@@ -214,14 +216,14 @@ TEST(SendQueue, WhatThePaceKeepsBackIsCountedOnce) {
     EXPECT_EQ(queue.ready_at(kBegin, traffic), kBegin + milliseconds(100));
     EXPECT_EQ(queue.ready_at(kBegin, traffic), kBegin + milliseconds(100));
   }
-  EXPECT_EQ(traffic.kept_back, 5U);
-  EXPECT_EQ(traffic.over_rate, 3U);
-  EXPECT_EQ(traffic.superseded, 0U);
+  EXPECT_EQ(traffic.delayed, 5U);
+  EXPECT_EQ(traffic.throttled, 3U);
+  EXPECT_EQ(traffic.dropped_newer, 0U);
   auto now = kBegin + milliseconds(100);
   EXPECT_EQ(queue.ready_at(now, traffic), now);
   EXPECT_EQ(queue.pop(now), 3);
   EXPECT_EQ(queue.ready_at(now, traffic), now + milliseconds(100));
-  EXPECT_EQ(traffic.kept_back, 5U);
+  EXPECT_EQ(traffic.delayed, 5U);
 }
 
 TEST(SendQueue, OneThatNobodyHoldsBackIsSuperseded) {
@@ -230,8 +232,8 @@ TEST(SendQueue, OneThatNobodyHoldsBackIsSuperseded) {
   queue.push(0, 1, traffic);  // it could go, were there room
   EXPECT_EQ(queue.ready_at(kBegin, traffic), kBegin);
   queue.push(1, 1, traffic);
-  EXPECT_EQ(traffic.superseded, 1U);
-  EXPECT_EQ(traffic.kept_back + traffic.over_rate, 0U);
+  EXPECT_EQ(traffic.dropped_newer, 1U);
+  EXPECT_EQ(traffic.delayed + traffic.throttled, 0U);
   EXPECT_EQ(queue.ready_at(kBegin, traffic), kBegin);
 }
 

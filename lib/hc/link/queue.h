@@ -43,9 +43,9 @@ class SendQueue {
     ++messages_;
     if (held) hold(items_.back(), traffic);
     if (keep_ == Policy::kAll) return;
-    while (items_.size() > 1 && bytes_ > memory_) drop(traffic, traffic.over_memory);
+    while (items_.size() > 1 && bytes_ > memory_) drop(traffic, traffic.dropped_memory);
     while (items_.size() > keep_)
-      drop(traffic, items_.front().held ? traffic.over_rate : traffic.superseded);
+      drop(traffic, items_.front().held ? traffic.throttled : traffic.dropped_newer);
   }
 
   /// Says that another message has been made part of the last one, where none is dropped or paced.
@@ -102,7 +102,7 @@ class SendQueue {
   };
 
   static void hold(Entry& entry, Traffic& traffic) {
-    if (!std::exchange(entry.held, true)) ++traffic.kept_back;
+    if (!std::exchange(entry.held, true)) ++traffic.delayed;
   }
 
   /// What is dropped was counted when it was put in, but never sent: its bytes are taken off.

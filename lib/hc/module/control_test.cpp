@@ -107,7 +107,7 @@ TEST_F(RunningModule, InAGraphAReaderThatTakesNothingIsGivenUp) {
   start_managed(module, {"--out=" + uri("out")});
   while (next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 3) != 1) {
   }
-  while (read_counters(next(*reports_, Report::Counters)).at(0).traffic.timed_out == 0) {
+  while (read_counters(next(*reports_, Report::Counters)).at(0).traffic.dropped_timeout == 0) {
   }
   is_enough = true;
   EXPECT_EQ(join(), 0);

@@ -207,9 +207,9 @@ Status Module::Loop::unlink_output(internal::OutputState& output, const std::str
   if (found == links.end()) return unknown_link();
   // Closing would wait for who is slow; nobody is to have these messages any more.
   if (auto* sink = (*found)->sink.get()) {
-    const auto before = sink->traffic().cut;
+    const auto before = sink->traffic().dropped_disconnect;
     sink->abandon();
-    if (const auto lost = sink->traffic().cut - before; lost > 0)
+    if (const auto lost = sink->traffic().dropped_disconnect - before; lost > 0)
       module_.log(output.name + ": " + std::to_string(lost) + " waiting, lost with the link");
   }
   report_counters();  // the last of this link
@@ -271,8 +271,8 @@ void Module::Loop::report_counters() {
     counters.gap = take_durations(link.gaps);
     const auto& input = *link.inputs.front();
     if (input.together != nullptr && input.together->is_latest)
-      counters.traffic.superseded +=
-          input.together->superseded + input.together->matcher.dropped(input.place).total();
+      counters.traffic.dropped_newer +=
+          input.together->dropped_newer + input.together->matcher.dropped(input.place).total();
   }
   for (const auto& link : sinks_) {
     auto& counters = links.emplace_back();

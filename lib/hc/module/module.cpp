@@ -91,7 +91,7 @@ void Module::add_together(const std::vector<std::shared_ptr<internal::InputState
   const auto index = together_.size();
   auto take = [this, index](std::span<const Message> set) {
     internal::TogetherState& state = *together_[index];
-    if (!state.set.empty()) ++state.superseded;
+    if (!state.set.empty()) ++state.dropped_newer;
     state.set.assign(set.begin(), set.end());
     if (!state.is_latest) handle(state);
   };
@@ -133,7 +133,7 @@ void Module::handle(internal::TogetherState& together) {
 
 void Module::log_unmatched(const internal::TogetherState& together) {
   // Where sets are dropped for newer ones, that is no news.
-  if (together.is_latest && together.superseded > 0) return;
+  if (together.is_latest && together.dropped_newer > 0) return;
   for (const auto& input : together.inputs)
     if (!input->is_unmatched && together.matcher.dropped(input->place).total() > 0) {
       input->is_unmatched = true;

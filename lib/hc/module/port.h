@@ -83,8 +83,8 @@ struct TogetherState {
   Matcher matcher;
   /// Only the newest complete set is handled: a link of theirs has keep=latest.
   bool is_latest = false;
-  std::vector<Message> set;      ///< complete, to be handled; empty: none
-  std::uint64_t superseded = 0;  ///< complete sets that were dropped for a newer one
+  std::vector<Message> set;         ///< complete, to be handled; empty: none
+  std::uint64_t dropped_newer = 0;  ///< complete sets that were dropped for a newer one
 };
 
 struct OutputState {

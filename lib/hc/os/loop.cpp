@@ -7,8 +7,6 @@
 #include <array>
 #include <span>
 
-#include <hc/os/thread.h>
-
 namespace hc::internal {
 
 constexpr std::uint64_t kTimerId = 0;  // entries have others
@@ -149,40 +147,6 @@ Status Loop::turn(std::chrono::milliseconds timeout) {
     call_due();
   }
   return {};
-}
-
-Result<Aside> Aside::begin(Loop& loop, std::function<void(int stop)> work,
-                           std::function<void()> done) {
-  auto stop = Event::make();
-  if (!stop) return stop.error();
-  Aside aside;
-  aside.state_ = std::make_shared<State>(State{std::move(*stop), false, std::move(done), {}});
-  // The thread ends before the state does, which it must not own.
-  auto thread = start_thread([&loop, work = std::move(work), stop = aside.state_->stop.descriptor(),
-                              begun = std::weak_ptr(aside.state_)] {
-    work(stop);
-    loop.post([begun] {
-      const auto state = begun.lock();
-      if (!state || !state->thread.joinable()) return;
-      state->thread.join();
-      std::exchange(state->done, {})();
-    });
-  });
-  if (!thread) return thread.error();
-  aside.state_->thread = std::move(*thread);
-  return aside;
-}
-
-Aside::~Aside() {
-  if (!is_busy()) return;
-  stop();
-  state_->thread.join();
-}
-
-void Aside::stop() {
-  if (!is_busy()) return;
-  state_->is_stopped = true;
-  state_->stop.raise();
 }
 
 }  // namespace hc::internal

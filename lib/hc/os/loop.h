@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The event loop: waits for descriptors and times, and calls back; and the two ways to another
-// thread: Loop::post() to the loop's, run_aside() to one for work that takes its time. Internal.
-// The rest is used from one thread; reactor.h runs a loop on a thread of its own. The cost of an
-// event does not grow with what else is watched.
+// The event loop: waits for descriptors and times, and calls back. Loop::post() is the way to its
+// thread from any other, run_aside() (aside.h) from it to one for work that takes its time.
+// Internal. The rest is used from one thread; reactor.h runs a loop on a thread of its own. The
+// cost of an event does not grow with what else is watched.
 
 #include <sys/epoll.h>
 
@@ -13,15 +13,11 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <set>
-#include <thread>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <hc/os/descriptor.h>
-#include <hc/os/event.h>
 
 namespace hc::internal {
 
@@ -127,56 +123,5 @@ class Loop {
   std::mutex mutex_;                           // of what follows, and of setting timer_
   std::vector<std::function<void()>> posted_;  // while there are any, timer_ is due
 };
-
-/// Work on a thread, as run_aside() begins it. To be destroyed in the loop's thread, or after the
-/// loop's last turn.
-class Aside {
- public:
-  Aside() = default;  ///< none
-  Aside(Aside&&) = default;
-  Aside& operator=(Aside&& other) noexcept {
-    std::swap(state_, other.state_);
-    return *this;
-  }
-  /// Asks the work to stop, and waits for it. Its result is dropped.
-  ~Aside();
-
-  /// Whether the work's result has not been handed over yet.
-  [[nodiscard]] bool is_busy() const { return state_ && state_->thread.joinable(); }
-  /// Asks the work in progress, if any, to stop; its result is handed over all the same.
-  void stop();
-  [[nodiscard]] bool is_stopped() const { return state_ && state_->is_stopped; }
-
- private:
-  template <typename Work, typename Done>
-  friend Result<Aside> run_aside(Loop& loop, Work work, Done done);
-
-  struct State {
-    Event stop;
-    bool is_stopped = false;
-    std::function<void()> done;
-    std::thread thread;
-  };
-
-  static Result<Aside> begin(Loop& loop, std::function<void(int stop)> work,
-                             std::function<void()> done);
-
-  std::shared_ptr<State> state_;
-};
-
-/// Calls `work(stop)` on a thread of its own, with all signals blocked, and then `done(result)` in
-/// a turn of the loop. `work` returns a value, as soon as it can once the descriptor `stop` is
-/// readable.
-///
-///     aside_ = run_aside(loop, [](int stop) { return load(stop); }, [this](Loaded it) { … });
-///
-/// Errors: System (no descriptor or thread to be had).
-template <typename Work, typename Done>
-[[nodiscard]] Result<Aside> run_aside(Loop& loop, Work work, Done done) {
-  auto result = std::make_shared<std::optional<std::invoke_result_t<Work&, int>>>();
-  return Aside::begin(
-      loop, [result, work = std::move(work)](int stop) mutable { result->emplace(work(stop)); },
-      [result, done = std::move(done)]() mutable { done(std::move(**result)); });
-}
 
 }  // namespace hc::internal

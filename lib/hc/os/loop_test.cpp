@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <hc/os/aside.h>
 #include <hc/os/loop.h>
 
 #include <gtest/gtest.h>

@@ -83,8 +83,8 @@ TEST_P(LinkConformance, AReaderThatTakesNothingIsGivenUpUntilItDoes) {
   while (!is_heard_again) ASSERT_TRUE(sink_->send(numbered(count++, 100'000)));
   ASSERT_TRUE(sink_->send(numbered(count, 1)));
   reader.join();
-  EXPECT_GT(losses().timed_out, 0U);
-  EXPECT_EQ(losses().timed_out, losses().lost());
+  EXPECT_GT(losses().dropped_timeout, 0U);
+  EXPECT_EQ(losses().dropped_timeout, losses().lost());
 }
 
 TEST_P(LinkConformance, AMessageMayBeHeldForAsLongAsOneLikes) {
@@ -134,8 +134,8 @@ TEST_P(LinkConformance, WithKeepLatestTheWriterNeverWaits) {
   open("keep=latest");
   auto count = send_too_many(100'000);  // nobody reads, and this ends all the same
   take_to(count - 1);
-  EXPECT_GE(losses().superseded, 10U);
-  EXPECT_EQ(losses().superseded, losses().lost());
+  EXPECT_GE(losses().dropped_newer, 10U);
+  EXPECT_EQ(losses().dropped_newer, losses().lost());
 }
 
 TEST_P(LinkConformance, WithKeepLatestSmallOnesAreWholeToo) {
@@ -160,16 +160,16 @@ TEST_P(LinkConformance, MemoryIsBounded) {
   open("keep=1000&memory=2M");
   auto count = send_too_many(100'000);
   take_to(count - 1);
-  EXPECT_GE(losses().over_memory, 10U);
-  EXPECT_EQ(losses().superseded, 0U);
+  EXPECT_GE(losses().dropped_memory, 10U);
+  EXPECT_EQ(losses().dropped_newer, 0U);
 }
 
 TEST_P(LinkConformance, ARateKeepsMessagesBack) {
   open("keep=2", "rate=20&burst=3");
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(sink_->send(numbered(i, 10)));
   take_to(9);
-  EXPECT_GE(losses().kept_back, losses().over_rate);
-  EXPECT_EQ(losses().over_memory + losses().cut, 0U);
+  EXPECT_GE(losses().delayed, losses().throttled);
+  EXPECT_EQ(losses().dropped_memory + losses().dropped_disconnect, 0U);
 }
 
 TEST_P(LinkConformance, AWriterThatLosesNothingWaitsForItsTurn) {

@@ -122,13 +122,13 @@ TEST_P(SocketLink, AMessageThatWasBegunIsSentAnewToTheNextReader) {
   ASSERT_TRUE(*receive(*source, message));
   EXPECT_EQ(message.characters(), numbered(0, 10'000'000).characters());
   sender.join();
-  EXPECT_EQ(sink->traffic().cut, 0U);
+  EXPECT_EQ(sink->traffic().dropped_disconnect, 0U);
 }
 
 TEST_P(SocketLink, ASinkThatKeepsTheLatestWaitsForNobody) {
   auto sink = sink_of(with(dial(), "reconnect=60&keep=latest"));
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(sink->send(numbered(i, 10)));
-  EXPECT_EQ(sink->traffic().superseded, 9U);
+  EXPECT_EQ(sink->traffic().dropped_newer, 9U);
   auto source = source_of(listen());
   Message message;
   ASSERT_TRUE(*receive(*source, message));  // nothing more needs to be sent

@@ -225,14 +225,14 @@ TEST_P(SocketLink, AReaderThatLeftIsForgotten) {
 TEST_P(SocketLink, WithNoReadersToWaitForItNeverWaits) {
   auto sink = sink_of(with(listen(), "readers=0"));
   ASSERT_TRUE(sink->send(numbered(1, 1)));
-  EXPECT_EQ(sink->traffic().cut, 1U);
+  EXPECT_EQ(sink->traffic().dropped_disconnect, 1U);
   auto source = source_of(dial());
   ASSERT_TRUE(sink->send(numbered(2, 1)));
   Message message;
   ASSERT_TRUE(*receive(*source, message));
   EXPECT_EQ(message.header.seq, 2);
   source.reset();
-  while (sink->traffic().cut < 3) ASSERT_TRUE(sink->send(numbered(3, 1)));
+  while (sink->traffic().dropped_disconnect < 3) ASSERT_TRUE(sink->send(numbered(3, 1)));
   EXPECT_TRUE(sink->close());
 }
 

@@ -42,7 +42,7 @@ TEST(ShmMeeting, NobodyIsWaitedForWhereReadersIsNone) {
   auto name = fresh_name();
   auto sink = sink_of(name + "?readers=0");
   for (int i = 0; i < 3000; ++i) ASSERT_TRUE(sink->send(numbered(i, i % 2 ? kSmall : kLarge)));
-  EXPECT_EQ(sink->traffic().cut, 3000U);
+  EXPECT_EQ(sink->traffic().dropped_disconnect, 3000U);
   auto source = source_of(name);
   ASSERT_TRUE(sink->send(numbered(3000, kLarge)));
   Message message;

@@ -142,7 +142,7 @@ TEST_F(NoPages, WhatTheHostHasNoPagesForIsNotWritten) {
   Status sent;
   if (!send("?keep=latest", 10, sent)) GTEST_SKIP() << "no seccomp here";
   EXPECT_TRUE(sent);
-  EXPECT_EQ(sink_->traffic().over_memory, 10U);
+  EXPECT_EQ(sink_->traffic().dropped_memory, 10U);
   EXPECT_EQ(sink_->traffic().messages, 10U);
 }
 

@@ -45,7 +45,7 @@ TEST(ShmRoom, WhoKeepsTheLatestGetsItAndLosesTheOthers) {
     ASSERT_TRUE(sink->send(numbered(kCount, size)));
     ASSERT_TRUE(*receive(*source, message));
     EXPECT_EQ(message.characters(), numbered(kCount, size).characters());
-    EXPECT_EQ(source->traffic().superseded, static_cast<std::uint64_t>(kCount) - 1);
+    EXPECT_EQ(source->traffic().dropped_newer, static_cast<std::uint64_t>(kCount) - 1);
     EXPECT_EQ(source->traffic().messages, 2U);
   }
 }
@@ -61,9 +61,9 @@ TEST(ShmRoom, WhoKeepsMoreThanFitsLosesTheOldest) {
   ASSERT_FALSE(seen.empty());
   EXPECT_EQ(seen.back(), 99);
   for (std::size_t i = 1; i < seen.size(); ++i) EXPECT_EQ(seen[i], seen[i - 1] + 1);
-  EXPECT_EQ(source->traffic().superseded, 70U);
-  EXPECT_EQ(seen.size() + source->traffic().over_memory, 30U);
-  EXPECT_GT(source->traffic().over_memory, 0U);  // fewer fit
+  EXPECT_EQ(source->traffic().dropped_newer, 70U);
+  EXPECT_EQ(seen.size() + source->traffic().dropped_memory, 30U);
+  EXPECT_GT(source->traffic().dropped_memory, 0U);  // fewer fit
 }
 
 TEST(ShmRoom, ASlowReaderDoesNotHoldUpAnother) {
@@ -78,7 +78,7 @@ TEST(ShmRoom, ASlowReaderDoesNotHoldUpAnother) {
     ASSERT_EQ(message.header.seq, i);
   }
   EXPECT_EQ(drain(*slow, message), 1);
-  EXPECT_EQ(slow->traffic().superseded, 2999U);
+  EXPECT_EQ(slow->traffic().dropped_newer, 2999U);
 }
 
 TEST(ShmRoom, AReaderThatHoldsTooManyGetsCopiesWhichIsLogged) {
@@ -113,7 +113,7 @@ TEST(ShmRoom, AReaderThatHoldsAllDoesNotStallAPublisherThatDrops) {
   }
   EXPECT_LT(count, 100);
   EXPECT_EQ(sink->traffic().messages, 100U);
-  EXPECT_EQ(sink->traffic().over_memory + static_cast<std::uint64_t>(count), 100U);
+  EXPECT_EQ(sink->traffic().dropped_memory + static_cast<std::uint64_t>(count), 100U);
 }
 
 TEST(ShmRoom, APublisherWaitsForRoomUntilItIsLetGo) {

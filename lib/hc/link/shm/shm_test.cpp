@@ -40,9 +40,9 @@ TEST(Shm, EachReaderHasARateOfItsOwn) {
   ASSERT_TRUE(*receive(*slow, message));
   EXPECT_EQ(message.header.seq, 3);
   EXPECT_EQ(slow->traffic().messages, 2U);
-  EXPECT_EQ(slow->traffic().over_rate, 2U);
-  EXPECT_EQ(slow->traffic().kept_back, 1U);
-  EXPECT_EQ(fast->traffic().lost() + fast->traffic().kept_back, 0U);
+  EXPECT_EQ(slow->traffic().throttled, 2U);
+  EXPECT_EQ(slow->traffic().delayed, 1U);
+  EXPECT_EQ(fast->traffic().lost() + fast->traffic().delayed, 0U);
   ASSERT_TRUE(sink->close());
   EXPECT_FALSE(*receive(*slow, message));
 }

@@ -65,7 +65,7 @@ Status ShmSink::send(const Message& message) {
     if (auto placed = place(message, slot); !placed) return placed;
     if (slot == nullptr) {
       ++traffic_.messages;
-      ++traffic_.over_memory;
+      ++traffic_.dropped_memory;
       return {};
     }
     ++slot->cells;

@@ -34,7 +34,7 @@ TEST(ShmSlow, APublisherTakesMemoryFromWhoLosesMessagesWhileItWaitsForOthers) {
   while (*lagging->take(message) == Got::Message) {
   }
   EXPECT_EQ(message.header.seq, kCount - 1);
-  EXPECT_EQ(lagging->traffic().messages + lagging->traffic().over_memory, std::uint64_t{kCount});
+  EXPECT_EQ(lagging->traffic().messages + lagging->traffic().dropped_memory, std::uint64_t{kCount});
 }
 
 /// A cell that is written again while it is read is no damage.

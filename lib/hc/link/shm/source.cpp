@@ -68,9 +68,9 @@ void ShmSource::skip_to(std::uint64_t position, std::uint64_t Traffic::*why) {
 /// there was no memory for it, or no cell.
 void ShmSource::skip_withdrawn(std::uint64_t oldest) {
   auto published = attachment_->head().published.load(memory_order_acquire);
-  if (keep_ == 0) return skip_to(oldest, &Traffic::timed_out);
-  if (published > keep_) skip_to(std::min(oldest, published - keep_), &Traffic::superseded);
-  skip_to(oldest, &Traffic::over_memory);
+  if (keep_ == 0) return skip_to(oldest, &Traffic::dropped_timeout);
+  if (published > keep_) skip_to(std::min(oldest, published - keep_), &Traffic::dropped_newer);
+  skip_to(oldest, &Traffic::dropped_memory);
 }
 
 /// Copies a cell; false when it is not one, or when another was just being written over it.
@@ -151,7 +151,7 @@ Result<Got> ShmSource::take(Message& message) {
     if (keep_ > 0) {
       auto published = head.published.load(memory_order_acquire);
       if (published > cursor_ && published - cursor_ > keep_)
-        skip_to(published - keep_, &Traffic::superseded);
+        skip_to(published - keep_, &Traffic::dropped_newer);
     }
     auto stamp = attachment_->cell(cursor_).stamp.load(memory_order_acquire);
     if (stamp <= cursor_ && !has_ended()) return Got::Nothing;

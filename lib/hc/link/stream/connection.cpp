@@ -163,7 +163,7 @@ void Connection::fail(const Error& why) {
   failed_ = why;
   stop_watching();
   if (!writer_waits_) {
-    losses_.cut += queue_.clear(losses_) + writer_.clear();
+    losses_.dropped_disconnect += queue_.clear(losses_) + writer_.clear();
     return;
   }
   // The message that send() is called with is the last one, in the queue or begun. Its caller gets
@@ -172,7 +172,7 @@ void Connection::fail(const Error& why) {
   const bool is_queued = queue_.clear(reported) > 0;
   auto begun = writer_.clear();
   if (is_sending_ && !is_queued && begun > 0) --begun;
-  losses_.cut += begun;
+  losses_.dropped_disconnect += begun;
 }
 
 void Connection::look_at_reader(TimePoint now) {
@@ -289,7 +289,7 @@ bool Connection::has_patience(TimePoint now) {
 /// where it was begun.
 void Connection::give_up_reader(Outgoing& message) {
   if (take_back()) {
-    ++losses_.timed_out;
+    ++losses_.dropped_timeout;
     losses_.bytes -= message.size();
   } else if (writer_.borrows()) {
     writer_.keep(message.kept());
@@ -300,7 +300,7 @@ void Connection::give_up_reader(Outgoing& message) {
 bool Connection::drops_for_reader(const Outgoing& message, TimePoint now) {
   if (connected() && all_written()) patience_.renew();
   if (!patience_.is_over(writer_.total())) return false;
-  ++losses_.timed_out;
+  ++losses_.dropped_timeout;
   losses_.bytes -= message.size();
   arm(now);
   return true;

@@ -41,7 +41,7 @@ class DialingSource final : public Source {
       auto got = source_->take(message);
       if (got && *got != Got::End) return got;
       if (!got && got.error().code == Code::System) return got;
-      if (!got && got.error().code == Code::Truncated) ++past_.cut;
+      if (!got && got.error().code == Code::Truncated) ++past_.dropped_disconnect;
       const bool said_no_message = !got && is_bad(got.error());
       if (said_no_message) ++past_.bad;
       lose_connection(got ? "" : in_words(got.error()), said_no_message);

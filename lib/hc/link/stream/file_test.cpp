@@ -141,7 +141,7 @@ TEST(File, ThatIsOptionalLosesWhatItCannotTake) {
     for (int i = 0; i < 3; ++i) EXPECT_TRUE(sink->send(numbered(i, 100'000)));
     EXPECT_TRUE(sink->close());
     EXPECT_EQ(errors, 1);
-    EXPECT_EQ(sink->traffic().cut, 3U);
+    EXPECT_EQ(sink->traffic().dropped_disconnect, 3U);
   }
 }
 
@@ -190,7 +190,7 @@ TEST_P(FullDisk, LeavesWholeMessages) {
   }
   const auto traffic = sink->traffic();
   EXPECT_GT(source->traffic().messages, 0U);
-  EXPECT_EQ(source->traffic().messages, traffic.messages - traffic.cut);
+  EXPECT_EQ(source->traffic().messages, traffic.messages - traffic.dropped_disconnect);
 }
 
 // With a rate, messages wait in the queue.

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Work that takes its time, on a thread beside a loop's. Internal.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <type_traits>
+#include <utility>
+
+#include <hc/os/event.h>
+#include <hc/os/loop.h>
+
+namespace hc::internal {
+
+/// Work on a thread, as run_aside() begins it. To be destroyed in the loop's thread, or after the
+/// loop's last turn.
+class Aside {
+ public:
+  Aside() = default;  ///< none
+  Aside(Aside&&) = default;
+  Aside& operator=(Aside&& other) noexcept {
+    std::swap(state_, other.state_);
+    return *this;
+  }
+  /// Asks the work to stop, and waits for it. Its result is dropped.
+  ~Aside();
+
+  /// Whether the work's result has not been handed over yet.
+  [[nodiscard]] bool is_busy() const { return state_ && state_->thread.joinable(); }
+  /// Asks the work in progress, if any, to stop; its result is handed over all the same.
+  void stop();
+  [[nodiscard]] bool is_stopped() const { return state_ && state_->is_stopped; }
+
+ private:
+  template <typename Work, typename Done>
+  friend Result<Aside> run_aside(Loop& loop, Work work, Done done);
+
+  struct State {
+    Event stop;
+    bool is_stopped = false;
+    std::function<void()> done;
+    std::thread thread;
+  };
+
+  static Result<Aside> begin(Loop& loop, std::function<void(int stop)> work,
+                             std::function<void()> done);
+
+  std::shared_ptr<State> state_;
+};
+
+/// Calls `work(stop)` on a thread of its own, with all signals blocked, and then `done(result)` in
+/// a turn of the loop. `work` returns a value, as soon as it can once the descriptor `stop` is
+/// readable.
+///
+///     aside_ = run_aside(loop, [](int stop) { return load(stop); }, [this](Loaded it) { … });
+///
+/// Errors: System (no descriptor or thread to be had).
+template <typename Work, typename Done>
+[[nodiscard]] Result<Aside> run_aside(Loop& loop, Work work, Done done) {
+  auto result = std::make_shared<std::optional<std::invoke_result_t<Work&, int>>>();
+  return Aside::begin(
+      loop, [result, work = std::move(work)](int stop) mutable { result->emplace(work(stop)); },
+      [result, done = std::move(done)]() mutable { done(std::move(**result)); });
+}
+
+}  // namespace hc::internal
