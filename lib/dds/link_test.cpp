@@ -31,7 +31,7 @@ class Lines {
  public:
   [[nodiscard]] LinkOptions options() {
     LinkOptions options;
-    options.log = [this](Severity, std::string_view line) { lines.emplace_back(line); };
+    options.log = [this](Level, std::string_view line) { lines.emplace_back(line); };
     return options;
   }
   std::vector<std::string> lines;

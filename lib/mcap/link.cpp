@@ -240,7 +240,7 @@ Result<std::unique_ptr<Sink>> write_recording(const Uri& uri, const LinkOptions&
   auto recorder = Recorder::make(options);
   if (!recorder) return recorder.error();
   if ((*recorder)->file() != uri.rest && link.log)
-    link.log(Severity::Warning,
+    link.log(Level::Warning,
              uri.text() + ": the file stays as it is; continuing in " + (*recorder)->file());
   return std::unique_ptr<Sink>(new RecordingSink(std::move(*recorder)));
 }

@@ -71,7 +71,7 @@ void Acceptor::accept_all() {
     return agreed_.size() < kMostAgreed;
   };
   socket_.accept_all(
-      listening_, [this](Severity, std::string_view line) { say(std::string(line)); }, has_room,
+      listening_, [this](Level, std::string_view line) { say(std::string(line)); }, has_room,
       [this](ConnectedSocket accepted) { return let_in(std::move(accepted)); });
 }
 

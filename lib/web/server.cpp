@@ -106,7 +106,7 @@ struct Shared {
       call();
       return true;
     } catch (const std::exception& error) {
-      log(Severity::Error, std::string("server: ") + error.what());
+      log(Level::Error, std::string("server: ") + error.what());
       return false;
     }
   }
@@ -544,7 +544,7 @@ class BeastServer final : public Server {
         // No descriptors are left, as a rule. Where no stranger can give one back, the next attempt
         // is not to be at once.
         if (error != asio::error::no_descriptors || !Visitor::drop_one(*shared_)) {
-          shared_->log(Severity::Warning, "server: accept: " + error.message());
+          shared_->log(Level::Warning, "server: accept: " + error.message());
           auto timer = std::make_shared<asio::steady_timer>(context_, std::chrono::seconds(1));
           return timer->async_wait([this, timer](beast::error_code) { accept(); });
         }

@@ -5,10 +5,9 @@ namespace hc::web {
 
 Result<std::unique_ptr<Service>> Service::open(const Listening& listening, internal::Loop& loop,
                                                std::function<void(std::string_view)> log) {
-  auto opened =
-      open_server(listening, [&loop, log = std::move(log)](Severity, std::string_view line) {
-        loop.post([log, kept = std::string(line)] { log(kept); });
-      });
+  auto opened = open_server(listening, [&loop, log = std::move(log)](Level, std::string_view line) {
+    loop.post([log, kept = std::string(line)] { log(kept); });
+  });
   if (!opened) return opened.error();
   return std::unique_ptr<Service>(new Service(std::move(*opened)));
 }

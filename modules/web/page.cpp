@@ -383,7 +383,7 @@ Rows Page::record(const Rows& words) {
   if (words.size() < 3) return {"record is followed by a name and outputs, MODULE.PORT, or by end"};
   auto begun = Recorder::begin(
       options_.graph, options_.recordings, words[1], {words.begin() + 2, words.end()},
-      [log = callbacks_.log, &server = server_](hc::Severity, std::string_view line) {
+      [log = callbacks_.log, &server = server_](hc::Level, std::string_view line) {
         server.post([log, kept = std::string(line)] { log(kept); });
       });
   if (!begun) return {begun.error().detail};

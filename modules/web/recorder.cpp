@@ -223,7 +223,7 @@ class Recorder::Track {
       kept = hc::compress(*kept, hc::Encoding::Jpeg);
     if (!kept) {  // one that is bad is left out
       if (!std::exchange(has_left_out_, true))
-        log_(hc::Severity::Warning,
+        log_(hc::Level::Warning,
              "recording of " + port_ + ": left out a message: " + kept.error().detail);
       return;
     }
@@ -231,7 +231,7 @@ class Recorder::Track {
     bytes_ += kept->elements.size();
   }
   void end(const std::string& why) {
-    log_(hc::Severity::Error, "recording of " + port_ + " ended: " + why);
+    log_(hc::Level::Error, "recording of " + port_ + " ended: " + why);
     sink_.reset();
   }
   void fail(const std::string& why) {

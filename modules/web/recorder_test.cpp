@@ -88,7 +88,7 @@ TEST_F(Recordings, what_is_no_file_is_left_out) {
 TEST_F(Recordings, wrong_names_are_refused) {
   const hc::RunningGraph graph{"none", 1};
   const auto begin = [&](const std::string& name, const std::vector<std::string>& ports) {
-    return Recorder::begin(graph, folder_, name, ports, [](hc::Severity, std::string_view) {});
+    return Recorder::begin(graph, folder_, name, ports, [](hc::Level, std::string_view) {});
   };
   for (const char* name : {"", "..", "a/b", "a b", "one"})
     EXPECT_FALSE(begin(name, {"eyes.left"})) << name;

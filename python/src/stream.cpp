@@ -25,11 +25,11 @@ constexpr std::chrono::milliseconds kSlice{50};  // after which a wait looks for
 hc::LinkOptions link_options(const std::optional<std::uint64_t>& limit) {
   hc::LinkOptions options;
   if (limit) options.limits.element_bytes = *limit;
-  options.log = [](hc::Severity severity, std::string_view line) {
-    const char* level = severity == hc::Severity::Info ? "info" : "warning";
+  options.log = [](hc::Level level, std::string_view line) {
+    const char* name = level == hc::Level::Info ? "info" : "warning";
     const py::gil_scoped_acquire inside;
     try {
-      py::module_::import("logging").attr("getLogger")("hypercolumn").attr(level)("%s", line);
+      py::module_::import("logging").attr("getLogger")("hypercolumn").attr(name)("%s", line);
     } catch (py::error_already_set& error) {
       error.discard_as_unraisable("hypercolumn's log");
     }

@@ -238,7 +238,7 @@ class Watching(Graphs):
         writer = self.start(publish)
         link(lambda link: link["per_second"] > 0)
         os.kill(writer.pid, signal.SIGKILL)
-        link(lambda link: link["status"] == "sender closed; reconnecting")
+        link(lambda link: link["status"] == "not connected")
         writer = self.start(publish)
         link(lambda link: link["per_second"] > 0)
         os.kill(writer.pid, signal.SIGSTOP)  # what the link has said last is shown when it is still

@@ -177,7 +177,7 @@ class HostileReader : public ::testing::Test {
  protected:
   HostileReader() {
     LinkOptions options;
-    options.log = [this, self = std::this_thread::get_id()](Severity, std::string_view line) {
+    options.log = [this, self = std::this_thread::get_id()](Level, std::string_view line) {
       EXPECT_EQ(std::this_thread::get_id(), self);
       lines_.emplace_back(line);
     };

@@ -37,7 +37,7 @@ hc::LinkOptions link_options(std::uint64_t limit) {
   hc::LinkOptions options;
   options.limits.element_bytes = limit;
   options.stop = hc::stop_descriptor();
-  options.log = [](hc::Severity, std::string_view line) { say(line); };
+  options.log = [](hc::Level, std::string_view line) { say(line); };
   return options;
 }
 

@@ -79,10 +79,10 @@ bool Reports::take(const Message& message, MonotonicTime now) {
 void Reports::take_counters(const std::vector<LinkCounters>& rows, MonotonicTime now) {
   if (rows.empty()) return;
   std::map<std::string, LinkCounters> sums;
-  read_.clear();
+  peers_.clear();
   for (std::size_t i = 0; i < std::min(rows.size(), order_.size()); ++i) {
     add(rows[i], sums[order_[i]]);
-    if (rows[i].readers > 0) read_.insert(order_[i]);
+    peers_[order_[i]] = rows[i].peers;
   }
   for (auto& [key, counted] : ends_)
     if (auto sum = sums.find(key); sum != sums.end())
@@ -153,8 +153,9 @@ std::string Reports::blocked_key() const {
   return state_.blocked_row <= 0 || row > order_.size() ? "" : order_[row - 1];
 }
 
-bool Reports::has_readers(const std::string& port, const std::string& uri) const {
-  return read_.contains(end_key(false, port, uri));
+std::int64_t Reports::peers_of(const PlannedEnd& end) const {
+  const auto found = peers_.find(end_key(end.is_input, end.port, end.uri));
+  return found == peers_.end() ? -1 : found->second;
 }
 
 bool Reports::is_blocked_on(const PlannedLink& link) const {

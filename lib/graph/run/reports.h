@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -41,8 +40,8 @@ class Reports {
 
   /// Of an end; null where nothing has been reported of it.
   [[nodiscard]] const EndReport* find(const PlannedEnd& end) const;
-  /// Whether a reader is connected to a listening output, of the plan or not, as last reported.
-  [[nodiscard]] bool has_readers(const std::string& port, const std::string& uri) const;
+  /// The peers that are connected to an end, of the plan or not, as last reported; -1: unknown.
+  [[nodiscard]] std::int64_t peers_of(const PlannedEnd& end) const;
   [[nodiscard]] const std::map<std::string, std::string>& parameters() const { return parameters_; }
   [[nodiscard]] const StateReport& state() const { return state_; }
   /// Whether a link, or one that has its sending end in common with it, is that for whose reader
@@ -68,10 +67,10 @@ class Reports {
   bool take_state(const StateReport& state);
   [[nodiscard]] std::string blocked_key() const;
 
-  std::vector<std::string> order_;       // keys of ends, as the rows of counters come
-  bool has_links_ = false;               // the module has reported them
-  std::map<std::string, Counted> ends_;  // of the plan, by key
-  std::set<std::string> read_;           // ends with readers, of the plan or not, by key
+  std::vector<std::string> order_;             // keys of ends, as the rows of counters come
+  bool has_links_ = false;                     // the module has reported them
+  std::map<std::string, Counted> ends_;        // of the plan, by key
+  std::map<std::string, std::int64_t> peers_;  // of ends, of the plan or not, by key
   std::map<std::string, std::string> parameters_;
   StateReport state_;
 };

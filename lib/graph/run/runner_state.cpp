@@ -98,11 +98,15 @@ LinkState Runner::state_of(const PlannedLink& link) const {
     state.per_second = last->per_second;
     state.bytes_per_second = last->bytes_per_second;
   }
-  // Only problems of links are logged. Of a link between modules, their states show them.
-  const bool is_outside = link.reader_uri.empty() || link.sender_uri.empty();
-  if (is_outside && state.status.empty() && state.per_second == 0)
-    if (const auto* module = at(link.reader_uri.empty() ? link.from : link.to))
-      state.status = module->said_of(link.reader_uri + link.sender_uri);
+  // Of a link between modules, their states show why nothing goes over it.
+  const bool is_input = link.sender_uri.empty();
+  const bool is_outside = is_input || link.reader_uri.empty();
+  const auto& inner = is_input ? link.to : link.from;
+  if (const auto* module = at(inner); is_outside && state.status.empty() && module != nullptr)
+    if (module->reports().peers_of(
+            {is_input, inner.substr(inner.find('.') + 1), link.reader_uri + link.sender_uri, {}}) ==
+        0)
+      state.status = "not connected";
   if (reader == nullptr) return state;
   if (counts != reader) {
     Traffic lost = reader->traffic;

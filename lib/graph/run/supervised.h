@@ -105,8 +105,6 @@ class Supervised {
   [[nodiscard]] ModuleState state() const;
   /// Whether a link is the one for whose reader it waits.
   [[nodiscard]] bool waits_on(const PlannedLink& link) const;
-  /// What the log said last of a link: "sender closed; reconnecting"; empty: nothing, lately.
-  [[nodiscard]] std::string said_of(const std::string& uri) const;
 
  private:
   Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Callbacks callbacks,

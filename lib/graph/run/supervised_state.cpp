@@ -57,7 +57,8 @@ Status Supervised::open_observed(Observed& observed, const std::string& port,
 void Supervised::end_observations(MonotonicTime time) {
   // Readers of a process that is being restarted wait for the next one.
   for (auto& [port, observed] : observed_)
-    if (heard_ == MonotonicTime(0) || reports_.has_readers(port, observed.uri_there()))
+    if (heard_ == MonotonicTime(0) ||
+        reports_.peers_of({false, port, observed.uri_there(), {}}) > 0)
       observed.until = time + kObserved;
   std::erase_if(observed_, [&](const auto& entry) {
     const bool is_over = time >= entry.second.until;
@@ -180,18 +181,6 @@ void Supervised::measure(MonotonicTime time, bool with_memory) {
                                    std::chrono::duration<double>(time - measured_));
   usage_ = usage;
   measured_ = time;
-}
-
-std::string Supervised::said_of(const std::string& uri) const {
-  const auto name = uri.substr(0, uri.find('?'));
-  for (auto line = lines_.last().rbegin(); !name.empty() && line != lines_.last().rend(); ++line) {
-    const auto found = line->find(name);
-    if (found == std::string::npos) continue;
-    const auto why = line->find(": ", found + name.size());
-    if (why == std::string::npos || line->ends_with(": reconnected")) return "";
-    return line->substr(why + 2);
-  }
-  return "";
 }
 
 bool Supervised::waits_on(const PlannedLink& link) const {

@@ -7,18 +7,12 @@
 #include <string>
 #include <string_view>
 
+#include <hc/base/log.h>
 #include <hc/base/result.h>
 #include <hc/mtp/message.h>
 
 namespace hc {
 
-enum class Level {
-  Info,
-  Warning,
-  Error,   ///< something was not done although the module goes on; `hc run` repeats it at its end
-  Result,  ///< of the module's work, such as a score; `hc run` repeats it at its end
-  Notice,  ///< for the person at the terminal alone, such as a URL with its token; never published
-};
 /// "info", "warning" and so on.
 std::string_view name(Level level);
 std::optional<Level> level_named(std::string_view name);

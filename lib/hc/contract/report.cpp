@@ -17,8 +17,8 @@ constexpr std::size_t kIgnored = 7, kAge = kIgnored + 1, kGap = kAge + 3, kMore 
 constexpr std::size_t column_of(std::size_t member) {
   return member < kIgnored ? member : kMore + member - kIgnored;
 }
-constexpr std::size_t kReaders = column_of(kTrafficMembers.size());
-static_assert(kReaders + 1 == kCounterColumns.size());
+constexpr std::size_t kPeers = column_of(kTrafficMembers.size());
+static_assert(kPeers + 1 == kCounterColumns.size());
 
 template <std::size_t kColumns>
 Message make_table(std::span<const std::array<std::int64_t, kColumns>> rows) {
@@ -33,7 +33,7 @@ Message make_table(std::span<const std::array<std::int64_t, kColumns>> rows) {
 LinkCounters counters_of(std::span<const std::int64_t> given) {
   Row row{};
   std::fill(row.begin() + kAge, row.begin() + kMore, -1);
-  row[kReaders] = -1;
+  row[kPeers] = -1;
   std::copy_n(given.begin(), std::min(given.size(), row.size()), row.begin());
   LinkCounters link;
   for (std::size_t i = 0; i < kTrafficMembers.size(); ++i)
@@ -41,7 +41,7 @@ LinkCounters counters_of(std::span<const std::int64_t> given) {
   link.ignored = static_cast<std::uint64_t>(row[kIgnored]);
   std::copy_n(row.begin() + kAge, link.age.size(), link.age.begin());
   std::copy_n(row.begin() + kGap, link.gap.size(), link.gap.begin());
-  link.readers = row[kReaders];
+  link.peers = row[kPeers];
   return link;
 }
 
@@ -56,7 +56,7 @@ Message make_counters(std::span<const LinkCounters> links) {
     row[kIgnored] = static_cast<std::int64_t>(link.ignored);
     std::copy(link.age.begin(), link.age.end(), row.begin() + kAge);
     std::copy(link.gap.begin(), link.gap.end(), row.begin() + kGap);
-    row[kReaders] = link.readers;
+    row[kPeers] = link.peers;
   }
   return make_table<kCounterColumns.size()>(rows);
 }

@@ -31,7 +31,7 @@ struct LinkCounters {
   std::uint64_t ignored = 0;  ///< messages that came and were not handled: not in focus
   Durations age{-1, -1, -1};  ///< of messages, from when they were sensed (R11)
   Durations gap{-1, -1, -1};  ///< from one message to the next
-  std::int64_t readers = -1;  ///< that are connected to a listening output; -1: it is none
+  std::int64_t peers = -1;    ///< that are connected; -1: unknown, or none ever is
 };
 
 /// The columns of Report::Counters, in this order.
@@ -56,7 +56,7 @@ constexpr std::array<CounterColumn, 17> kCounterColumns = {{
     {"gap_max", "its maximum [ns]"},
     {"dropped_timeout", "dropped: the reader had taken nothing for too long (`timeout`)"},
     {"bad", "received and dropped: damaged, or not what the input takes"},
-    {"readers", "connected readers of an output that listens; -1: it does not"},
+    {"peers", "peers that are connected; -1: unknown, or of a file"},
 }};
 
 /// A table of i64, a row for each link.

@@ -59,7 +59,7 @@ Result<Descriptor> open_for_writing(const Uri& uri, bool appends, const LinkOpti
   auto file = begin_file(uri.rest);
   if (!file) return file.error();
   if (file->path != uri.rest && options.log)
-    options.log(Severity::Warning, "the file stays as it is; continuing in " + file->path);
+    options.log(Level::Warning, "the file stays as it is; continuing in " + file->path);
   return std::move(file->descriptor);
 }
 
@@ -107,7 +107,7 @@ class OptionalFile final : public Sink {
  private:
   void end(const Error& why) {
     has_ended_ = true;
-    if (log_) log_(Severity::Error, "recording into " + path_ + " ended: " + why.detail);
+    if (log_) log_(Level::Error, "recording into " + path_ + " ended: " + why.detail);
   }
 
   const std::string path_;

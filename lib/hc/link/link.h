@@ -77,6 +77,9 @@ class Source {
   /// What take() has given so far.
   [[nodiscard]] virtual Traffic traffic() const = 0;
 
+  /// Peers that are connected now; nothing where none connects, as with a file, or that is unknown.
+  [[nodiscard]] virtual std::optional<std::size_t> peers() const { return std::nullopt; }
+
   /// Says that the peer will not come back: the end of the connection there is, or that there is
   /// none, is the end of the link. Only a source that reconnects needs this.
   virtual void finish() {}
@@ -122,9 +125,8 @@ class Sink {
   /// What send() has taken so far; a message to several readers counts once.
   [[nodiscard]] virtual Traffic traffic() const = 0;
 
-  /// Lets readers in that wait to connect, and counts those that are connected; nothing where no
-  /// reader connects to this end. Not to be called within send().
-  virtual std::optional<std::size_t> readers() { return std::nullopt; }
+  /// As Source::peers(); lets in readers that wait to connect. Not to be called within send().
+  virtual std::optional<std::size_t> peers() { return std::nullopt; }
 };
 
 /// How a link behaves, whatever carries it.

@@ -72,9 +72,8 @@ bool Patience::waits(std::uint64_t taken, TimePoint now) {
     end();
     is_over_ = true;
     if (log_)
-      log_(Severity::Warning, "the reader has taken nothing for " +
-                                  std::to_string(timeout_.count()) +
-                                  " s: messages to it are dropped until it does");
+      log_(Level::Warning, "the reader has taken nothing for " + std::to_string(timeout_.count()) +
+                               " s: messages to it are dropped until it does");
     return false;
   }
   if (tell_ && now - *began_ >= kLong && !std::exchange(is_told_, true)) tell_(true);
@@ -97,7 +96,7 @@ TimePoint Patience::due() const {
 bool Patience::is_over(std::uint64_t taken) {
   if (!is_over_ || taken == taken_) return is_over_;
   is_over_ = false;
-  if (log_) log_(Severity::Warning, "the reader takes messages again");
+  if (log_) log_(Level::Warning, "the reader takes messages again");
   return false;
 }
 

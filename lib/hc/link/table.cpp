@@ -95,7 +95,7 @@ Status check_end(const Transport& transport, const Uri& uri, std::string_view al
 /// The options with a log whose lines begin with the link's name.
 LinkOptions with_name(LinkOptions options, const Uri& uri) {
   if (!options.log) return options;
-  options.log = [log = options.log, name = uri.text() + ": "](Severity severity,
+  options.log = [log = options.log, name = uri.text() + ": "](Level severity,
                                                               std::string_view line) {
     log(severity, name + std::string(line));
   };

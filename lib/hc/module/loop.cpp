@@ -102,15 +102,14 @@ std::string Module::Loop::name_of(const std::string& uri, const std::string& por
 /// Options of a link. What those of a graph log waits in lines_.
 LinkOptions Module::Loop::options_for(const Uri& uri, const std::string& port) {
   LinkOptions options = options_;
-  options.log = [this, uri = uri.text(), port](Severity severity, std::string_view line) {
+  options.log = [this, uri = uri.text(), port](Level level, std::string_view line) {
     if (uri.starts_with("file:") && line.starts_with(uri)) {
       // After an error the work goes on; `hc run` repeats it at its end.
-      return module_.log(port + std::string(line.substr(uri.size())),
-                         severity == Severity::Error ? Level::Error : Level::Warning);
+      return module_.log(port + std::string(line.substr(uri.size())), level);
     }
     const std::string name = name_of(uri, port);
-    if (name == uri || !line.starts_with(uri)) return module_.log(line);
-    lines_.push_back({uri, name + std::string(line.substr(uri.size())),
+    if (name == uri || !line.starts_with(uri)) return module_.log(line, level);
+    lines_.push_back({uri, name + std::string(line.substr(uri.size())), level,
                       module_.clock_.monotonic() + kLineDelay});
   };
   return options;
@@ -119,7 +118,7 @@ LinkOptions Module::Loop::options_for(const Uri& uri, const std::string& port) {
 /// Logs what links have had to say for a while.
 void Module::Loop::log_lines(MonotonicTime now) {
   for (; !lines_.empty() && lines_.front().due <= now; lines_.pop_front())
-    module_.log(lines_.front().text);
+    module_.log(lines_.front().text, lines_.front().level);
 }
 
 std::unique_ptr<Source> Module::Loop::open(const Uri& uri, const std::string& port) {

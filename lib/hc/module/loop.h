@@ -186,6 +186,7 @@ struct Module::Loop {
   std::vector<std::string> deferred_;  // commands for when nothing is being handled or sent
   struct Line {
     std::string uri, text;
+    Level level;
     MonotonicTime due;
   };
   std::deque<Line> lines_;  // about links, not logged yet

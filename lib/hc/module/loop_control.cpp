@@ -27,6 +27,11 @@ Status unknown_link() {
   return Error{Code::NotFound, "there is no such link"};
 }
 
+/// As a report has it: -1 of what is unknown.
+std::int64_t number_of(std::optional<std::size_t> peers) {
+  return peers ? static_cast<std::int64_t>(*peers) : -1;
+}
+
 /// What has come since the last report; the next begins with none.
 Durations take_durations(internal::Quantiles& quantiles) {
   if (quantiles.empty()) return {-1, -1, -1};
@@ -252,8 +257,7 @@ void Module::Loop::report() {
     report_links();
   }
   for (const auto& link : sinks_) {  // not in report_counters(), which one of them may wait in
-    const auto readers = link->sink ? link->sink->readers() : std::nullopt;
-    link->readers = readers ? static_cast<std::int64_t>(*readers) : -1;
+    link->peers = number_of(link->sink ? link->sink->peers() : std::nullopt);
   }
   report_counters();
 }
@@ -267,6 +271,7 @@ void Module::Loop::report_counters() {
     auto& counters = links.emplace_back();
     counters.traffic = link.traffic();
     counters.ignored = link.ignored;
+    counters.peers = number_of(link.source ? link.source->peers() : std::nullopt);
     counters.age = take_durations(link.ages);
     counters.gap = take_durations(link.gaps);
     const auto& input = *link.inputs.front();
@@ -277,7 +282,7 @@ void Module::Loop::report_counters() {
   for (const auto& link : sinks_) {
     auto& counters = links.emplace_back();
     counters.traffic = link->sink ? link->sink->traffic() : link->traffic;
-    counters.readers = link->readers;
+    counters.peers = link->peers;
   }
   send(Report::Counters, make_counters(links));
 }

@@ -31,7 +31,7 @@ struct LinkedSink {
   std::unique_ptr<Sink> sink;  ///< null once the reader has disconnected
   Conversion conversion;       ///< of what goes here
   Traffic traffic;             ///< as it was when the link ended
-  std::int64_t readers = -1;   ///< at the last report; see LinkCounters
+  std::int64_t peers = -1;     ///< at the last report; see LinkCounters
   Route route;                 ///< which messages go here
 };
 

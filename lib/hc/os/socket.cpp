@@ -75,7 +75,7 @@ Result<ConnectedSocket> ListeningSocket::accept(const LogSink& log) const {
       ConnectedSocket peer{Descriptor(number)};
       auto admitted = admit ? admit(number) : Status();
       if (!admitted) {
-        if (log) log(Severity::Warning, admitted.error().detail);
+        if (log) log(Level::Warning, admitted.error().detail);
         continue;
       }
       set_up_connection(number);

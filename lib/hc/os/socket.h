@@ -120,7 +120,7 @@ void ListeningSocket::accept_all(Handle& watch, const LogSink& log,
     auto done = peer ? let_in(std::move(*peer)) : Status(peer.error());
     must_wait = !done;
     if (must_wait && !is_paused && log)
-      log(Severity::Warning,
+      log(Level::Warning,
           "not accepting connections: " + done.error().text() + "; retrying every 200 ms");
   }
   if (must_wait) watch.call_at(std::chrono::steady_clock::now() + kRetryTime);

@@ -198,7 +198,7 @@ TEST_P(SocketLink, AWriterThatWaitsForSomebodyIsInterrupted) {
   Stop stop;
   auto options = stop.options();
   int lines = 0;
-  options.log = [&](Severity, std::string_view) {
+  options.log = [&](Level, std::string_view) {
     ++lines;
     stop.raise();
   };

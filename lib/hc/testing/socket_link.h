@@ -61,7 +61,7 @@ struct Warnings {
   std::vector<std::string> lines;
   LinkOptions options() {
     LinkOptions options;
-    options.log = [this](Severity, std::string_view line) { lines.emplace_back(line); };
+    options.log = [this](Level, std::string_view line) { lines.emplace_back(line); };
     return options;
   }
 };

@@ -57,7 +57,7 @@ void ShmReaders::remark(std::string line) {
 }
 
 void ShmReaders::accept_all() {
-  auto log = [this](Severity, std::string_view line) { remark(std::string(line)); };
+  auto log = [this](Level, std::string_view line) { remark(std::string(line)); };
   auto has_room = [] { return true; };
   socket_.accept_all(watch_, log, has_room, [this](ConnectedSocket peer) -> Status {
     auto reader = std::make_shared<ShmReader>();

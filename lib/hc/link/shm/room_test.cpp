@@ -86,7 +86,7 @@ TEST(ShmRoom, AReaderThatHoldsTooManyGetsCopiesWhichIsLogged) {
   auto sink = sink_of(name);
   int told = 0;
   LinkOptions options;
-  options.log = [&](Severity, std::string_view line) {
+  options.log = [&](Level, std::string_view line) {
     EXPECT_NE(line.find("are held"), std::string_view::npos) << line;
     ++told;
   };

@@ -44,7 +44,7 @@ class ShmSink final : public Sink {
   Status close() override;
   void abandon() override { end(); }
   [[nodiscard]] Traffic traffic() const override { return traffic_; }
-  std::optional<std::size_t> readers() override {
+  std::optional<std::size_t> peers() override {
     refresh();
     return present_;
   }

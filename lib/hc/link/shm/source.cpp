@@ -129,8 +129,8 @@ Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t hold) 
     return {};
   }
   if (!told_ && options_.log)
-    options_.log(Severity::Warning, std::to_string(kCopyHold) +
-                                        " messages are held; while it is so, others are copied");
+    options_.log(Level::Warning, std::to_string(kCopyHold) +
+                                     " messages are held; while it is so, others are copied");
   told_ = true;
   message = message.keep();
   attachment_->let_go(hold);

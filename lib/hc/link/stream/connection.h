@@ -94,6 +94,10 @@ class Connection {
   /// of it while it waits in send() or close().
   void flush_log() { remarks_.flush(log_); }
   [[nodiscard]] int descriptor() const { return writer_.descriptor(); }
+  [[nodiscard]] bool is_connected() const {
+    const std::lock_guard lock(mutex_);
+    return connected();
+  }
 
  private:
   Connection(const Policy& policy, const LinkOptions& options, std::unique_ptr<Dialer> dialer)
@@ -104,7 +108,8 @@ class Connection {
         queue_(policy),
         patience_(policy.timeout, options.awaits_reader, options.log) {
     if (dialer_ != nullptr)
-      dialer_->log_to([this](std::string line) { remarks_.add(std::move(line)); });
+      dialer_->log_to(
+          [this](Level level, std::string_view line) { remarks_.add(std::string(line), level); });
   }
 
   [[nodiscard]] bool connected() const { return writer_.descriptor() >= 0; }

@@ -41,10 +41,10 @@ Result<ConnectedSocket> Dialer::dial(TimePoint now) {
   }
   if (!was_there_ && !why_.empty() && now >= begin_ + kQuiet && !std::exchange(is_awaited_, true)) {
     // "waiting" where the longest time that can be asked for amounts to for ever.
-    log("no peer yet (" + why_ + "); " +
-        (first_ >= std::chrono::hours(24)
-             ? "waiting"
-             : "giving up after " + std::to_string(first_.count()) + " s"));
+    log(Level::Warning, "no peer yet (" + why_ + "); " +
+                            (first_ >= std::chrono::hours(24)
+                                 ? "waiting"
+                                 : "giving up after " + std::to_string(first_.count()) + " s"));
     news_ = "connected";
   }
   return ConnectedSocket();
@@ -52,17 +52,17 @@ Result<ConnectedSocket> Dialer::dial(TimePoint now) {
 
 void Dialer::in_use() {
   log_due_ = TimePoint::max();
-  if (!news_.empty()) log(std::exchange(news_, {}));
+  if (!news_.empty()) log(Level::Info, std::exchange(news_, {}));
 }
 
 void Dialer::log_loss() {
   log_due_ = TimePoint::max();
-  log(loss_ + "; reconnecting");
+  log(Level::Warning, loss_ + "; reconnecting");
   news_ = "reconnected";
 }
 
-void Dialer::log(std::string line) const {
-  if (log_) log_(std::move(line));
+void Dialer::log(Level level, std::string_view line) const {
+  if (log_) log_(level, line);
 }
 
 TimePoint Dialer::due() const {

@@ -85,7 +85,7 @@ class Dialer {
   [[nodiscard]] const std::string& why() const { return why_; }
 
   /// Logs to `log` when the first connection takes long, when one is lost, and the next one.
-  void log_to(std::function<void(std::string line)> log) { log_ = std::move(log); }
+  void log_to(LogSink log) { log_ = std::move(log); }
 
   /// The owner uses the connection that it has got.
   void in_use();
@@ -103,7 +103,7 @@ class Dialer {
   bool has_agreed(TimePoint now);
   void fail(int number, TimePoint now);
   void log_loss();
-  void log(std::string line) const;
+  void log(Level level, std::string_view line) const;
 
   Peer peer_;
   std::chrono::seconds first_, patience_;
@@ -118,7 +118,7 @@ class Dialer {
   short events_ = POLLOUT;
   TimePoint answer_due_;
   std::string why_;  // the last try failed
-  std::function<void(std::string line)> log_;
+  LogSink log_;
   std::string loss_;                      // why the last connection was lost
   TimePoint log_due_ = TimePoint::max();  // for that
   std::string news_;                      // to be logged with the next connection; empty: nothing

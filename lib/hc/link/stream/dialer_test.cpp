@@ -129,7 +129,7 @@ TEST_F(DialerTest, GivesUpWhenNobodyComesBack) {
 TEST_F(DialerTest, LogsOnceThatItsFirstConnectionTakesLong) {
   auto dialer = this->dialer();
   std::vector<std::string> lines;
-  auto log = [&](const std::string& line) { lines.push_back(line); };
+  auto log = [&](Level, std::string_view line) { lines.emplace_back(line); };
   dialer.log_to(log);
   const auto begin = now_;
   now_ = begin + Dialer::kQuiet - nanoseconds(1);
@@ -153,7 +153,7 @@ TEST_F(DialerTest, LogsALossUnlessAConnectionIsInUseBeforeThatIsDue) {
   listen();
   auto dialer = this->dialer();
   std::vector<std::string> lines;
-  dialer.log_to([&](const std::string& line) { lines.push_back(line); });
+  dialer.log_to([&](Level, std::string_view line) { lines.emplace_back(line); });
   EXPECT_TRUE(connects(dialer));
   dialer.in_use();
   EXPECT_TRUE(lines.empty());

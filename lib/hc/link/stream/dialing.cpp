@@ -25,7 +25,7 @@ class DialingSource final : public Source {
         made_(std::move(made)),
         loop_(std::move(loop)),
         options_(std::move(options)) {
-    dialer_->log_to([this](const std::string& line) { log(line); });
+    dialer_->log_to(options_.log);
     static_cast<void>(dial());  // the first take() reports a failure
   }
 
@@ -55,6 +55,9 @@ class DialingSource final : public Source {
   [[nodiscard]] int wake_descriptor() const override { return made_.wake_descriptor; }
   [[nodiscard]] Spin spin() const override { return source_ == nullptr ? Spin() : source_->spin(); }
   void finish() override { finishing_ = true; }
+  [[nodiscard]] std::optional<std::size_t> peers() const override {
+    return source_ == nullptr ? 0 : 1;
+  }
   [[nodiscard]] Traffic traffic() const override {
     Traffic all = past_;
     if (source_ != nullptr) all += source_->traffic();
@@ -110,7 +113,7 @@ class DialingSource final : public Source {
   }
 
   void log(std::string_view line) const {
-    if (options_.log) options_.log(Severity::Warning, line);
+    if (options_.log) options_.log(Level::Warning, line);
   }
 
   std::unique_ptr<Dialer> dialer_;

@@ -93,7 +93,7 @@ void send_to(const std::string& uri, const Message& message, LogSink log = {}) {
 TEST(File, ThatHasContentsStays) {
   Folder folder;
   std::string said;
-  auto log = [&](Severity, std::string_view line) { said += line; };
+  auto log = [&](Level, std::string_view line) { said += line; };
   const std::string path = folder / "eyes.mtp";
   for (int i = 0; i < 3; ++i) send_to("file:" + path, numbered(i, 3), log);
   EXPECT_EQ(bytes_of(path), encode(numbered(0, 3)));
@@ -132,8 +132,8 @@ TEST(File, ThatIsOptionalLosesWhatItCannotTake) {
   for (const char* path : {"/dev/full", "/nowhere/eyes.mtp"}) {
     int errors = 0;
     LinkOptions options;
-    options.log = [&](Severity severity, std::string_view line) {
-      EXPECT_EQ(severity, Severity::Error);
+    options.log = [&](Level severity, std::string_view line) {
+      EXPECT_EQ(severity, Level::Error);
       EXPECT_NE(line.find(std::string("recording into ") + path + " ended: "), line.npos) << line;
       ++errors;
     };

@@ -100,7 +100,7 @@ class ListeningSink final : public Sink {
     return all;
   }
 
-  std::optional<std::size_t> readers() override {
+  std::optional<std::size_t> peers() override {
     let_in();
     for (std::size_t i = peers_.size(); i-- > 0;) {
       pollfd polled{peers_[i]->descriptor(), 0, 0};

@@ -57,6 +57,7 @@ class ListeningSource final : public Source {
   }
 
   [[nodiscard]] int descriptor() const override { return loop_->descriptor(); }
+  [[nodiscard]] std::optional<std::size_t> peers() const override { return peers_.size(); }
   [[nodiscard]] Traffic traffic() const override {
     Traffic all = left_;
     for (const auto& peer : peers_) all += peer->source->traffic();
@@ -125,7 +126,7 @@ class ListeningSource final : public Source {
   }
 
   void leave(const Peer& peer, std::string_view why) {
-    if (!why.empty() && options_.log) options_.log(Severity::Warning, why);
+    if (!why.empty() && options_.log) options_.log(Level::Warning, why);
     left_ += peer.source->traffic();
     std::erase(ready_, &peer);
     std::erase_if(peers_, [&](const auto& entry) { return entry.get() == &peer; });

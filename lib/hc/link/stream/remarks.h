@@ -18,10 +18,10 @@ class Remarks {
  public:
   static constexpr std::size_t kMost = 64;
 
-  void add(std::string line) {
+  void add(std::string line, Level level = Level::Warning) {
     std::lock_guard lock(mutex_);
     if (lines_.size() < kMost)
-      lines_.push_back(std::move(line));
+      lines_.emplace_back(level, std::move(line));
     else
       ++more_;
     any_.store(true, std::memory_order_relaxed);
@@ -34,15 +34,15 @@ class Remarks {
     any_.store(false, std::memory_order_relaxed);
     auto lines = std::exchange(lines_, {});
     if (auto more = std::exchange(more_, 0); more > 0)
-      lines.push_back("and " + std::to_string(more) + " lines more");
+      lines.emplace_back(Level::Warning, "and " + std::to_string(more) + " lines more");
     lock.unlock();
     if (!log) return;
-    for (const auto& line : lines) log(Severity::Warning, line);
+    for (const auto& [level, line] : lines) log(level, line);
   }
 
  private:
   std::mutex mutex_;
-  std::vector<std::string> lines_;
+  std::vector<std::pair<Level, std::string>> lines_;
   std::size_t more_ = 0;
   std::atomic<bool> any_{false};
 };

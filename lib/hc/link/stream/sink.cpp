@@ -30,6 +30,8 @@ class StreamSink final : public Sink {
 
   void abandon() override { connection_->abandon(); }
 
+  std::optional<std::size_t> peers() override { return connection_->is_connected() ? 1 : 0; }
+
   [[nodiscard]] Traffic traffic() const override {
     Traffic traffic = connection_->losses();
     traffic.messages = messages_;
