@@ -134,7 +134,7 @@ class Language:
             self.state(observed, lambda state: self.pid(state, name) not in (0, killed))
             self.assertEqual(self.receive(), before)
         self.assertEqual(self.ask(process, "restart first"), ["ok"])
-        self.assertEqual(self.ask(process, "set second.factor=6"), ["ok"])
+        self.assertEqual(self.ask(process, "set second.factor=6")[0], "ok")
         wait_until(lambda: self.receive() == 3 * before)
         wait_until(lambda: self.ports(self.state(observed)) == ports)
         self.stop(process)

@@ -282,7 +282,12 @@ class Graph(Page):
         )
         self.assertIn("no parameter", self.command(graph, "set camera.rat=20")[0])
         self.assertEqual(self.command(graph, "restart brightness"), ["ok"])
-        self.hear(graph, 2, lambda text: text == "brightness: started")
+        self.hear(
+            graph,
+            2,
+            lambda text: json.loads(text)
+            == {"module": "brightness", "level": "info", "text": "started"},
+        )
         graph.send("stop")
         self.assertEqual(graph.code()[0], 1001)
         process.communicate()

@@ -24,7 +24,7 @@ place = sys.argv[sys.argv.index("--manage") + 1]
 reports = socket.socket(socket.AF_UNIX)
 reports.connect("\\0" + place.split("?")[0].partition("@")[2])
 row = b"%s"
-reports.sendall(b"1 5 0 0 8 0 60101 0 0 %%d 1\\n%%s" %% (len(row), row))
+reports.sendall(b"1 5 0 0 8 0 60101 0 0 %%d 1\\n%%s\\n" %% (len(row), row))
 END
 """
         % row
@@ -121,7 +121,7 @@ hc cat --raw "$in" | hc play --speed max --out "$out" /dev/stdin
 
         await_more()
         restarts = lambda state: [each["restarts"] for each in state["modules"]]
-        self.assertEqual(self.ask(process, "set filter.factor=3"), ["ok"])
+        self.assertEqual(self.ask(process, "set filter.factor=3")[0], "ok")
         self.assertEqual(restarts(await_more()), [0, 0, 1])
         pid = self.module(self.state(observed), "filter")["pid"]
         os.kill(pid, signal.SIGKILL)

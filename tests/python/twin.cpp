@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a module in Python says of itself is compared with this one.
 #include <hc/module/module.h>
+#include <transports/all.h>
+
 int main(int argc, char** argv) {
+  hc::add_all_transports();
   hc::Module module{"camera_like", "Has a bit of everything."};
   auto image = module.input("image", hc::rgb_image<std::uint8_t>(), "an image");
   auto pose = module.input("pose",

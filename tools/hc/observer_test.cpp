@@ -142,9 +142,9 @@ TEST(Screen, SaysWhyAModuleDoesNotWork) {
   EXPECT_EQ(status_text(module), "has waited 11 s for augment.focus");
   module.waits.reset();
   module.detail = "";
-  module.last_line = "/dev/ttyUSB0: disconnected";
+  module.last_level = hc::Level::Warning;
   EXPECT_TRUE(is_in_trouble(module));
-  module.last_line = "/dev/ttyUSB0: reconnected";
+  module.last_level = hc::Level::Result;
   EXPECT_FALSE(is_in_trouble(module));
   module.status = hc::ModuleStatus::Stalled;
   module.detail = "busy";

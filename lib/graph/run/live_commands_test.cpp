@@ -57,11 +57,10 @@ TEST_F(LiveCommands, AreReportedWhereAModuleRefusesOne) {
   thread_ = std::thread([&] {
     auto reports = open_sink(*parse_uri(peer_of(plan_.modules[0].manage_uri) + "?wait=60"));
     HC_CHECK(reports, reports.error().detail);
-    Message message = make_rows(Lines{"command \"set rate=-1\": too small"});
+    Message message = make_log(Level::Warning, "command \"set rate=-1\": too small");
     message.header.src = 5;
     EXPECT_TRUE((*reports)->send(message));
   });
-  options_.with_module_lines = false;
   ASSERT_TRUE(run());
 }
 

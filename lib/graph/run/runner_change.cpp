@@ -223,7 +223,9 @@ GraphAnswer Runner::set_parameters(const Commands& commands) {
       wrong.push_back(checked.error().detail);
     module.parameters[parameter] = value;
     if (module.is_fixed(parameter))
-      remarks.push_back("restarting " + name + ", since " + parameter + " is fixed while it runs");
+      remarks.push_back("restarting " + name + ", since " +
+                        (module.control_uri.empty() ? "it takes no commands"
+                                                    : parameter + " is fixed while it runs"));
   }
   if (!wrong.empty()) return {false, wrong};
   for (auto& planned : plan_.modules) {

@@ -26,8 +26,7 @@ std::optional<Level> level_named(std::string_view name) {
 }
 
 std::string LogLine::line() const {
-  const bool is_wrong = level == Level::Error || level == Level::Warning;
-  return module + ": " + (is_wrong ? std::string(name(level)) + ": " : "") + text;
+  return module + ": " + (level == Level::Error ? "error: " : "") + text;
 }
 
 Message make_log(Level level, std::string_view text) {

@@ -22,7 +22,7 @@ struct LogLine {
   Level level = Level::Info;
   std::string text;
 
-  /// "camera: error: no such device"; the level is shown of what is wrong alone.
+  /// "camera: error: no such device"; other levels are not shown.
   [[nodiscard]] std::string line() const;
 };
 

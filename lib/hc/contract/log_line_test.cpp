@@ -34,9 +34,10 @@ TEST(LogLine, json_brings_back_what_was_said) {
     EXPECT_FALSE(parse_log_line(wrong)) << wrong;
 }
 
-TEST(LogLine, a_terminal_shows_what_is_wrong) {
+TEST(LogLine, a_terminal_shows_errors) {
   EXPECT_EQ((LogLine{"a", Level::Result, "3 px"}.line()), "a: 3 px");
-  EXPECT_EQ((LogLine{"a", Level::Warning, "late"}.line()), "a: warning: late");
+  EXPECT_EQ((LogLine{"a", Level::Warning, "late"}.line()), "a: late");
+  EXPECT_EQ((LogLine{"a", Level::Error, "not saved"}.line()), "a: error: not saved");
 }
 
 }  // namespace

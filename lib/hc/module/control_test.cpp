@@ -92,7 +92,7 @@ TEST_F(RunningModule, WhoReportsToNobodyLogsOnStandardErrorWhatIsWrong) {
   start(module, {"--in=" + uri("in"), "--control=" + uri("control")});
   EXPECT_EQ(join(), 0);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(),
-            "gauge: command \"set colour=1\": no parameter \"colour\"\n");
+            "gauge: warning: command \"set colour=1\": no parameter \"colour\"\n");
 }
 
 TEST_F(RunningModule, InAGraphAReaderThatTakesNothingIsGivenUp) {

@@ -77,7 +77,7 @@ inline void succeed_or_drop(const Status& status) {
 namespace internal {
 struct Arguments;
 class Management;
-}
+}  // namespace internal
 class Module;
 
 /// A timer that fires once each time it is started: Module::after(). Copies are the same timer.

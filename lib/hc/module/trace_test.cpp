@@ -199,9 +199,6 @@ class TracedEffort : public RunningModule {
     for (const auto& command : commands) EXPECT_TRUE(send_command(*control_, command));
     words.insert(words.end(), {"--manage=" + uri("reports"), "--control=" + uri("control")});
     start(module, words);
-    Message message;
-    while (*receive(*reports_, message)) {
-    }
     EXPECT_EQ(join(), 0);
     control_.reset();
     reports_.reset();

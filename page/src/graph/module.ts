@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-import { mayOperate, type GraphLink, type GraphModule, type GraphState, type LogLine } from "../server";
+import {
+  mayOperate,
+  type GraphLink,
+  type GraphModule,
+  type GraphState,
+  type LogLine,
+} from "../server";
 import { fill, h, type PanelHost, type PanelKind } from "../shell";
 import { describe, typeText, type Description, type PortDescription } from "./describe";
 import { Failures } from "./failures";
