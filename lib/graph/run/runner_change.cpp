@@ -18,7 +18,6 @@ constexpr const char* kIsStopping = "the graph is stopping";
 constexpr std::size_t kMostChanges = 100;  // that wait, as some may need a slow program
 
 using Commands = std::vector<GraphCommand>;
-using Verb = GraphCommand::Verb;
 
 bool has_edits(const Commands& commands) {
   return std::any_of(commands.begin(), commands.end(),
@@ -28,7 +27,7 @@ bool has_edits(const Commands& commands) {
 /// Whether commands leave modules and links as they are.
 bool only_set(const Commands& commands) {
   return std::all_of(commands.begin(), commands.end(), [](const GraphCommand& command) {
-    return !command.is_edit() || command.verb == Verb::Set;
+    return !command.is_edit() || command.verb == GraphCommand::Verb::Set;
   });
 }
 
@@ -64,7 +63,7 @@ void Runner::obey(const std::vector<std::string>& lines, const GraphServer::Repl
       wrong.push_back(line + ": it stands alone in a message");
     else if (command->is_question())
       return reply(answer_to(*command));
-    else if (command->verb == Verb::Restart && find(command->words[0]) == nullptr)
+    else if (command->verb == GraphCommand::Verb::Restart && find(command->words[0]) == nullptr)
       wrong.push_back("no module \"" + command->words[0] + "\"");
     else
       commands.push_back(std::move(*command));
@@ -84,7 +83,7 @@ void Runner::obey(const std::vector<std::string>& lines, const GraphServer::Repl
 
 GraphAnswer Runner::answer_to(const GraphCommand& question) {
   const auto& word = question.words[0];
-  const auto found = question.verb == Verb::Observe ? observe(word) : describe(word);
+  const auto found = question.verb == GraphCommand::Verb::Observe ? observe(word) : describe(word);
   return found ? GraphAnswer{true, {*found}} : GraphAnswer{false, {found.error().detail}};
 }
 
@@ -132,9 +131,9 @@ Result<std::string> Runner::describe(const std::string& module) const {
 /// Does what commands say that change nothing in the plan.
 void Runner::carry_out(const Commands& commands) {
   for (const auto& command : commands) {
-    if (command.verb == Verb::Restart) {
+    if (command.verb == GraphCommand::Verb::Restart) {
       if (auto* module = find(command.words[0])) module->restart();
-    } else if (command.verb == Verb::Stop) {
+    } else if (command.verb == GraphCommand::Verb::Stop) {
       is_stopped_ = true;
       end_all();
     }
@@ -216,7 +215,7 @@ GraphAnswer Runner::set_parameters(const Commands& commands) {
   std::vector<std::string> wrong, remarks;
   std::map<std::string, PlannedModule> changed;
   for (const auto& command : commands) {
-    if (command.verb != Verb::Set) continue;
+    if (command.verb != GraphCommand::Verb::Set) continue;
     const auto &name = command.words[0], &parameter = command.words[1], &value = command.words[2];
     auto& module = changed.emplace(name, find(name)->plan()).first->second;
     if (auto checked = module.check_parameter(parameter, value); !checked)
