@@ -68,7 +68,7 @@ class Acceptor {
   internal::Watch watch_;
 };
 
-/// Who listens at `tls:HOST:PORT`, and a socket that listens at `tls-listen:[HOST:]PORT`.
+/// The listener at `tls:HOST:PORT`, and a socket that listens at `tls-listen:[HOST:]PORT`.
 /// Errors: Invalid, NotFound, System.
 Result<internal::Peer> find_peer(const Uri& uri);
 Result<internal::ListeningSocket> listen(const Uri& uri);

@@ -26,7 +26,7 @@ class Stop {
   static constexpr std::chrono::milliseconds kPatience{500};
   /// From the first page on that opens, so that others repeat what was pressed without a server.
   static constexpr std::chrono::milliseconds kFirst{1500};
-  /// A server thread without a turn for so long hangs.
+  /// The server thread hangs after this time without a turn.
   static constexpr std::chrono::milliseconds kHung{200};
   /// How often it is said that nobody is there any more.
   static constexpr int kFarewells = 3;

@@ -108,7 +108,7 @@ class Driving(Pipes):
         )
         self.assertEqual((moved, pushes), (4, 4))
         self.assertGreaterEqual(most, median)
-        # The head does not move before the stick, but for what the truth's period leaves open.
+        # The head does not move before the stick, within a period of the truth.
         self.assertGreater(median, -2)
 
     def test_an_object_stays_in_the_room_while_the_head_turns(self):

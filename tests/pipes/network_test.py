@@ -78,7 +78,7 @@ class Network(Pipes):
         self.assertLess(seconds, limit)
 
     def is_noticed(self, what, left):
-        """Pulls the cable, and waits until who is left ends."""
+        """Pulls the cable, and waits until the other modules end."""
         self.set_cable("down")
         begin = time.monotonic()
         left.wait(timeout=WATCHDOG)

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using hc::frames::GraphFrames;
 
-constexpr std::chrono::seconds kPatience{5};  // so long a pose is awaited
+constexpr std::chrono::seconds kPatience{5};  // of waiting for a pose
 
 struct FramesOptions {
   hc::LoadOptions graph;

@@ -19,7 +19,7 @@
 namespace tool {
 namespace {
 
-/// A graph that has said nothing for so long may be stopped: it speaks twice a second.
+/// A graph that is silent for this time may be stopped: it sends its state twice a second.
 constexpr std::chrono::milliseconds kSilence{5000};
 
 bool is_of_this_terminal(int process) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What is said to a running graph and what it answers, as messages: commands, a row each, all of
+// Commands to a running graph and its answers, as messages: a row for each command, all of
 // which it does or none (spec/graph.md, G47). Pure.
 
 #include <string>

@@ -132,7 +132,7 @@ TEST_P(LinkConformance, SmallAndLargeOnesStayInOrder) {
 
 TEST_P(LinkConformance, WithKeepLatestTheWriterNeverWaits) {
   open("keep=latest");
-  auto count = send_too_many(100'000);  // nobody reads, and this ends all the same
+  auto count = send_too_many(100'000);  // without a reader it ends, too
   take_to(count - 1);
   EXPECT_GE(losses().dropped_newer, 10U);
   EXPECT_EQ(losses().dropped_newer, losses().lost());

@@ -368,7 +368,7 @@ TEST_P(SocketLink, WhoIsInsideAMessageKeepsItsPlace) {
   ASSERT_EQ(::write(peers[7].get(), rest.data(), rest.size()), static_cast<ssize_t>(rest.size()));
   ASSERT_TRUE(*receive(*source, message));
   EXPECT_EQ(message.characters(), numbered(1, 1).characters());
-  ASSERT_TRUE(*receive(*source, message));  // from who came last, in the place of the seventh
+  ASSERT_TRUE(*receive(*source, message));  // of the last writer, which replaced the seventh
   EXPECT_EQ(message.header.seq, 2);
 }
 
