@@ -29,7 +29,7 @@ ALLOWED = {
     "sound": {"base", "os"},
     "web": {"base", "os", "mtp", "link", "client"},
     "ros": {"base", "mtp", "contract", "compress", "frames"},
-    "mcap": {"base", "os", "mtp", "link", "ros"},
+    "record": {"base", "os", "mtp", "contract", "link", "ros"},
     "tls": {"base", "os", "link"},
     "dds": {"base", "os", "mtp", "link"},
     "transports": {"tls", "dds"},
@@ -44,7 +44,7 @@ ALLOWED = {
         "module",
         "client",
         "ros",
-        "mcap",
+        "record",
         "dds",
         "transports",
         "drivers",
@@ -60,7 +60,7 @@ ALLOWED = {
         "client",
         "module",
         "frames",
-        "mcap",
+        "record",
         "transports",
     },
     "tools": {
@@ -73,7 +73,7 @@ ALLOWED = {
         "client",
         "graph",
         "frames",
-        "mcap",
+        "record",
         "tls",
         "transports",
         "hosts",
@@ -86,7 +86,7 @@ INTERNAL = {
     "drivers": 4,
     "frames": 2,
     "hosts": 34,
-    "mcap": 14,
+    "record": 14,
     "modules": 7,
     "python": 6,
     "ros": 6,
@@ -120,7 +120,7 @@ def layer_of_include(name):
     if inner.startswith("dds/"):  # as Cyclone DDS has them too
         return "dds" if (pathlib.Path(__file__).parents[1] / "lib" / inner).exists() else None
     match = re.match(r"hc/([a-z]+)/", inner) or re.match(
-        r"(client|graph|frames|vision|graphics|room|sound|gaze|web|ros|mcap|tls|transports|hosts|drivers)/",
+        r"(client|graph|frames|vision|graphics|room|sound|gaze|web|ros|record|tls|transports|hosts|drivers)/",
         inner,
     )
     return match[1] if match else None

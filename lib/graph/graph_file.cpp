@@ -9,7 +9,6 @@
 #include <hc/base/suggestion.h>
 #include <hc/contract/conversion.h>
 #include <hc/contract/description.h>
-#include <hc/contract/recording.h>
 #include <hc/contract/trace.h>
 #include <hc/link/policy.h>
 
@@ -248,22 +247,14 @@ std::map<std::pair<std::string, std::string>, Place> recorded_outputs(
 
 }  // namespace
 
-void record_outputs(Graph& graph, const std::vector<std::string>& traced,
-                    const std::string& folder) {
-  for (const auto& [output, place] : recorded_outputs(graph, traced)) {
-    GraphLink link;
-    link.from = {output.first, output.second, ""};
-    // A module that is restarted continues its file.
-    link.to.uri = "file:" + recording_file(folder, link.from.text()) + "?append=1";
-    link.place = place;
-    graph.links.push_back(std::move(link));
-  }
-}
-
 std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::string>& traced,
                                       const std::string& program,
                                       const std::map<std::string, std::string>& parameters) {
+  // A folder lacks no message; where the network might be slower than the module, none waits for
+  // it.
+  const bool is_whole = parameters.contains("folder");
   constexpr const char* kKept = "1024";  // messages, while the recorder waits for the disk
+  constexpr const char* kPatience = "1";  // for a recorder that hangs or was killed [s]
   GraphModule recorder;
   recorder.name = "recorder";
   while (graph.find(recorder.name) != nullptr) recorder.name += "_added";
@@ -276,7 +267,10 @@ std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::strin
     link.from = {output.first, output.second, ""};
     link.to = {recorder.name, "stream_" + std::to_string(inputs.size()), ""};
     link.place = place;
-    link.policy["keep"] = {kKept, {}};
+    const auto* writer = graph.find(output.first);
+    const bool is_here = writer == nullptr || writer->host.value.empty();
+    link.policy["keep"] = {is_whole && is_here ? "all" : kKept, {}};
+    if (is_whole && is_here) link.policy["timeout"] = {kPatience, {}};
     streams += (streams.empty() ? "" : " ") + link.to.port + "=" + link.from.text();
     inputs.push_back(link.to.port);
     graph.links.push_back(std::move(link));

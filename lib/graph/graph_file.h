@@ -162,13 +162,10 @@ inline constexpr std::array<std::string_view, 8> kPolicyKeys = {
 /// Whether a policy makes sense as far as it is in a URI's options. Errors: Invalid.
 Status check_policy(Uri policy);
 
-/// Records every linked output, and the focus, in a file each: FOLDER/MODULE.PORT.mtp.
+/// Has a module `recorder`, on the host of `hc run`, record every linked output and the focus: into
+/// one file of MCAP, which makes no module wait, or into a folder, which lacks no message as long as
+/// the recorder runs.
 /// @param traced  modules whose output `trace` is recorded too.
-void record_outputs(Graph& graph, const std::vector<std::string>& traced,
-                    const std::string& folder);
-
-/// The same by a module `recorder`, which makes no other wait: into one file of MCAP, or into a
-/// folder on the host of `hc run`.
 /// @param parameters  of it: `file` or `folder`, and more.
 /// @returns  its inputs, one for each output, which `--describe` of its program does not say.
 std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::string>& traced,

@@ -167,7 +167,7 @@ class FileLoader : public GraphLoader {
     HostsByName hosts;
     const HostPlaces places = find_programs_elsewhere(graph, problems, hosts, described, stop);
     LoadedGraph loaded{graph, {}, {}, {}};
-    const bool has_recorder = needs_recorder(graph);
+    const bool has_recorder = !options_.recorder.empty();
     const std::string recorder = has_recorder ? find_program("recorder") : "";
     std::vector<std::string> recorded;
     auto describe = [&](const std::string& program,
@@ -190,8 +190,6 @@ class FileLoader : public GraphLoader {
     } else if (has_recorder) {
       recorded = add_recorder(graph, traced_modules(graph, describe), recorder, options_.recorder);
       loaded.recorder = graph.modules.back().name;
-    } else if (!options_.record.empty()) {
-      record_outputs(graph, traced_modules(graph, describe), options_.record);
     }
     auto hold_port = [&](const std::string& host, bool is_for_others) {
       const auto there = hosts.find(host);
@@ -201,19 +199,8 @@ class FileLoader : public GraphLoader {
     Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running,
                           options_.holds_ports ? hold_port : HoldPort(), places);
     loaded.problems = problems.lines();
-    if (problems.empty()) {
-      loaded.plan = std::move(plan);
-      has_recorder_ = has_recorder;
-    }
+    if (problems.empty()) loaded.plan = std::move(plan);
     return loaded;
-  }
-
-  /// Whether a module is to record, and not each module what it sends, which it would do on its own
-  /// host. Once it is so it remains so, lest a module begins a file again.
-  [[nodiscard]] bool needs_recorder(const Graph& graph) const {
-    const bool spans_hosts = std::ranges::any_of(
-        graph.modules, [](const auto& module) { return !module.host.value.empty(); });
-    return !options_.recorder.empty() && (options_.record.empty() || has_recorder_ || spans_hosts);
   }
 
   /// What is known of another host.
@@ -309,7 +296,6 @@ class FileLoader : public GraphLoader {
 
   LoadOptions options_;
   std::map<std::string, Described> described_;  // by program
-  bool has_recorder_ = false;                   // in the last plan
 };
 
 }  // namespace

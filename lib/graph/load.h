@@ -20,9 +20,7 @@ struct LoadOptions {
   std::vector<std::string> settings;  ///< MODULE.PARAMETER=VALUE
   bool page = false;                  ///< has a module `web`, which opens a browser
   std::string listen;                 ///< address that it listens on; empty: its own
-  std::string record;                 ///< folder to record all outputs in; empty: none
-  /// Parameters of a module `recorder` that records them instead of the modules themselves; beside
-  /// `record` only when one of these runs on another host. Empty: there is none.
+  /// Parameters of a module `recorder` that records all outputs; empty: there is none.
   std::map<std::string, std::string> recorder = {};
   std::string token;         ///< for make_plan()
   bool holds_ports = false;  ///< that links over TCP need, where the plan is to run

@@ -33,7 +33,7 @@ GraphMetadata::~GraphMetadata() {
   if (asker_.joinable()) asker_.join();
 }
 
-void GraphMetadata::record(hc::mcap::Recorder& recorder, std::int64_t now) {
+void GraphMetadata::record(hc::record::Writer& writer) {
   if (source_ == nullptr) return;
   hc::Message message;
   while (true) {
@@ -44,26 +44,25 @@ void GraphMetadata::record(hc::mcap::Recorder& recorder, std::int64_t now) {
     }
     if (*got == hc::Got::Nothing) break;
     const auto text = message.characters();
-    if (message.header.src == static_cast<int>(hc::GraphReport::State))
-      record_state(recorder, text);
+    if (message.header.src == static_cast<int>(hc::GraphReport::State)) record_state(writer, text);
     if (message.header.src == static_cast<int>(hc::GraphReport::Log)) {
-      if (const auto line = hc::parse_log_line(text)) static_cast<void>(recorder.log(now, *line));
+      if (const auto line = hc::parse_log_line(text)) static_cast<void>(writer.log(*line));
     }
   }
   static_cast<void>(source_->prepare_wait());
   const std::lock_guard lock(mutex_);
   for (auto& [module, description] : std::exchange(answers_, {}))
     static_cast<void>(
-        recorder.metadata("hypercolumn.description." + module, {{"json", description}}));
+        writer.metadata("hypercolumn.description." + module, {{"json", description}}));
 }
 
-void GraphMetadata::record_state(hc::mcap::Recorder& recorder, std::string_view json) {
+void GraphMetadata::record_state(hc::record::Writer& writer, std::string_view json) {
   const auto state = Json::parse(json, nullptr, false);
   if (!state.is_object()) return;
   auto record_new = [&](const std::string& name, const hc::mcap::Words& words) {
     if (words == recorded_[name]) return;
     recorded_[name] = words;
-    static_cast<void>(recorder.metadata(name, words));
+    static_cast<void>(writer.metadata(name, words));
   };
   const auto file = state.value("file", std::string());
   if (!recorded_.contains("hypercolumn.graph")) {

@@ -14,7 +14,7 @@
 
 #include <client/graph_client.h>
 #include <client/running.h>
-#include <mcap/recorder.h>
+#include <record/writer.h>
 
 /// Observes the graph that one is a module of.
 class GraphMetadata {
@@ -26,11 +26,11 @@ class GraphMetadata {
   /// Readable when record() has something to do.
   [[nodiscard]] int descriptor() const { return source_ != nullptr ? source_->descriptor() : -1; }
   /// Records what is new: log lines, and metadata that has changed.
-  void record(hc::mcap::Recorder& recorder, std::int64_t now);
+  void record(hc::record::Writer& writer);
 
  private:
   explicit GraphMetadata(hc::RunningGraph graph) : graph_(std::move(graph)) {}
-  void record_state(hc::mcap::Recorder& recorder, std::string_view json);
+  void record_state(hc::record::Writer& writer, std::string_view json);
   void ask_modules(const std::vector<std::string>& names);
 
   hc::RunningGraph graph_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records all that comes, into MCAP or a folder. `hc run --record FILE.mcap` adds it to a graph,
-// with an input for each output that it records, and `--record FOLDER` where modules run on other
-// hosts.
+// Records all that comes, into MCAP or a folder. `hc run --record` adds it to a graph, with an
+// input for each output that it records.
 #include <csignal>
 
 #include <sys/signalfd.h>
@@ -10,10 +9,10 @@
 #include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <hc/os/descriptor.h>
+#include <record/writer.h>
 #include <transports/all.h>
 
-#include "folder_recording.h"
-#include "mcap_recording.h"
+#include "graph_metadata.h"
 
 namespace {
 
@@ -47,6 +46,17 @@ std::vector<StreamName> stream_names(int argc, char** argv) {
   if (names.empty()) names.push_back({"in", "in"});
   return names;
 }
+
+/// The times of messages where --clock says so.
+class ModuleClock final : public hc::Clock {
+ public:
+  explicit ModuleClock(const hc::Module& module) : module_(module) {}
+  [[nodiscard]] hc::MonotonicTime monotonic() const override { return module_.monotonic(); }
+  [[nodiscard]] std::int64_t wall() const override { return module_.now(); }
+
+ private:
+  const hc::Module& module_;
+};
 
 [[noreturn]] void refuse(const std::string& what) {
   throw hc::ModuleError(hc::Error{hc::Code::Invalid, what});
@@ -84,6 +94,9 @@ int main(int argc, char** argv) {
   auto folder = module.parameter(
       "folder", "", "", "record into this folder instead of `file`, one STREAM.mtp for each stream",
       {.fixed = true});
+  auto append = module.parameter("append", false, "",
+                                 "continue the files that `folder` has, as in a graph that goes on",
+                                 {.fixed = true});
   auto streams = module.parameter(
       "streams", "", "", "inputs and names of their streams, INPUT=NAME …", {.fixed = true});
   auto split = module.parameter(
@@ -99,48 +112,52 @@ int main(int argc, char** argv) {
                                {.fixed = true});
   auto frames = module.parameter("frames", "", "", "frames of the graph, as text", {.fixed = true});
 
-  std::unique_ptr<Recording> recording;  // null: before the start
+  const ModuleClock clock(module);
+  std::unique_ptr<hc::record::Writer> recording;  // null: before the start
+  std::unique_ptr<GraphMetadata> metadata;        // null: there is no graph, or it is not kept
   bool has_failed = false;
-  std::uint64_t unrecorded = 0;
   auto fail_once = [&](const hc::Status& status) {
-    if (status || has_failed) return;
-    has_failed = true;
-    static_cast<void>(recording->close());
-    module.log("recording ended: " + status.error().detail + "; " + recording->place() +
+    if (status || std::exchange(has_failed, true)) return;
+    module.log("recording ended: " + status.error().detail + "; " + recording->written().place +
                    " holds what came before",
                hc::Level::Error);
   };
 
   module.on_start([&] {
-    McapOptions options;
-    options.file = file->empty() ? "recording.mcap" : *file;
+    hc::record::WriterOptions options;
+    options.streams = recorded;
+    options.append = *append;
+    options.frames = *frames;
     options.split = bytes_of("split", *split);
     options.keep = bytes_of("keep", *keep);
-    options.last =
-        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(*last));
+    options.last = hc::duration(*last);
     options.when = *when;
-    options.frames = *frames;
+    options.clock = &clock;
+    options.log = [&](hc::Level severity, std::string_view line) {
+      module.log(std::string(line),
+                 severity == hc::Level::Error ? hc::Level::Error : hc::Level::Info);
+    };
     const bool is_folder = !folder->empty();
     if (is_folder && !file->empty()) refuse("give either `file` or `folder`");
     if (is_folder && (options.split > 0 || options.keep > 0 || *last > 0 || !when->empty()))
       refuse("`split`, `keep`, `last` and `when` are for `file`");
-    recording = hc::value_or_end(is_folder ? open_folder(*folder, recorded)
-                                           : open_mcap(module, options, recorded));
-    if (const auto& place = recording->place(); place != (is_folder ? *folder : options.file))
-      module.log("recording continues in " + place);
+    hc::record::Place place;
+    place.kind = is_folder ? hc::record::Place::Kind::Folder : hc::record::Place::Kind::Mcap;
+    place.path = is_folder ? *folder : file->empty() ? "recording.mcap" : *file;
+    recording = hc::value_or_end(hc::record::Writer::open(place, options));
+    if (const auto& now = recording->written().place; now != place.path)
+      module.log("recording continues in " + now);
+    if (!is_folder) metadata = GraphMetadata::observe(hc::own_graph());
   });
   for (std::size_t i = 0; i < inputs.size(); ++i)
-    module.on_raw(inputs[i], [&, i](const hc::Message& message) {
-      if (has_failed)
-        ++unrecorded;
-      else
-        fail_once(recording->record(i, message));
-    });
+    module.on_raw(inputs[i],
+                  [&, i](const hc::Message& message) { fail_once(recording->add(i, message)); });
   auto poll = [&] {
-    if (!has_failed) fail_once(recording->poll());
+    if (metadata != nullptr && !has_failed) metadata->record(*recording);
+    fail_once(recording->poll());
   };
   module.on_readable(
-      [&] { return recording != nullptr && !has_failed ? recording->descriptor() : -1; }, poll);
+      [&] { return metadata != nullptr && !has_failed ? metadata->descriptor() : -1; }, poll);
   module.every(std::chrono::milliseconds(250), poll);
   module.on_readable([&] { return signals.get(); },
                      [&] {
@@ -150,11 +167,15 @@ int main(int argc, char** argv) {
                      });
   module.finish_when_stopped();
   module.on_end([&] {
-    if (!has_failed) fail_once(recording->close());
-    const std::uint64_t lost = recording->lost(), count = recording->messages() - lost;
-    std::string text =
-        hc::format("{} message{} in {}", count, count == 1 ? "" : "s", recording->place());
-    if (has_failed) text += hc::format(", {} not recorded", unrecorded + lost);
+    const auto& written = recording->close();
+    fail_once(written.status);
+    if (written.files.empty())
+      return module.log("nothing saved of what was kept", hc::Level::Result);
+    std::string text = hc::format("{} message{} in {}", written.messages,
+                                  written.messages == 1 ? "" : "s", written.place);
+    if (written.files.size() > 1 && folder->empty())
+      text += hc::format(", in {} files", written.files.size());
+    if (written.lost > 0) text += hc::format(", {} not recorded", written.lost);
     module.log(text, hc::Level::Result);
   });
   const int status = module.run(argc, argv);

@@ -11,10 +11,10 @@
 #include <hc/base/clock.h>
 #include <hc/compress/compress.h>
 #include <hc/link/link.h>
+#include <record/reader.h>
 
 #include "message.h"
 #include "python.h"
-#include "recording.h"
 
 namespace python {
 namespace {
@@ -49,7 +49,7 @@ class Stream {
       const py::gil_scoped_release outside;
       const auto options = link_options(limit);
       opened.emplace(graph != nullptr ? hc::open_tap(*graph, text, options)
-                                      : open_any(text, options));
+                                      : hc::record::open_source(text, options));
     }
     if (!*opened) raise({opened->error().code, text + ": " + opened->error().detail});
     source_ = std::move(**opened);

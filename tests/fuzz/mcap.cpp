@@ -7,44 +7,46 @@
 #include <unistd.h>
 
 #include <hc/mtp/codec.h>
-#include <mcap/link.h>
+#include <record/reader.h>
 
 namespace {
 
 constexpr std::uint64_t kLimit = std::uint64_t{1} << 20;  // of elements, chunks, a summary [byte]
 
-/// Reads whatever messages there are; gives the last metadata.
+/// Reads whatever messages and metadata there are.
 void read_records(const std::string& path) {
   auto reader = hc::mcap::Reader::open(path, {.chunk_bytes = kLimit, .summary_bytes = kLimit});
   if (!reader) return;
-  if (const auto summary = reader->summary())
-    static_cast<void>(reader->metadata(summary->first_metadata));
+  static_cast<void>(reader->summary());
+  static_cast<void>(reader->metadata());
   while (true) {
-    const auto stored = reader->next();
+    const auto time = reader->next_time();
+    const auto stored = time ? reader->next() : time.error();
     if (!stored && stored.error().code == hc::Code::Truncated) return;
     if (stored && !*stored) return;
+    HC_CHECK(!stored || (*stored)->record.log_time == **time);
     HC_CHECK(reader->position() <= reader->size());
   }
 }
 
 /// Reads the messages of a recording, or of one of its streams; gives a stream that was in it.
-std::string read_messages(const hc::Uri& uri) {
+std::string read_messages(const hc::record::Place& place) {
   hc::LinkOptions options;
   options.limits.element_bytes = kLimit;
-  auto source = hc::mcap::read_recording(uri, options);
-  if (!source) return {};
+  auto reader = hc::record::Reader::open({place}, options);
+  if (!reader) return {};
   hc::Message message;
   std::string stream;
   while (true) {
-    auto got = (*source)->take(message);
+    auto got = (*reader)->take(message);
     if (!got && got.error().code == hc::Code::Truncated) return stream;
     if (got && *got == hc::Got::End) return stream;
     if (got) {
       static_cast<void>(hc::encode(message));
-      stream = hc::mcap::stream_of(**source);
-      HC_CHECK(uri.option("stream", stream) == stream);
+      stream = (*reader)->stream();
+      HC_CHECK(place.stream.empty() || place.stream == stream);
     } else {
-      HC_CHECK((*source)->resume().has_value());
+      HC_CHECK((*reader)->resume().has_value());
     }
   }
 }
@@ -57,7 +59,8 @@ int fuzz_mcap(const std::uint8_t* data, std::size_t size) {
   HC_CHECK(::pwrite(kFile, data, size, 0) == static_cast<ssize_t>(size));
   const std::string path = "/proc/self/fd/" + std::to_string(kFile);
   read_records(path);
-  const std::string stream = read_messages({"file", path, {}});
-  if (!stream.empty()) read_messages({"file", path, {{"stream", stream}}});
+  using Kind = hc::record::Place::Kind;
+  const std::string stream = read_messages({Kind::Mcap, path, "", {}});
+  if (!stream.empty()) read_messages({Kind::Mcap, path, stream, {}});
   return 0;
 }

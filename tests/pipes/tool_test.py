@@ -231,6 +231,32 @@ class Tool(Pipes):
         out = self.shell("hc play --speed max --loop r.mtp | hc cat --json --count 50")
         self.assertEqual(out.count("\n"), 50)
 
+    def test_play_gives_every_message_and_waits_for_no_jump_of_the_clock(self):
+        begin, hour, years = 10**18, 3600 * 10**9, 20075 * 86400 * 10**9
+        times = (begin, begin - hour, 0, begin + years, begin + 1)
+        self.write(
+            "r.mtp",
+            "".join("1 7 0 %d 8 %d 120190 0 0 1 1\n1\n" % each for each in enumerate(times)),
+        )
+        self.shell("hc record r.mtp r.mcap")
+        for name in ("r.mtp", "r.mcap"):
+            out = self.shell("hc play %s | hc cat --json" % name)
+            self.assertEqual(
+                [json.loads(line)["seq"] for line in out.splitlines()], [0, 1, 2, 3, 4]
+            )
+            self.assertIn("hc play: a pause of 20075 d is left out (--gap)\n", self.err)
+
+    def test_names_with_a_colon_are_files_in_every_verb(self):
+        name = "2025-11-25T13:00:00.mcap"
+        self.shell("hc send 1 | hc record " + name)
+        self.assertEqual(self.read_bytes(name)[:5], b"\x89MCAP")
+        for verb in ("info", "cat", "play --speed max --out 13:00.mcap", "record 14:00.mtp --in"):
+            self.shell("hc %s %s" % (verb, name))
+        for name in ("13:00.mcap", "14:00.mtp"):
+            self.assertEqual(self.shell("hc cat --json " + name).count("\n"), 1)
+        self.shell("hc send 1 | hc record run:1.mcap", 2)
+        self.assertIn("run:1.mcap is a link", self.err)
+
     def test_play_keeps_the_time_of_the_recording(self):
         self.record()
         begin = time.monotonic()

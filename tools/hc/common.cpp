@@ -12,18 +12,17 @@
 #include <hc/base/format.h>
 #include <hc/base/visible.h>
 #include <hc/os/program.h>
-#include <mcap/link.h>
+#include <record/writer.h>
 
 namespace tool {
 namespace {
 
 namespace fs = std::filesystem;
 
-hc::Uri parse(const std::string& uri) {
-  auto parsed = value_or_fail(hc::parse_uri(uri), uri);
-  if (parsed.scheme == "inproc")
-    throw Failure(uri, hc::Error{hc::Code::Invalid, "inproc links threads of one program"});
-  return parsed;
+void check_word(const std::string& word) {
+  if (word.empty()) throw Failure({hc::Code::Invalid, "a link or file cannot be \"\""});
+  if (hc::record::place_of(word).uri.scheme == "inproc")
+    throw Failure(word, hc::Error{hc::Code::Invalid, "inproc links threads of one program"});
 }
 
 /// Text to the person; it does not matter whether it arrives.
@@ -42,19 +41,22 @@ hc::LinkOptions link_options(std::uint64_t limit) {
 }
 
 std::unique_ptr<hc::Source> open_source(const std::string& uri, std::uint64_t limit) {
-  if (const auto recording = hc::mcap::recording_uri(uri))
-    return value_or_fail(hc::mcap::read_recording(*recording, link_options(limit)), uri);
-  return value_or_fail(hc::open_source(parse(uri), link_options(limit)), uri);
+  check_word(uri);
+  return value_or_fail(hc::record::open_source(uri, link_options(limit)), uri);
 }
 
 std::unique_ptr<hc::Sink> open_sink(const std::string& uri) {
-  if (const auto recording = hc::mcap::recording_uri(uri))
-    return value_or_fail(hc::mcap::write_recording(*recording, link_options()), uri);
-  return value_or_fail(hc::open_sink(parse(uri), link_options()), uri);
+  check_word(uri);
+  return value_or_fail(hc::record::open_sink(hc::record::place_of(uri), link_options()), uri);
+}
+
+std::unique_ptr<hc::record::Reader> open_recording(const std::vector<hc::record::Place>& places,
+                                                   std::uint64_t limit, bool all) {
+  return value_or_fail(hc::record::Reader::open(places, link_options(limit), all),
+                       places.front().text());
 }
 
 std::unique_ptr<hc::Source> open_file_source(const std::string& path, std::uint64_t limit) {
-  if (hc::mcap::recording_uri(path)) return open_source(path, limit);
   return value_or_fail(hc::open_source({"file", path, {}}, link_options(limit)), path);
 }
 

@@ -12,6 +12,7 @@
 
 #include <graph/programs.h>
 #include <hc/link/link.h>
+#include <record/reader.h>
 
 namespace tool {
 
@@ -50,11 +51,16 @@ T value_or_fail(hc::Result<T> result, std::string_view who) {
 /// Limits, log and stop of a link. `limit` bounds the elements that are taken. [byte]
 hc::LinkOptions link_options(std::uint64_t limit = kDefaultLimit);
 
-/// Links as the command line names them. `limit` bounds the elements that are taken. [byte]
+/// Links and recordings as the command line names them (record/place.h). `limit` bounds the
+/// elements that are taken. [byte]
 std::unique_ptr<hc::Source> open_source(const std::string& uri, std::uint64_t limit);
 std::unique_ptr<hc::Sink> open_sink(const std::string& uri);
 
-/// Files by their name, which may have any letters, unlike a URI.
+/// @param all  also what is not MTP, to be copied.
+std::unique_ptr<hc::record::Reader> open_recording(const std::vector<hc::record::Place>& places,
+                                                   std::uint64_t limit, bool all = false);
+
+/// Files of messages by their path.
 std::unique_ptr<hc::Source> open_file_source(const std::string& path, std::uint64_t limit);
 std::unique_ptr<hc::Sink> open_file_sink(const std::string& path);
 

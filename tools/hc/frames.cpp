@@ -8,12 +8,12 @@
 #include <frames/messages.h>
 #include <hc/base/format.h>
 #include <hc/compress/compress.h>
-#include <hc/contract/recording.h>
 #include <hc/os/program.h>
 #include <hc/os/wait_readable.h>
 
 #include "common.h"
 #include "graph.h"
+#include "graph_recording.h"
 #include "observer.h"
 #include "verbs.h"
 
@@ -51,12 +51,13 @@ std::vector<std::string> outputs_between(const GraphFrames& frames, const Frames
   return outputs;
 }
 
-void read_recording(GraphFrames& frames, const std::string& folder,
+void read_recording(GraphFrames& frames, const std::string& place,
                     const std::vector<std::string>& outputs) {
+  const GraphRecording recording(place);
   for (const auto& output : outputs) {
-    const auto file = hc::recording_file(folder, output);
-    auto source = open_file_source(file, kDefaultLimit);
-    for (hc::Message message; receive(*source, message, file);) feed(frames, message, file);
+    auto source = recording.open(output);
+    for (hc::Message message; recording.receive(*source, message, output);)
+      feed(frames, message, recording.place_of(output));
   }
 }
 
@@ -152,7 +153,7 @@ void add_frames(CLI::App& app) {
   verb->add_option("--at", options->time, "time [ns since 1970] (default: the latest known)")
       ->check(whole_number());
   auto* in = verb->add_option("--in", options->recording,
-                              "folder of hc run --record (default: the running graph)");
+                              "folder or .mcap of hc run --record (default: the running graph)");
   add_of(*verb, options->of);
   verb->get_option("--of")->excludes(in);
   verb->callback([options] { run(*options); });

@@ -7,13 +7,14 @@
 #include <string>
 
 #include <hc/link/link.h>
+#include <record/place.h>
 
 namespace tool {
 
 class GraphRecording {
  public:
   /// @param place  a folder, or a file whose name ends in ".mcap". Fails where there is none.
-  explicit GraphRecording(std::string place);
+  explicit GraphRecording(const std::string& place);
 
   /// "MODULE.PORT", with the traces of modules.
   [[nodiscard]] const std::set<std::string>& outputs() const { return outputs_; }
@@ -26,15 +27,15 @@ class GraphRecording {
   bool receive(hc::Source& source, hc::Message& message, const std::string& output) const;
 
   /// The graph file that was run, which a file of MCAP names; empty: it names none.
-  [[nodiscard]] std::string graph_file() const;
+  [[nodiscard]] const std::string& graph_file() const { return graph_file_; }
 
   /// Where an output's messages are, for a person.
   [[nodiscard]] std::string place_of(const std::string& output) const;
 
  private:
-  std::string place_;
-  bool is_mcap_;
+  const hc::record::Place place_;
   std::set<std::string> outputs_;
+  std::string graph_file_;
 };
 
 }  // namespace tool

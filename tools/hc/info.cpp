@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc info: summarises a recording or stream.
 
+#include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
 
 #include <hc/base/format.h>
-#include <mcap/link.h>
+#include <record/reader.h>
 
 #include "common.h"
 #include "observer.h"
@@ -75,49 +77,77 @@ void print_senders(const std::map<std::int32_t, Sender>& senders) {
   print(text);
 }
 
-/// What the summary of a recording in MCAP says; its messages are not read.
-void print_recording(const hc::Uri& uri) {
-  auto reader = value_or_fail(hc::mcap::Reader::open(uri.rest), uri.rest);
-  const auto summary = value_or_fail(reader.summary(), uri.rest);
-  const double seconds = static_cast<double>(summary.end - summary.begin) * 1e-9;
+/// The streams of a recording, and topics beside them.
+void print_streams(const std::vector<hc::record::StreamInfo>& streams, double seconds,
+                   const std::string& size) {
   std::string text = hc::format("{:<32} {:>9} {:>8}  {}\n", "stream", "messages", "rate", "type");
   std::uint64_t messages = 0;
-  auto add = [&](const std::string& name, std::uint64_t count, const std::string& type) {
-    text += hc::format(
-        "{:<32} {:>9} {:>8}  {}\n", name, count,
-        seconds > 0 ? hc::format("{:.3g} Hz", static_cast<double>(count) / seconds) : "-", type);
-  };
-  std::set<std::string> topics;
-  for (const auto& stream : hc::mcap::streams(summary)) {
-    add(stream.name, stream.messages, stream.type);
-    messages += stream.messages;
-    topics.insert(stream.topics.begin(), stream.topics.end());
+  for (const auto& each : streams) {
+    const auto count = static_cast<double>(each.messages);
+    text += hc::format("{:<32} {:>9} {:>8}  {}\n", each.name, each.messages,
+                       seconds > 0 ? hc::format("{:.3g} Hz", count / seconds) : "-", each.type);
+    messages += each.messages;
   }
+  print(text + hc::format("{} message{}, {}, {:.3f} s\n", messages, messages == 1 ? "" : "s", size,
+                          seconds));
+}
+
+void print_folder(const hc::record::Place& place, std::uint64_t limit) {
+  const auto streams = value_or_fail(open_recording({place}, limit)->streams(true), place.text());
+  std::int64_t begin = 0, end = 0;
+  double size = 0;
+  for (const auto& each : streams) {
+    if (each.begin != 0) begin = begin == 0 ? each.begin : std::min(begin, each.begin);
+    end = std::max(end, each.end);
+    std::error_code missing;
+    size += static_cast<double>(
+        std::filesystem::file_size(hc::record::stream_file(place.path, each.name), missing));
+  }
+  print_streams(streams, static_cast<double>(end - begin) * 1e-9, bytes_in_words(size));
+}
+
+/// What the summary of a recording in MCAP says, whoever wrote it; its messages are not read.
+void print_mcap(const std::string& path) {
+  auto reader = value_or_fail(hc::mcap::Reader::open(path), path);
+  const auto summary = value_or_fail(reader.summary(), path);
+  auto streams = hc::record::streams_of(summary);
+  std::set<std::string> topics;
+  for (const auto& stream : streams) topics.insert(stream.topics.begin(), stream.topics.end());
   for (const auto& [id, channel] : summary.channels) {
     if (topics.contains(channel.topic)) continue;
     const auto count = summary.counts.find(id);
     const auto schema = summary.schemas.find(channel.schema);
-    add(channel.topic, count == summary.counts.end() ? 0 : count->second,
-        schema == summary.schemas.end() ? channel.encoding : schema->second.name);
+    streams.push_back({channel.topic,
+                       schema == summary.schemas.end() ? channel.encoding : schema->second.name,
+                       {},
+                       count == summary.counts.end() ? 0 : count->second,
+                       0,
+                       0});
   }
-  text += hc::format("{} message{}, {} in {} chunk{} of {}, {:.3f} s\n", messages,
-                     messages == 1 ? "" : "s", bytes_in_words(static_cast<double>(reader.size())),
-                     summary.chunks, summary.chunks == 1 ? "" : "s",
-                     bytes_in_words(static_cast<double>(summary.plain)), seconds);
+  print_streams(
+      streams, static_cast<double>(summary.end - summary.begin) * 1e-9,
+      hc::format("{} in {} chunk{} of {}", bytes_in_words(static_cast<double>(reader.size())),
+                 summary.chunks, summary.chunks == 1 ? "" : "s",
+                 bytes_in_words(static_cast<double>(summary.plain))));
   if (summary.metadata > 0)
-    text += hc::format("{} records of metadata, such as {}\n", summary.metadata,
-                       summary.first_metadata);
-  print(text);
+    print(hc::format("{} records of metadata, such as {}\n", summary.metadata,
+                     summary.first_metadata));
+  if (summary.unread > 0)
+    say(hc::format("hc info: {}: {} of {} chunks have no index, and cannot be read: {}", path,
+                   summary.unread, summary.chunks, summary.why_unread));
   if (!summary.is_whole)
-    throw Failure(uri.rest, {hc::Code::Truncated,
-                             "the file has no end, as a recorder that was killed leaves it; this "
-                             "is what it holds in whole chunks"});
+    throw Failure(path, {hc::Code::Truncated,
+                         "the file has no end, as a recorder that was killed leaves it; this "
+                         "is what it holds in whole chunks"});
+  if (summary.unread > 0) throw Failure(1);
 }
 
 void run(const InfoOptions& options) {
-  const auto recording = hc::mcap::recording_uri(options.uri);
-  if (recording && recording->options.empty() && options.count == 0)
-    return print_recording(*recording);
+  using Kind = hc::record::Place::Kind;
+  const auto place = hc::record::place_of(options.uri);
+  const bool is_whole = place.stream.empty() && options.count == 0;
+  if (is_whole && place.kind == Kind::Mcap) return print_mcap(place.path);
+  if (is_whole && place.kind == Kind::Folder) return print_folder(place, options.limit);
   auto source = open_named(options.uri, options.of, options.limit);
   std::map<std::int32_t, Sender> senders;
   hc::Message message;

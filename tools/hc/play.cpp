@@ -4,7 +4,9 @@
 #include <charconv>
 #include <chrono>
 #include <limits>
+#include <utility>
 
+#include <hc/base/clock.h>
 #include <hc/base/format.h>
 #include <hc/os/program.h>
 #include <hc/os/wait_readable.h>
@@ -21,7 +23,7 @@ using MonotonicClock = std::chrono::steady_clock;
 struct PlayOptions {
   std::string file, out = "-", speed = "1";
   bool loop = false;
-  double from = 0, to = std::numeric_limits<double>::infinity();
+  double gap = 10, from = 0, to = std::numeric_limits<double>::infinity();
   std::uint64_t limit = kDefaultLimit;
 };
 
@@ -29,31 +31,32 @@ struct PlayOptions {
 class Pace {
  public:
   /// @param speed  1: as recorded; infinity: without waiting.
-  explicit Pace(double speed) : speed_(speed) {}
+  /// @param gap  the longest pause that is kept. [s]
+  Pace(double speed, double gap) : speed_(speed), gap_(gap) {}
 
   /// Waits until `seconds` of the recording have passed since the first call; false when
   /// asked to stop.
   bool wait_for(double seconds) {
     if (speed_ == std::numeric_limits<double>::infinity()) return true;
-    if (!begun_) begin_ = MonotonicClock::now() - to_clock(seconds);
+    const double pause = seconds - std::exchange(last_, seconds);
+    if (!begun_ || pause > gap_) left_out_ += pause;
+    if (begun_ && pause > gap_)
+      say(hc::format("hc play: a pause of {} is left out (--gap)", seconds_in_words(pause)));
     begun_ = true;
-    auto due = begin_ + to_clock(seconds);
+    const auto due = begin_ + std::chrono::duration_cast<MonotonicClock::duration>(
+                                  Seconds((seconds - left_out_) / speed_));
     while (true) {
       auto left = due - MonotonicClock::now();
       if (left <= left.zero()) return true;
-      auto pause = std::chrono::ceil<std::chrono::milliseconds>(left);
-      if (!hc::wait_readable({}, hc::stop_descriptor(), pause)) return false;
+      auto wait = std::chrono::ceil<std::chrono::milliseconds>(left);
+      if (!hc::wait_readable({}, hc::stop_descriptor(), wait)) return false;
     }
   }
 
  private:
-  [[nodiscard]] MonotonicClock::duration to_clock(double seconds) const {
-    return std::chrono::duration_cast<MonotonicClock::duration>(Seconds(seconds / speed_));
-  }
-
-  double speed_;
+  double speed_, gap_, last_ = 0, left_out_ = 0;
   bool begun_ = false;
-  MonotonicClock::time_point begin_;
+  const MonotonicClock::time_point begin_ = MonotonicClock::now();
 };
 
 double parse_speed(const std::string& text) {
@@ -69,27 +72,30 @@ double parse_speed(const std::string& text) {
 /// Plays the file once; false when it is not to be repeated: no reader, nothing to play, or asked
 /// to stop.
 bool play_once(const PlayOptions& options, double speed, hc::Sink& sink, Progress& progress) {
-  auto source = options.file == "-" ? open_source("-", options.limit)
-                                    : open_file_source(options.file, options.limit);
+  const auto place = hc::record::place_of(options.file);
+  auto reader = open_recording({place}, options.limit);
   std::error_code unknown;
-  auto size = static_cast<double>(std::filesystem::file_size(options.file, unknown));
-  Pace pace(speed);
+  auto size = static_cast<double>(std::filesystem::file_size(place.path, unknown));
   std::int64_t begin = 0;
+  if (place.kind != hc::record::Place::Kind::Link && options.from > 0) {
+    begin = value_or_fail(reader->next_time(), options.file).value_or(0);
+    reader->start_at(begin + hc::duration(options.from).count());
+  }
+  Pace pace(speed, options.gap);
   bool any = false;
   hc::Message message;
-  while (receive(*source, message, options.file)) {
-    std::int64_t time = message.header.time;
+  while (receive(*reader, message, options.file)) {
+    const auto time = reader->log_time();
     if (begin == 0) begin = time;
-    // A message without a time goes with the one before it.
-    if (time != 0) {
-      double seconds = static_cast<double>(time - begin) * 1e-9;
+    if (time != 0) {  // before the first that is known, they go at once
+      const double seconds = static_cast<double>(time - begin) * 1e-9;
       if (seconds < options.from) continue;
       if (seconds > options.to) break;
       if (!pace.wait_for(seconds)) return false;
     }
     if (!send(sink, message, options.out)) return false;
     any = true;
-    auto traffic = source->traffic();
+    auto traffic = reader->traffic();
     double share = size > 0 && !unknown ? static_cast<double>(traffic.bytes) / size : -1;
     progress.show(share, hc::format("{} messages", traffic.messages));
   }
@@ -113,11 +119,17 @@ void run(const PlayOptions& options) {
 void add_play(CLI::App& app) {
   auto options = std::make_shared<PlayOptions>();
   auto* verb = app.add_subcommand("play", "Play a recording back at its own speed");
-  verb->add_option("file", options->file, "a recording, or -")->required();
+  verb->add_option("file", options->file,
+                   "a recording (FILE.mcap?stream=NAME: one stream of it), or -")
+      ->required();
   verb->add_option("--out", options->out, "where messages go")->capture_default_str();
   verb->add_option("--speed", options->speed, "times faster than recorded, or max")
       ->capture_default_str();
   verb->add_flag("--loop", options->loop, "repeat without end");
+  verb->add_option("--gap", options->gap,
+                   "longest pause that is kept; longer ones are left out [s]")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   verb->add_option("--from", options->from, "skip what is earlier [s from the first message]");
   verb->add_option("--to", options->to, "stop there [s from the first message]");
   add_limit(*verb, options->limit);

@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc record: records ports or links to a file.
-
+// hc record: records ports, links and other recordings.
 #include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include <hc/base/format.h>
 #include <hc/link/wait_set.h>
 #include <hc/os/program.h>
-#include <mcap/link.h>
-#include <mcap/recorder.h>
+#include <record/writer.h>
 
 #include "common.h"
 #include "observer.h"
@@ -25,6 +21,8 @@
 
 namespace tool {
 namespace {
+
+using hc::record::Place;
 
 struct RecordOptions {
   std::string file, of;
@@ -35,20 +33,39 @@ struct RecordOptions {
   std::uint64_t limit = kDefaultLimit;
 };
 
+/// What is recorded as it comes.
+struct Link {
+  std::string word;
+  bool is_port = false;                // of a running graph: one stream, whoever sent its messages
+  std::unique_ptr<hc::Source> source;  // null once it has ended
+};
+
+/// Set by SIGUSR1: what is kept of the last time is to be saved.
+volatile std::sig_atomic_t save_asked = 0;
+
 /// Whether a link is the file that is to be written.
-bool is_file(const std::string& link, const std::string& file) {
+bool is_file(const Place& link, const std::string& file) {
   std::error_code missing;
-  auto uri = hc::parse_uri(link);
-  if (!uri || (uri->scheme != "file" && uri->scheme != "-")) return false;
-  std::string path = uri->scheme == "-" ? "/proc/self/fd/0" : uri->rest;
+  const auto path = link.uri.scheme == "-" ? "/proc/self/fd/0" : link.path;
   return std::filesystem::is_regular_file(path, missing) &&
          std::filesystem::equivalent(path, file, missing);
 }
 
-struct Link {
-  std::string uri;
-  std::unique_ptr<hc::Source> source;  // null once it has ended
-};
+/// Whether it was recorded before, and so has its own times.
+bool is_recording(const Place& place) {
+  std::error_code missing;
+  return place.kind == Place::Kind::Mcap || place.kind == Place::Kind::Folder ||
+         (place.kind == Place::Kind::File && std::filesystem::is_regular_file(place.path, missing));
+}
+
+/// What the stream of a link is called: MODULE.PORT, or a file without folder and ending.
+std::string stream_name(const std::string& word) {
+  const auto place = hc::record::place_of(word);
+  if (!place.stream.empty()) return place.stream;
+  if (place.kind == Place::Kind::Link) return place.uri.scheme == "-" ? "messages" : place.uri.rest;
+  const auto name = std::filesystem::path(place.path).filename();
+  return name.extension() == ".mtp" || name.extension() == ".mcap" ? name.stem() : name;
+}
 
 /// Takes the words SOURCE FILE, or FILE alone, as `file` is empty then.
 void take_words(const std::string& source, const std::string& file, RecordOptions& options) {
@@ -68,184 +85,133 @@ void take_words(const std::string& source, const std::string& file, RecordOption
   options.links = {"-"};
 }
 
-/// Where messages are recorded.
-class Output {
+class Recording {
  public:
-  virtual ~Output() = default;
-  /// @param stream  of a recording that the link is; empty: it is none.
-  virtual void write(std::size_t link, std::string_view stream, const hc::Message& message) = 0;
-  virtual void poll() {}
-  /// How often poll() is to be called.
-  [[nodiscard]] virtual std::chrono::milliseconds period() const {
-    return std::chrono::milliseconds(-1);
+  explicit Recording(const RecordOptions& options) : options_(options) {
+    std::vector<Place> recordings;
+    for (const auto& word : options.links) {
+      const auto place = hc::record::place_of(word);
+      if (is_file(place, options.file))
+        throw Failure(hc::Error{hc::Code::Invalid, word + " is the file that is written"});
+      const bool is_port = graph_of_port(word, options.of).has_value();
+      if (!is_port && is_recording(place))
+        recordings.push_back(place);
+      else
+        links_.push_back({word, is_port, open_named(word, options.of, options.limit)});
+    }
+    const auto place = hc::record::place_of(options.file);
+    if (!recordings.empty())
+      reader_ = open_recording(recordings, options.limit, place.kind == Place::Kind::Mcap);
+    if (recordings.size() == 1) read_ = recordings.front().text();
+    open(place);
   }
-  [[nodiscard]] virtual hc::Traffic traffic() const = 0;
-  virtual void close() = 0;
-};
 
-/// A file of messages.
-class MessageFile : public Output {
- public:
-  explicit MessageFile(const std::string& file) : file_(file), sink_(open_file_sink(file)) {}
-  void write(std::size_t, std::string_view, const hc::Message& message) override {
-    if (auto sent = sink_->send(message); !sent) throw Failure(file_, sent.error());
-  }
-  [[nodiscard]] hc::Traffic traffic() const override { return sink_->traffic(); }
-  void close() override {
-    if (auto closed = sink_->close(); !closed) throw Failure(file_, closed.error());
+  void run() {
+    Progress progress("hc record " + options_.file);
+    hc::WaitSet waits(hc::stop_descriptor());
+    constexpr std::chrono::milliseconds kPeriod{200};
+    while (!hc::stop_requested()) {  // what has arrived is kept
+      bool any = copy();
+      std::vector<hc::Source*> open;
+      for (std::size_t i = 0; i < links_.size() && !is_enough(); ++i) {
+        if (links_[i].source == nullptr) continue;
+        any = take(i) || any;
+        if (links_[i].source != nullptr) open.push_back(links_[i].source.get());
+      }
+      const auto& written = writer_->written();
+      progress.show(-1, hc::format("{} messages, {}", written.messages,
+                                   bytes_in_words(static_cast<double>(written.bytes))));
+      if (is_enough() || (reader_ == nullptr && open.empty())) break;
+      poll();
+      if (!any) static_cast<void>(waits.wait(open, kPeriod));
+    }
+    const auto& written = writer_->close();
+    check(written.status);
+    if (written.files.empty()) say("hc record: nothing was saved of what was kept");
+    for (const auto& link : links_)
+      if (link.source != nullptr) say_losses("hc record", link.word, link.source->traffic());
   }
 
  private:
-  std::string file_;
-  std::unique_ptr<hc::Sink> sink_;
-};
-
-/// Set by SIGUSR1: what is kept of the last time is to be saved.
-volatile std::sig_atomic_t save_asked = 0;
-
-/// A recording in MCAP: a stream for each link, or those that a link has.
-class Recording : public Output {
- public:
-  explicit Recording(const RecordOptions& options) : options_(options) {
-    hc::mcap::RecorderOptions recorder;
-    recorder.file = options.file;
-    recorder.split = value_or_fail(hc::mcap::parse_bytes(options.split), "--split");
-    recorder.keep = value_or_fail(hc::mcap::parse_bytes(options.keep), "--keep");
-    recorder.last = std::chrono::duration_cast<std::chrono::nanoseconds>(
-        std::chrono::duration<double>(options.last));
-    recorder_ = value_or_fail(hc::mcap::Recorder::make(recorder), options.file);
-    if (recorder_->file() != options.file)
-      say(hc::format("hc record: {} stays as it is; continuing in {}", options.file,
-                     recorder_->file()));
-    for (const auto& link : options.links) {
-      // What was recorded before keeps its time.
-      const auto uri = hc::parse_uri(link);
-      std::error_code missing;
-      is_file_.push_back(uri && uri->scheme == "file" &&
-                         std::filesystem::is_regular_file(uri->rest, missing));
-    }
-    if (options.last == 0) return;
+  void open(const Place& place) {
+    hc::record::WriterOptions options;
+    options.split = value_or_fail(hc::mcap::parse_bytes(options_.split), "--split");
+    options.keep = value_or_fail(hc::mcap::parse_bytes(options_.keep), "--keep");
+    options.last = hc::duration(options_.last);
+    if (!options_.when.empty()) options.when = stream_name(options_.when);
+    options.log = [](hc::Level severity, std::string_view line) {
+      const bool is_file = line.starts_with("file:");  // as links log it
+      say((is_file                           ? ""
+           : severity == hc::Level::Error ? "hc record: error: "
+                                             : "hc record: ") +
+          std::string(line));
+    };
+    writer_ = value_or_fail(hc::record::Writer::open(place, options), options_.file);
+    if (place.kind != Place::Kind::File && writer_->written().place != place.path)
+      say(hc::format("hc record: {} stays as it is; continuing in {}", place.path,
+                     writer_->written().place));
+    if (reader_ != nullptr && writer_->copies_all())
+      for (const auto& [name, words] : value_or_fail(reader_->metadata(), read_))
+        check(writer_->metadata(name, words));
+    if (options_.last == 0) return;
     std::signal(SIGUSR1, [](int) { save_asked = 1; });
-    if (::isatty(STDIN_FILENO) == 1 && std::ranges::find(options.links, "-") == options.links.end())
-      has_keys_ = true;
-    say(hc::format("hc record: keeps the last {} s; {}SIGUSR1 to {} saves them", options.last,
+    has_keys_ = ::isatty(STDIN_FILENO) == 1 &&
+                std::ranges::find(options_.links, "-") == options_.links.end();
+    say(hc::format("hc record: keeps the last {} s; {}SIGUSR1 to {} saves them", options_.last,
                    has_keys_ ? "Enter or " : "", ::getpid()));
   }
 
-  void write(std::size_t link, std::string_view stream, const hc::Message& message) override {
-    const auto now = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                         std::chrono::system_clock::now().time_since_epoch())
-                         .count();
-    auto& time = times_[link];
-    time = !is_file_[link] ? now : message.header.time != 0 ? message.header.time : time;
-    auto& number = streams_[{link, std::string(stream)}];
-    if (!number)
-      number = recorder_->add_stream(stream.empty() ? stream_of(options_.links[link]) : stream);
-    check(recorder_->record(*number, message, time));
-    if (options_.when != options_.links[link]) return;
-    const bool is_set = message.plain() && !message.elements.empty() &&
-                        hc::visit_scalar(message.header.info.scalar, [&](auto zero) {
-                          return message.view<decltype(zero)>()->numbers().front() != zero;
-                        });
-    if (is_set && !std::exchange(was_set_, is_set)) save();
-    was_set_ = is_set;
+  /// Copies a message of what was recorded before; false: there are none.
+  bool copy() {
+    if (reader_ == nullptr || is_enough()) return false;
+    auto copied = writer_->copy(*reader_);
+    check(writer_->written().status);
+    if (!copied) throw read_.empty() ? Failure(copied.error()) : Failure(read_, copied.error());
+    if (!*copied) reader_.reset();
+    return *copied;
   }
 
-  void poll() override {
-    check(recorder_->poll());
+  /// Records a message that has come; false: there is none now.
+  bool take(std::size_t number) {
+    auto& link = links_[number];
+    hc::Message message;
+    const auto got = value_or_fail(link.source->take(message), link.word);
+    if (got == hc::Got::End) {
+      say_losses("hc record", link.word, link.source->traffic());
+      link.source.reset();
+    }
+    if (got != hc::Got::Message) return false;
+    auto stream =
+        writer_->stream_of(number, stream_name(link.word), link.is_port ? 0 : message.header.src);
+    check(stream ? writer_->add(*stream, message) : hc::Status(stream.error()));
+    return true;
+  }
+
+  void poll() {
+    check(writer_->poll());
     pollfd keys{STDIN_FILENO, POLLIN, 0};
     std::array<char, 256> line{};
     const bool is_pressed =
         has_keys_ && ::poll(&keys, 1, 0) > 0 && ::read(STDIN_FILENO, line.data(), line.size()) > 0;
-    if (is_pressed || std::exchange(save_asked, 0) != 0) save();
+    if (is_pressed || std::exchange(save_asked, 0) != 0) writer_->save();
   }
-  [[nodiscard]] std::chrono::milliseconds period() const override {
-    constexpr std::chrono::milliseconds kPeriod{200};
-    return kPeriod;
-  }
-  [[nodiscard]] hc::Traffic traffic() const override {
-    hc::Traffic traffic;
-    traffic.messages = recorder_->messages();
-    traffic.bytes = recorder_->bytes();
-    return traffic;
-  }
-  void close() override { check(recorder_->close()); }
 
- private:
-  /// MODULE.PORT as it is, a file by its name without folder and ending.
-  static std::string stream_of(const std::string& link) {
-    const auto uri = hc::parse_uri(link);
-    if (!uri || uri->scheme == "-") return "messages";
-    if (const auto stream = uri->option("stream", ""); !stream.empty()) return std::string(stream);
-    if (uri->scheme != "file") return uri->rest;
-    const auto name = std::filesystem::path(uri->rest).filename();
-    return name.extension() == ".mtp" || name.extension() == ".mcap" ? name.stem().string()
-                                                                     : name.string();
+  [[nodiscard]] bool is_enough() const {
+    return options_.count > 0 && writer_->written().messages >= options_.count;
   }
-  void check(const hc::Status& status) {
+  void check(const hc::Status& status) const {
     if (status) return;
-    static_cast<void>(recorder_->close());
     throw Failure(options_.file, {status.error().code,
                                   status.error().detail + "; what was recorded before is whole"});
   }
-  void save() { say("hc record: saved " + value_or_fail(recorder_->save(), options_.file)); }
 
   const RecordOptions& options_;
-  std::unique_ptr<hc::mcap::Recorder> recorder_;
-  std::vector<bool> is_file_;
-  std::map<std::size_t, std::int64_t> times_;  // of the last message of a link
-  std::map<std::pair<std::size_t, std::string>, std::optional<std::size_t>> streams_;
-  bool has_keys_ = false, was_set_ = false;
+  std::vector<Link> links_;
+  std::unique_ptr<hc::record::Reader> reader_;  // of recordings; null: there are none any more
+  std::string read_;                            // place of the only one; empty: they are several
+  std::unique_ptr<hc::record::Writer> writer_;
+  bool has_keys_ = false;
 };
-
-std::unique_ptr<Output> open_output(const RecordOptions& options) {
-  if (hc::mcap::recording_uri(options.file)) return std::make_unique<Recording>(options);
-  if (!options.split.empty() || !options.keep.empty() || options.last != 0)
-    throw Failure({hc::Code::Invalid, "--split, --keep and --last are for recordings in MCAP: " +
-                                          options.file + " does not end in .mcap"});
-  return std::make_unique<MessageFile>(options.file);
-}
-
-void run(const RecordOptions& options) {
-  std::vector<Link> links;
-  for (const auto& uri : options.links) {
-    if (is_file(uri, options.file))
-      throw Failure(hc::Error{hc::Code::Invalid, uri + " is the file that is written"});
-    links.push_back({uri, open_named(uri, options.of, options.limit)});
-  }
-  const auto output = open_output(options);
-  Progress progress("hc record " + options.file);
-  hc::Message message;
-  hc::WaitSet waits(hc::stop_descriptor());
-  while (!hc::stop_requested()) {  // what has arrived is kept
-    bool any = false;
-    std::vector<hc::Source*> open;
-    for (std::size_t number = 0; number < links.size(); ++number) {
-      auto& [uri, source] = links[number];
-      if (source == nullptr) continue;
-      auto got = value_or_fail(source->take(message), uri);
-      if (got == hc::Got::End) {
-        say_losses("hc record", uri, source->traffic());
-        source.reset();
-      } else {
-        open.push_back(source.get());
-      }
-      if (got != hc::Got::Message) continue;
-      any = true;
-      output->write(number, hc::mcap::stream_of(*source), message);
-      const auto traffic = output->traffic();
-      progress.show(-1, hc::format("{} messages, {}", traffic.messages,
-                                   bytes_in_words(static_cast<double>(traffic.bytes))));
-      if (traffic.messages == options.count) return output->close();
-    }
-    if (open.empty()) return output->close();
-    output->poll();
-    if (!any) static_cast<void>(waits.wait(open, output->period()));
-  }
-  output->close();
-  for (const auto& [uri, source] : links)
-    if (source != nullptr) say_losses("hc record", uri, source->traffic());
-}
 
 }  // namespace
 
@@ -256,10 +222,12 @@ void add_record(CLI::App& app) {
   verb->add_option("source", words->front(),
                    "what is recorded, as --in has it; where no word follows, the output file")
       ->required();
-  verb->add_option("file", words->back(),
-                   "output file; one that has contents stays, and FILE_2 is written");
+  verb->add_option(
+      "file", words->back(),
+      "output: FILE.mcap, FOLDER/, or a file of messages; one that has contents stays, "
+      "and FILE_2 is written");
   verb->add_option("--in", options->links,
-                   "URIs, files or MODULE.PORT of a running graph; may be repeated")
+                   "URIs, recordings or MODULE.PORT of a running graph; may be repeated")
       ->allow_extra_args(false);
   verb->add_option("--split", options->split,
                    "of .mcap: begin a new file after so many bytes (1G)");
@@ -275,7 +243,7 @@ void add_record(CLI::App& app) {
   add_limit(*verb, options->limit);
   verb->callback([options, words] {
     take_words(words->front(), words->back(), *options);
-    run(*options);
+    Recording(*options).run();
   });
 }
 

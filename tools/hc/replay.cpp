@@ -256,7 +256,6 @@ class Replay {
     if (graph.file.empty())
       throw Failure({hc::Code::Invalid, "give --graph FILE: " + options_.recording +
                                             " does not say which graph was run"});
-    graph.record = options_.recording;  // ends of what was recorded; nothing is written there
     return load_plan("replay", graph);
   }
 
@@ -267,17 +266,14 @@ class Replay {
     return words;
   }
 
-  [[nodiscard]] bool is_of_recording(const hc::PlannedEnd& end) const {
-    return !end.is_input && end.port != hc::kTracePort &&
-           end.uri.starts_with("file:" + options_.recording + "/");
-  }
-
+  /// Ports of a module, without its trace.
   [[nodiscard]] std::vector<std::string> recorded_outputs(const hc::PlannedModule& module) const {
-    std::set<std::string> outputs;
-    for (const auto& end : module.ends)
-      if (is_of_recording(end) && recording_.has(module.name + "." + end.port))
-        outputs.insert(end.port);
-    return {outputs.begin(), outputs.end()};
+    std::vector<std::string> ports;
+    for (const auto& output : recording_.outputs())
+      if (const auto dot = output.find('.');
+          output.substr(0, dot) == module.name && output.substr(dot + 1) != hc::kTracePort)
+        ports.push_back(output.substr(dot + 1));
+    return ports;
   }
 
   [[nodiscard]] bool is_excepted(const std::string& name) const {
@@ -316,22 +312,27 @@ class Replay {
     auto steps = steps_of(read_events(recording_, module.name));
     const bool is_known = !steps.empty();
     std::map<std::string, std::int32_t> links;  // of each port so far
-    for (const auto& end : module.ends) {
-      fs::path file = folder_.path() / (module.name + "." + end.port + ".mtp");
-      if (end.is_input) {
-        const auto number = links[end.port]++;
-        const auto writer = writer_of(module, end);
-        file = folder_.path() / hc::format("{}.{}.{}.in", module.name, end.port, number);
-        if (is_known)
-          write_handled(recording_, writer, end.port, number, steps, file);
-        else
-          write_messages(recording_, writer, file, [](const hc::Header&) { return true; });
-      } else if (!is_of_recording(end)) {
-        continue;
-      }
+    const auto add = [&](const char* option, const hc::PlannedEnd& end, const fs::path& file) {
       const std::string link = end.port + "=file:" + file.string();
-      words.insert(words.end(), {end.is_input ? "--in" : "--out", link});
+      words.insert(words.end(), {option, link});
       if (!end.route.empty()) words.insert(words.end(), {"--route", link + " " + end.route});
+    };
+    for (const auto& end : module.ends) {
+      if (!end.is_input) continue;
+      const auto number = links[end.port]++;
+      const auto writer = writer_of(module, end);
+      const auto file = folder_.path() / hc::format("{}.{}.{}.in", module.name, end.port, number);
+      if (is_known)
+        write_handled(recording_, writer, end.port, number, steps, file);
+      else
+        write_messages(recording_, writer, file, [](const hc::Header&) { return true; });
+      add("--in", end, file);
+    }
+    for (const auto& port : recorded_outputs(module)) {
+      const auto end = std::ranges::find_if(
+          module.ends, [&](const auto& each) { return !each.is_input && each.port == port; });
+      add("--out", end != module.ends.end() ? *end : hc::PlannedEnd{false, port, "", ""},
+          folder_.path() / (module.name + "." + port + ".mtp"));
     }
     const fs::path clock = folder_.path() / (module.name + ".clock");
     if (is_known) write_steps(steps, clock);

@@ -12,10 +12,9 @@
 
 #include <graph/run.h>
 #include <hc/base/format.h>
-#include <hc/contract/recording.h>
-#include <hc/os/new_file.h>
 #include <hc/os/program.h>
 #include <hc/os/secret.h>
+#include <record/place.h>
 
 #include "common.h"
 #include "graph.h"
@@ -63,9 +62,6 @@ void print_summary(const RunOptions& options, const hc::RunReport& report) {
                              {ignored, "ignored out of focus"}})
     if (count > 0) lost += hc::format("{}{} {}", lost.empty() ? "  " : ", ", count, word);
   if (!lost.empty()) text += lost + (options.links ? "\n" : " (--links: at which links)\n");
-  if (!options.record.empty())
-    text +=
-        hc::format("  recorded{} into {}\n", report.has_errors() ? " in part" : "", options.record);
   print(text);
 }
 
@@ -119,36 +115,29 @@ void check_writable(const std::filesystem::path& folder, std::error_code failed)
   if (failed) throw Failure({hc::Code::System, path + ": " + failed.message()});
 }
 
-/// Where outputs are recorded: a folder, or a file that a module writes. What an earlier run has
-/// recorded there stays.
-void take_record(RunOptions& options, hc::LoadOptions& load) {
-  auto& place = options.record;
+/// Where the module `recorder` records. What an earlier run has recorded there stays.
+void take_record(const RunOptions& options, hc::LoadOptions& load) {
+  if (options.record.empty()) return;
   for (const auto& [name, value] : options.recorder)
     if (!value.empty())
       load.recorder[name] =
           name == "last" && value.ends_with('s') ? value.substr(0, value.size() - 1) : value;
   const bool is_numbered = load.recorder.contains("split") || load.recorder.contains("last");
-  const auto given = place;
-  std::error_code failed;
-  if (place.ends_with(".mcap")) {
-    check_writable(std::filesystem::path(place).parent_path(), {});
-    if (!is_numbered)
-      place = hc::free_name(place, ".mcap", [](const std::string& path) {
-        std::error_code missing;
-        return std::filesystem::file_size(path, missing) == 0 || missing;
-      });
-    load.recorder["file"] = place;
-    std::signal(SIGUSR1, [](int) { save_requested = 1; });
-  } else if (!load.recorder.empty()) {
+  const auto given = hc::record::place_of_streams(options.record);
+  const bool is_mcap = given.kind == hc::record::Place::Kind::Mcap;
+  if (!is_mcap && !load.recorder.empty())
     throw Failure({hc::Code::Invalid, "--" + load.recorder.begin()->first +
                                           " is for recordings in MCAP: --record FILE.mcap"});
-  } else if (!place.empty()) {
-    place = hc::free_name(place, "", hc::is_free_for_recording);
-    load.record = load.recorder["folder"] = place;
-    std::filesystem::create_directories(place, failed);
-    check_writable(place, failed);
-  }
-  if (place != given) say(hc::format("hc run: {} stays; recording into {}", given, place));
+  const auto place = hc::record::free_place(given, is_numbered);
+  std::error_code failed;
+  if (!is_mcap) std::filesystem::create_directories(place.path, failed);
+  const std::filesystem::path path(place.path);
+  check_writable(is_mcap ? path.parent_path() : path, failed);
+  load.recorder[is_mcap ? "file" : "folder"] = place.path;
+  if (!is_mcap) load.recorder["append"] = "true";  // a recorder that is restarted goes on
+  if (is_mcap) std::signal(SIGUSR1, [](int) { save_requested = 1; });
+  if (place.path != given.path)
+    say(hc::format("hc run: {} stays; recording into {}", given.path, place.path));
 }
 
 /// Logs the reason as everything else was logged: its reader may have ended.

@@ -120,6 +120,8 @@ class OptionalFile final : public Sink {
 }  // namespace
 
 Result<std::unique_ptr<Sink>> open_file_sink(const Uri& uri, const LinkOptions& options) {
+  if (uri.rest.ends_with(".mcap"))
+    return Error{Code::Invalid, "a link writes no MCAP; hc record " + uri.rest + " does"};
   auto is_set = [&](const char* key) {
     const auto number = number_option(uri, key, 0);
     return number && *number != 0;

@@ -59,6 +59,12 @@ TEST(File, ThatIsNotThereIsNotFound) {
   EXPECT_FALSE(open_sink(*parse_uri("/nowhere/eyes.mtp")));
 }
 
+TEST(File, OfMcapIsNotWritten) {
+  Folder folder;
+  EXPECT_EQ(open_sink({"file", folder / "x.mcap", {}}).error().code, Code::Invalid);
+  EXPECT_FALSE(fs::exists(folder / "x.mcap"));
+}
+
 TEST(File, R40_IsReadOnBehindDamage) {
   Folder folder;
   std::ofstream(folder / "x") << encode(numbered(0, 3)) << "1 7 0 0 8 0 40101 0 7 50000 1\nshort\n"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
-#include <mcap/record.h>
+#include <record/mcap/records.h>
 
 namespace hc::mcap {
 namespace {

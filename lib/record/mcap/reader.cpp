@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <mcap/reader.h>
+#include <record/mcap/reader.h>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -11,6 +11,7 @@ namespace hc::mcap {
 namespace {
 
 constexpr std::uint64_t kFooterLength = 20;
+constexpr std::uint64_t kRunBytes = std::uint64_t{4} << 20;  // of messages that are in no chunk
 
 MessageRecord read_head(RecordReader& reader) {
   MessageRecord message;
@@ -154,9 +155,14 @@ Result<Summary> Reader::summary() {
         return taken.error();
   auto ended = read_end(summary);
   if (!ended) return ended.error();
-  if (*ended) return summary;
-  kept_ = 0;
-  return go_through();
+  // A file's summary need not repeat channels, or count messages.
+  const bool has_all = std::ranges::all_of(
+      summary.counts, [&](const auto& each) { return summary.channels.contains(each.first); });
+  if (*ended && has_all && !summary.counts.empty()) return summary;
+  if (auto scanned = scan(); !scanned) return scanned.error();
+  Summary heads = heads_;
+  count_contents(heads);
+  return heads;
 }
 
 /// Takes the summary at the end of the file; false where there is none.
@@ -199,82 +205,106 @@ Result<bool> Reader::read_end(Summary& summary) {
   return true;
 }
 
-/// What a summary would say, as far as it can be known without the contents of chunks.
-Result<Summary> Reader::go_through() {
-  constexpr std::uint64_t kChunkHead = 64, kIndexHead = 6, kEntry = 16, kMaxName = 4096;
-  Summary summary;
-  for (std::uint64_t at = kMagic.size();;) {
-    auto place = record_at(at);
+Status Reader::scan() {
+  if (is_scanned_) return {};
+  while (true) {
+    auto place = record_at(scanned_);
     if (!place && place.error().code != Code::Truncated) return place.error();
-    if (!place || place->opcode == Opcode::DataEnd || place->opcode == Opcode::Footer) {
-      summary.is_whole = place.has_value();
-      return summary;
+    heads_.is_whole = place.has_value();
+    is_scanned_ = !place || place->opcode == Opcode::DataEnd || place->opcode == Opcode::Footer;
+    if (is_scanned_) break;
+    const auto at = std::exchange(scanned_, place->end());
+    if (auto taken = scan_record(*place, at); !taken) return taken;
+  }
+  found.schemas.insert(heads_.schemas.begin(), heads_.schemas.end());
+  found.channels.insert(heads_.channels.begin(), heads_.channels.end());
+  return {};
+}
+
+Status Reader::scan_record(const RecordPlace& place, std::uint64_t at) {
+  constexpr std::uint64_t kHead = 64, kEntry = 16, kMaxName = 4096;
+  const bool is_kept = place.opcode == Opcode::Schema || place.opcode == Opcode::Channel ||
+                       place.opcode == Opcode::Header;
+  const std::uint64_t most = is_kept                            ? place.length
+                             : place.opcode == Opcode::Metadata ? kMaxName
+                                                                : kHead;
+  auto content = read(place.content, std::min(place.length, most), limits_.summary_bytes);
+  if (!content) return content.error();
+  if (is_kept) return take(place.opcode, *content, heads_, at);
+  RecordReader reader(*content);
+  if (place.opcode == Opcode::Metadata) {
+    const auto name = reader.string();
+    if (heads_.metadata++ == 0) heads_.first_metadata = name;
+    metadata_.emplace_back(name, place);
+  } else if (place.opcode == Opcode::Chunk) {
+    const auto first = reader.number<std::uint64_t>(), last = reader.number<std::uint64_t>();
+    heads_.plain += reader.number<std::uint64_t>();
+    if (!reader.is_good()) return damaged("a chunk is shorter than its head", at);
+    parts_.push_back({first, last, at, place.end(), true, false});
+    if (first != 0 || last != 0) add_time(heads_, first, last);  // both are 0 of an empty one
+    ++heads_.chunks;
+  } else if (place.opcode == Opcode::MessageIndex && !parts_.empty() && parts_.back().is_chunk) {
+    const auto channel = reader.number<std::uint16_t>();
+    const std::uint64_t count = reader.number<std::uint32_t>() / kEntry;
+    heads_.counts[channel] += count;
+    heads_.messages += count;
+    parts_.back().has_index = true;
+  } else if (place.opcode == Opcode::Message) {
+    const auto message = read_head(reader);
+    if (!reader.is_good()) return damaged("a message is shorter than its head", at);
+    ++heads_.counts[message.channel];
+    ++heads_.messages;
+    add_time(heads_, message.log_time, message.log_time);
+    if (parts_.empty() || parts_.back().is_chunk || place.end() - parts_.back().at > kRunBytes)
+      parts_.push_back({message.log_time, message.log_time, at, at, false, true});
+    auto& run = parts_.back();
+    run.end = place.end();
+    run.first = std::min(run.first, message.log_time);
+    run.last = std::max(run.last, message.log_time);
+  }
+  return {};
+}
+
+void Reader::count_contents(Summary& summary) {
+  for (const auto& part : parts_) {
+    const bool has_all = std::ranges::all_of(
+        summary.counts, [&](const auto& each) { return summary.channels.contains(each.first); });
+    if (part.has_index && has_all) continue;
+    auto opened = open(part, summary);
+    if (!opened && summary.unread++ == 0) summary.why_unread = opened.error().detail;
+    if (!opened || part.has_index) continue;
+    summary.messages += opened->messages.size();
+    for (const auto& [time, at] : opened->messages) {
+      RecordReader reader(std::span(*opened->bytes).subspan(at + kRecordHead));
+      ++summary.counts[reader.number<std::uint16_t>()];
     }
-    const bool is_chunk = place->opcode == Opcode::Chunk;
-    const bool is_index = place->opcode == Opcode::MessageIndex;
-    const bool is_message = place->opcode == Opcode::Message;
-    const bool is_metadata = place->opcode == Opcode::Metadata;
-    const bool is_other = place->opcode == Opcode::Schema || place->opcode == Opcode::Channel ||
-                          place->opcode == Opcode::Header;
-    const std::uint64_t wanted = is_other                 ? place->length
-                                 : is_metadata            ? std::min(place->length, kMaxName)
-                                 : is_chunk || is_message ? std::min(place->length, kChunkHead)
-                                 : is_index               ? std::min(place->length, kIndexHead)
-                                                          : 0;
-    auto content = read(place->content, wanted, limits_.summary_bytes);
-    if (!content) return content.error();
-    RecordReader reader(*content);
-    if (is_other) {
-      if (auto taken = take(place->opcode, *content, summary, at); !taken) return taken.error();
-    } else if (is_metadata) {
-      const auto name = reader.string();
-      if (summary.metadata++ == 0) summary.first_metadata = name;
-    } else if (is_chunk) {
-      const auto first = reader.number<std::uint64_t>(), last = reader.number<std::uint64_t>();
-      summary.plain += reader.number<std::uint64_t>();
-      if (!reader.is_good()) return damaged("a chunk is shorter than its head", at);
-      add_time(summary, first, last);
-      ++summary.chunks;
-    } else if (is_index && summary.chunks > 0) {
-      const auto channel = reader.number<std::uint16_t>();
-      const std::uint64_t count = reader.number<std::uint32_t>() / kEntry;
-      summary.counts[channel] += count;
-      summary.messages += count;
-    } else if (is_message) {
-      const auto message = read_head(reader);
-      ++summary.counts[message.channel];
-      ++summary.messages;
-      add_time(summary, message.log_time, message.log_time);
-    }
-    at = place->end();
   }
 }
 
-Result<std::optional<Words>> Reader::metadata(std::string_view name) {
-  std::optional<Words> found_words;
-  for (std::uint64_t at = kMagic.size();;) {
-    auto place = record_at(at);
-    if (!place && place.error().code != Code::Truncated) return place.error();
-    if (!place || place->opcode == Opcode::DataEnd || place->opcode == Opcode::Footer)
-      return found_words;
-    at = place->end();
-    if (place->opcode != Opcode::Metadata) continue;
-    auto content = read(place->content, place->length, limits_.summary_bytes);
+Result<std::map<std::string, Words>> Reader::metadata() {
+  if (auto scanned = scan(); !scanned) return scanned.error();
+  std::map<std::string, Words> all;
+  std::uint64_t kept = 0;
+  for (const auto& [name, place] : metadata_) {
+    auto content = read(place.content, place.length, limits_.summary_bytes - kept);
     if (!content) return content.error();
+    kept += content->size();
     RecordReader reader(*content);
-    if (reader.string() != name) continue;
-    found_words = reader.words();
-    if (!reader.is_good()) return damaged("a record is shorter than what it holds", place->content);
+    const std::string key(reader.string());
+    all[key] = reader.words();
+    if (!reader.is_good()) return damaged("a record is shorter than what it holds", place.content);
   }
+  return all;
 }
 
-Result<bool> Reader::is_skipped(const RecordPlace& chunk) {
-  if (!selected_) return false;
-  for (std::uint64_t at = chunk.end();;) {
+Result<bool> Reader::is_skipped(const Part& chunk) {
+  if (chunk.last < start_) return true;
+  if (!selected_ || !chunk.is_chunk) return false;
+  for (std::uint64_t at = chunk.end;;) {
     auto place = record_at(at);
     // Where the file ends here, there may have been more.
     if (!place) return place.error().code == Code::Truncated ? Result<bool>(false) : place.error();
-    if (place->opcode != Opcode::MessageIndex) return at > chunk.end();
+    if (place->opcode != Opcode::MessageIndex) return at > chunk.end;
     auto channel = read(place->content, sizeof(std::uint16_t), sizeof(std::uint16_t));
     if (!channel) return channel.error();
     if (selected_->contains(RecordReader(*channel).number<std::uint16_t>())) return false;
@@ -282,77 +312,101 @@ Result<bool> Reader::is_skipped(const RecordPlace& chunk) {
   }
 }
 
-Status Reader::open_chunk(const RecordPlace& place) {
-  auto content = read(place.content, place.length, limits_.chunk_bytes);
-  if (!content) return content.error();
-  auto plain = unpack_chunk(*content, limits_.chunk_bytes);
-  if (!plain)
-    return Error{plain.error().code,
-                 plain.error().detail + ", at byte " + std::to_string(place.content - kRecordHead)};
-  chunk_ = std::make_shared<const std::vector<std::byte>>(std::move(*plain));
-  chunk_begin_ = place.content - kRecordHead;
-  chunk_at_ = 0;
-  return {};
+Result<Reader::OpenPart> Reader::open(const Part& part, Summary& summary) {
+  const auto head = part.is_chunk ? kRecordHead : 0;
+  auto bytes = read(part.at + head, part.end - part.at - head, limits_.chunk_bytes);
+  if (!bytes) return bytes.error();
+  if (part.is_chunk) {
+    bytes = unpack_chunk(*bytes, limits_.chunk_bytes);
+    if (!bytes)
+      return Error{bytes.error().code,
+                   bytes.error().detail + ", at byte " + std::to_string(part.at)};
+  }
+  OpenPart opened{std::make_shared<const std::vector<std::byte>>(std::move(*bytes)), {}, 0};
+  RecordReader records(*opened.bytes);
+  while (!records.at_end()) {
+    const std::uint64_t at = opened.bytes->size() - records.left();
+    const auto opcode = static_cast<Opcode>(records.number<std::uint8_t>());
+    const auto content = records.take(records.number<std::uint64_t>());
+    if (!records.is_good()) return damaged("a record reaches over the end of its chunk", part.at);
+    if (opcode == Opcode::Schema || opcode == Opcode::Channel)
+      if (auto taken = take(opcode, content, summary, part.at); !taken) return taken.error();
+    if (opcode != Opcode::Message) continue;  // a chunk has no others
+    RecordReader reader(content);
+    const auto message = read_head(reader);
+    if (!reader.is_good()) return damaged("a message is shorter than its head", part.at);
+    opened.messages.emplace_back(message.log_time, at);
+  }
+  return opened;
 }
 
-Result<std::optional<StoredMessage>> Reader::next_of_chunk() {
-  while (chunk_at_ < chunk_->size()) {
-    const auto rest = std::span(*chunk_).subspan(chunk_at_);
-    RecordReader reader(rest);
-    const auto opcode = static_cast<Opcode>(reader.number<std::uint8_t>());
-    const auto content = reader.take(reader.number<std::uint64_t>());
-    if (!reader.is_good()) {
-      chunk_ = nullptr;
-      return damaged("a record reaches over the end of its chunk", chunk_begin_);
-    }
-    chunk_at_ += rest.size() - reader.left();
-    if (opcode == Opcode::Schema || opcode == Opcode::Channel)
-      if (auto taken = take(opcode, content, found, chunk_begin_); !taken) return taken.error();
-    if (opcode != Opcode::Message) continue;  // a chunk has no others
-    RecordReader message(content);
-    StoredMessage stored{read_head(message), {}, chunk_};
-    if (!message.is_good()) return damaged("a message is shorter than its head", chunk_begin_);
-    if (selected_ && !selected_->contains(stored.record.channel)) continue;
-    stored.data = content.last(message.left());
-    return std::optional(std::move(stored));
+Result<Reader::OpenPart*> Reader::front() {
+  if (auto scanned = scan(); !scanned) return scanned.error();
+  if (!std::exchange(is_sorted_, true)) std::ranges::stable_sort(parts_, {}, &Part::first);
+  while (true) {
+    auto first = open_.begin();
+    for (auto each = open_.begin(); each != open_.end(); ++each)
+      if (each->second.time() < first->second.time()) first = each;
+    const bool has_next = next_part_ < parts_.size();
+    if (!open_.empty() && (!has_next || parts_[next_part_].first >= first->second.time() ||
+                           open_bytes_ > limits_.chunk_bytes))
+      return &first->second;
+    if (!has_next) return heads_.is_whole ? Result<OpenPart*>(nullptr) : truncated(scanned_);
+    const auto number = next_part_++;
+    const Part& part = parts_[number];
+    position_ += part.end - part.at;
+    auto skipped = is_skipped(part);
+    if (!skipped) return skipped.error();
+    if (*skipped) continue;
+    auto opened = open(part, found);
+    if (!opened) return opened.error();
+    std::erase_if(opened->messages, [&](const auto& message) {
+      RecordReader reader(std::span(*opened->bytes).subspan(message.second + kRecordHead));
+      const auto channel = reader.number<std::uint16_t>();
+      return message.first < start_ || (selected_ && !selected_->contains(channel));
+    });
+    if (opened->messages.empty()) continue;
+    const auto by_time = [](const auto& each) { return each.first; };
+    if (!std::ranges::is_sorted(opened->messages, {}, by_time))
+      std::ranges::stable_sort(opened->messages, {}, by_time);
+    open_bytes_ += opened->bytes->size();
+    open_.emplace(number, std::move(*opened));
   }
-  chunk_ = nullptr;
-  return std::optional<StoredMessage>();
+}
+
+void Reader::start_at(std::uint64_t log_time) {
+  start_ = log_time;
+  for (auto& [number, part] : open_)
+    while (part.next < part.messages.size() && part.time() < start_) ++part.next;
+  close_parts();
+}
+
+void Reader::close_parts() {
+  std::erase_if(open_, [&](const auto& each) {
+    const bool is_read = each.second.next == each.second.messages.size();
+    if (is_read) open_bytes_ -= each.second.bytes->size();
+    return is_read;
+  });
+}
+
+Result<std::optional<std::uint64_t>> Reader::next_time() {
+  auto part = front();
+  if (!part) return part.error();
+  return *part != nullptr ? std::optional((*part)->time()) : std::nullopt;
 }
 
 Result<std::optional<StoredMessage>> Reader::next() {
-  while (true) {
-    if (chunk_ != nullptr) {
-      auto message = next_of_chunk();
-      if (!message || *message) return message;
-    }
-    const std::uint64_t begin = at_;
-    auto place = record_at(begin);
-    if (!place) return place.error();
-    if (place->opcode == Opcode::DataEnd || place->opcode == Opcode::Footer)
-      return std::optional<StoredMessage>();
-    at_ = place->end();
-    if (place->opcode == Opcode::Chunk) {
-      auto skipped = is_skipped(*place);
-      if (!skipped) return skipped.error();
-      if (*skipped) continue;
-      if (auto opened = open_chunk(*place); !opened) return opened.error();
-    } else if (place->opcode == Opcode::Message) {
-      auto content = read(place->content, place->length, limits_.chunk_bytes);
-      if (!content) return content.error();
-      auto owner = std::make_shared<const std::vector<std::byte>>(std::move(*content));
-      RecordReader reader(*owner);
-      StoredMessage stored{read_head(reader), {}, owner};
-      if (!reader.is_good()) return damaged("a message is shorter than its head", begin);
-      if (selected_ && !selected_->contains(stored.record.channel)) continue;
-      stored.data = std::span(*owner).last(reader.left());
-      return std::optional(std::move(stored));
-    } else if (place->opcode == Opcode::Schema || place->opcode == Opcode::Channel) {
-      auto content = read(place->content, place->length, limits_.summary_bytes);
-      if (!content) return content.error();
-      if (auto taken = take(place->opcode, *content, found, begin); !taken) return taken.error();
-    }
-  }
+  auto found_part = front();
+  if (!found_part) return found_part.error();
+  OpenPart* part = *found_part;
+  if (part == nullptr) return std::optional<StoredMessage>();
+  RecordReader record(std::span(*part->bytes).subspan(part->messages[part->next].second + 1));
+  const auto content = record.take(record.number<std::uint64_t>());
+  RecordReader reader(content);
+  StoredMessage stored{read_head(reader), {}, part->bytes};
+  stored.data = content.last(reader.left());
+  if (++part->next == part->messages.size()) close_parts();
+  return std::optional(std::move(stored));
 }
 
 }  // namespace hc::mcap

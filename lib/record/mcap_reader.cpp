@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <mcap/link.h>
-
+// Streams of MTP in a file of MCAP (doc/recordings.md, "In the file").
 #include <algorithm>
-#include <chrono>
+#include <limits>
 #include <map>
+#include <utility>
 
 #include <hc/base/suggestion.h>
-#include <mcap/recorder.h>
+#include <record/reader.h>
 #include <ros/messages.h>
 #include <ros/schema.h>
 
-namespace hc::mcap {
+namespace hc::record {
 namespace {
 
-/// Metadata of channels: the stream of one for messages of MTP; and beside which one another is.
-constexpr const char* kStream = "hypercolumn.stream";
-constexpr const char* kBeside = "hypercolumn.mtp";
+using mcap::ChannelRecord;
+using mcap::StoredMessage;
+using mcap::Summary;
 
 bool is_matrix(const Summary& summary, const ChannelRecord& channel) {
   const auto schema = summary.schemas.find(channel.schema);
@@ -24,7 +24,7 @@ bool is_matrix(const Summary& summary, const ChannelRecord& channel) {
 }
 
 std::string stream_name(const ChannelRecord& channel) {
-  const auto name = channel.metadata.find(kStream);
+  const auto name = channel.metadata.find(mcap::kStreamKey);
   return name != channel.metadata.end() ? name->second : channel.topic;
 }
 
@@ -32,47 +32,80 @@ std::string stream_name(const ChannelRecord& channel) {
 std::multimap<std::string_view, std::uint16_t> channels_beside(const Summary& summary) {
   std::multimap<std::string_view, std::uint16_t> channels;
   for (const auto& [id, channel] : summary.channels)
-    if (const auto beside = channel.metadata.find(kBeside);
+    if (const auto beside = channel.metadata.find(mcap::kBesideKey);
         beside != channel.metadata.end() && !is_matrix(summary, channel))
       channels.emplace(beside->second, id);
   return channels;
 }
 
-class RecordingSource : public Source {
+std::int64_t signed_time(std::uint64_t time) {
+  return static_cast<std::int64_t>(
+      std::min<std::uint64_t>(time, std::numeric_limits<std::int64_t>::max()));
+}
+
+class McapReader final : public Reader {
  public:
-  RecordingSource(Reader reader, const Limits& limits)
-      : reader_(std::move(reader)), limits_(limits) {}
+  McapReader(mcap::Reader reader, Summary summary, const Limits& limits)
+      : reader_(std::move(reader)), summary_(std::move(summary)), limits_(limits) {}
 
   Result<Got> take(Message& message) override {
     message = {};
     while (true) {
-      auto stored = reader_.next();
+      auto stored = take_stored();
       if (!stored) return stored.error();
       if (!*stored) return Got::End;
-      const auto channel = reader_.found.channels.find((*stored)->record.channel);
-      if (channel == reader_.found.channels.end())
-        return Error{Code::Malformed, "MCAP: a message of channel " +
-                                          std::to_string((*stored)->record.channel) +
-                                          ", which is not declared"};
-      if (!is_matrix(reader_.found, channel->second)) {
-        const auto beside = channel->second.metadata.find(kBeside);
-        if (beside != channel->second.metadata.end()) keep(beside->second, std::move(**stored));
+      const auto& channel = *(*stored)->channel;
+      if (!(*stored)->is_mtp) {
+        const auto beside = channel.metadata.find(mcap::kBesideKey);
+        if (beside != channel.metadata.end()) keep(beside->second, std::move((*stored)->message));
         continue;
       }
-      auto made = rebuild(**stored, channel->second.topic);
+      auto made = rebuild((*stored)->message, channel.topic);
       if (!made) return made.error();
       message = std::move(*made);
-      stream_ = stream_name(channel->second);
+      stream_ = stream_name(channel);
+      log_time_ = signed_time((*stored)->message.record.log_time);
       ++traffic_.messages;
-      traffic_.bytes = reader_.position();
       return Got::Message;
     }
   }
 
+  [[nodiscard]] bool has_more() const override { return true; }
+  Result<std::optional<Stored>> take_stored() override {
+    auto next = reader_.next();
+    if (!next) return next.error();
+    if (!*next) return std::optional<Stored>();
+    const auto channel = reader_.found.channels.find((*next)->record.channel);
+    if (channel == reader_.found.channels.end())
+      return Error{Code::Malformed, "MCAP: a message of channel " +
+                                        std::to_string((*next)->record.channel) +
+                                        ", which is not declared"};
+    const auto schema = reader_.found.schemas.find(channel->second.schema);
+    return std::optional(Stored{&reader_, &channel->second,
+                                schema != reader_.found.schemas.end() ? &schema->second : nullptr,
+                                std::move(**next), is_matrix(reader_.found, channel->second)});
+  }
+
+  Result<std::optional<std::int64_t>> next_time() override {
+    auto time = reader_.next_time();
+    if (!time) return time.error();
+    return *time ? std::optional(signed_time(**time)) : std::nullopt;
+  }
+
+  [[nodiscard]] std::int64_t log_time() const override { return log_time_; }
+  [[nodiscard]] std::string_view stream() const override { return stream_; }
+  void start_at(std::int64_t log_time) override {
+    reader_.start_at(static_cast<std::uint64_t>(log_time));
+  }
   [[nodiscard]] int descriptor() const override { return reader_.descriptor(); }
-  [[nodiscard]] Traffic traffic() const override { return traffic_; }
+  [[nodiscard]] Traffic traffic() const override {
+    Traffic traffic = traffic_;
+    traffic.bytes = reader_.position();
+    return traffic;
+  }
   Status resume() override { return {}; }
-  [[nodiscard]] std::string_view stream() const { return stream_; }
+  Result<std::vector<StreamInfo>> streams(bool) override { return streams_of(summary_); }
+  Result<std::map<std::string, mcap::Words>> metadata() override { return reader_.metadata(); }
 
  private:
   /// Keeps what the next message of a topic may need; of one chunk, since that is its memory.
@@ -116,61 +149,23 @@ class RecordingSource : public Source {
     return message;
   }
 
-  Reader reader_;
-  Limits limits_;
+  mcap::Reader reader_;
+  const Summary summary_;
+  const Limits limits_;
   Traffic traffic_;
-  std::string stream_;                           // of the last message
+  std::string stream_;  // of the last message
+  std::int64_t log_time_ = 0;
   std::map<std::string, StoredMessage> beside_;  // the last, by the topic of MTP
 };
 
-class RecordingSink : public Sink {
- public:
-  explicit RecordingSink(std::unique_ptr<Recorder> recorder) : recorder_(std::move(recorder)) {}
-
-  Status send(const Message& message) override {
-    const auto src = message.header.src;
-    auto known = streams_.find(src);
-    if (known == streams_.end())
-      known = streams_.emplace(src, recorder_->add_stream("src_" + std::to_string(src))).first;
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    traffic_.messages += 1;
-    traffic_.bytes += message.elements.size();
-    return recorder_->record(known->second, message,
-                             std::chrono::duration_cast<std::chrono::nanoseconds>(now).count());
-  }
-  Status close() override { return recorder_->close(); }
-  [[nodiscard]] Traffic traffic() const override { return traffic_; }
-
- private:
-  std::unique_ptr<Recorder> recorder_;
-  std::map<std::int32_t, std::size_t> streams_;
-  Traffic traffic_;
-};
-
-/// Options other than these are refused.
-Status check_options(const Uri& uri, std::string_view known) {
-  for (const auto& [key, value] : uri.options)
-    if (key != known)
-      return Error{Code::Invalid,
-                   "a recording in MCAP has no option \"" + key + "\"" +
-                       (known.empty() ? "" : ", only \"" + std::string(known) + "\"")};
-  return {};
-}
-
 }  // namespace
 
-std::optional<Uri> recording_uri(std::string_view text) {
-  auto uri = parse_uri(text);
-  if (!uri || uri->scheme != "file" || !uri->rest.ends_with(".mcap")) return std::nullopt;
-  return *uri;
-}
-
-std::vector<StreamInfo> streams(const Summary& summary) {
+std::vector<StreamInfo> streams_of(const Summary& summary) {
   std::vector<StreamInfo> all;
   auto besides = channels_beside(summary);
   for (const auto& [id, channel] : summary.channels) {
     if (!is_matrix(summary, channel)) continue;
-    StreamInfo stream{stream_name(channel), "", "", {channel.topic}, 0};
+    StreamInfo stream{stream_name(channel), "", {channel.topic}, 0, 0, 0};
     if (const auto count = summary.counts.find(id); count != summary.counts.end())
       stream.messages = count->second;
     const auto [begin, end] = besides.equal_range(channel.topic);
@@ -178,9 +173,7 @@ std::vector<StreamInfo> streams(const Summary& summary) {
       const auto& other = summary.channels.at(beside->second);
       const auto schema = summary.schemas.find(other.schema);
       stream.topics.push_back(other.topic);
-      if (!stream.topic.empty()) continue;
-      stream.topic = other.topic;
-      if (schema != summary.schemas.end()) stream.type = schema->second.name;
+      if (stream.type.empty() && schema != summary.schemas.end()) stream.type = schema->second.name;
     }
     besides.erase(begin, end);  // others of this topic would only repeat them
     all.push_back(std::move(stream));
@@ -189,32 +182,37 @@ std::vector<StreamInfo> streams(const Summary& summary) {
   return all;
 }
 
-Result<std::unique_ptr<Source>> read_recording(const Uri& uri, const LinkOptions& options) {
-  if (auto checked = check_options(uri, "stream"); !checked) return checked.error();
-  ReaderLimits limits;
+Result<std::unique_ptr<Reader>> read_mcap(const Place& place, const LinkOptions& options,
+                                          bool all) {
+  for (const auto& [key, value] : place.uri.options)
+    if (key != "stream")
+      return Error{Code::Invalid,
+                   "a recording in MCAP has no option \"" + key + "\", only \"stream\""};
+  mcap::ReaderLimits limits;
   limits.chunk_bytes = options.limits.element_bytes + (std::uint64_t{64} << 20);
-  auto reader = Reader::open(uri.rest, limits);
+  auto reader = mcap::Reader::open(place.path, limits);
   if (!reader) return reader.error();
   auto summary = reader->summary();
   if (!summary) return summary.error();
-  // Of a file without its end, channels that only chunks declare are not known yet.
-  const auto known = streams(*summary);
-  const bool has_other = !summary->channels.empty() && known.empty();
-  if (has_other && summary->is_whole)
-    return Error{Code::Unsupported, uri.rest + ": a recording of " +
+  // Of a file without its end, channels that only chunks declare may not be known yet.
+  const auto known = streams_of(*summary);
+  if (!all && known.empty() && !summary->channels.empty() && summary->is_whole)
+    return Error{Code::Unsupported, place.path + ": a recording of " +
                                         std::to_string(summary->channels.size()) +
                                         " topics, none of them made here"};
-  if (const auto wanted = uri.option("stream", ""); !wanted.empty()) {
+  const auto& wanted = place.stream;
+  if (!wanted.empty() && std::ranges::find(known, wanted, &StreamInfo::name) == known.end()) {
     std::vector<std::string> names;
-    names.reserve(known.size());
     for (const auto& each : known) names.push_back(each.name);
-    if (std::ranges::find(names, wanted) == names.end())
-      return Error{Code::NotFound, uri.rest + ": no stream \"" + std::string(wanted) + "\"" +
-                                       suggestion(wanted, names)};
+    return Error{Code::NotFound,
+                 place.path + ": no stream \"" + wanted + "\"" + suggestion(wanted, names)};
+  }
+  if (!wanted.empty() || (!all && summary->is_whole)) {
     std::set<std::uint16_t> channels;
     auto besides = channels_beside(*summary);
     for (const auto& [id, channel] : summary->channels) {
-      if (!is_matrix(*summary, channel) || stream_name(channel) != wanted) continue;
+      if (!is_matrix(*summary, channel)) continue;
+      if (!wanted.empty() && stream_name(channel) != wanted) continue;
       channels.insert(id);
       const auto [begin, end] = besides.equal_range(channel.topic);
       for (auto beside = begin; beside != end; ++beside) channels.insert(beside->second);
@@ -225,24 +223,8 @@ Result<std::unique_ptr<Source>> read_recording(const Uri& uri, const LinkOptions
   // What the summary says of schemas and channels holds wherever they are first declared.
   reader->found.schemas = summary->schemas;
   reader->found.channels = summary->channels;
-  return std::unique_ptr<Source>(new RecordingSource(std::move(*reader), options.limits));
+  return std::unique_ptr<Reader>(
+      new McapReader(std::move(*reader), std::move(*summary), options.limits));
 }
 
-std::string_view stream_of(const Source& source) {
-  const auto* recording = dynamic_cast<const RecordingSource*>(&source);
-  return recording != nullptr ? recording->stream() : std::string_view();
-}
-
-Result<std::unique_ptr<Sink>> write_recording(const Uri& uri, const LinkOptions& link) {
-  if (auto checked = check_options(uri, ""); !checked) return checked.error();
-  RecorderOptions options;
-  options.file = uri.rest;
-  auto recorder = Recorder::make(options);
-  if (!recorder) return recorder.error();
-  if ((*recorder)->file() != uri.rest && link.log)
-    link.log(Level::Warning,
-             uri.text() + ": the file stays as it is; continuing in " + (*recorder)->file());
-  return std::unique_ptr<Sink>(new RecordingSink(std::move(*recorder)));
-}
-
-}  // namespace hc::mcap
+}  // namespace hc::record

@@ -11,7 +11,7 @@
 
 #include <hc/base/result.h>
 #include <hc/os/descriptor.h>
-#include <mcap/chunk.h>
+#include <record/mcap/chunk.h>
 
 namespace hc::mcap {
 
@@ -25,6 +25,9 @@ struct ChannelRecord {
   std::string topic, encoding;
   Words metadata;
 };
+
+/// Metadata of channels: the stream of one for messages of MTP; and beside which one another is.
+inline constexpr const char *kStreamKey = "hypercolumn.stream", *kBesideKey = "hypercolumn.mtp";
 
 struct MetadataRecord {
   std::string name;

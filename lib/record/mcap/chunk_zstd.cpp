@@ -4,7 +4,7 @@
 #include <string>
 
 #include <hc/base/check.h>
-#include <mcap/chunk_codec.h>
+#include <record/mcap/chunk_codec.h>
 
 namespace hc::internal {
 namespace {

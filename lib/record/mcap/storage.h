@@ -6,13 +6,14 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <hc/base/result.h>
-#include <mcap/file.h>
+#include <record/mcap/file.h>
 
 namespace hc::mcap {
 
@@ -25,13 +26,23 @@ struct StorageOptions {
   /// Of the messages before now; more than 0: in memory, and each save() writes a file.
   std::chrono::nanoseconds last{0};
   std::uint64_t memory = std::uint64_t{1} << 30;  ///< of what is kept for `last` [byte]
+  int level = 1;                                  ///< of zstd
+};
+
+/// A message that holds until another one replaces it, and so is in each file: with the time at
+/// which the file begins, but in the first.
+struct Lasting {
+  std::uint16_t channel = 0;
+  std::uint32_t sequence = 0;
+  std::uint64_t log_time = 0;  ///< [ns since the Unix epoch]
+  std::vector<std::byte> data;
 };
 
 /// A number of bytes with K, M or G (of 1024) behind it, or nothing; of an empty text 0.
 /// Errors: Invalid.
 Result<std::uint64_t> parse_bytes(std::string_view text);
 
-/// Keeps chunks. Schemas, channels, metadata and what is marked as such are in each of its files.
+/// Keeps chunks. Schemas, channels, metadata and lasting messages are in each of its files.
 class Storage {
  public:
   /// Errors: System; Invalid (`keep` without `split`; `last` with either).
@@ -42,8 +53,8 @@ class Storage {
   Status add(SchemaRecord schema);
   Status add(ChannelRecord channel);
   Status add(MetadataRecord metadata);
-  /// @param in_each  it is to be in each file, such as what is sent once.
-  Status add(PackedChunk chunk, bool in_each);
+  Status add(Lasting message);
+  Status add(const ChunkBuilder& chunk);
 
   /// Writes what is in memory into a file; gives its name. For `last` alone.
   Result<std::string> save();
@@ -51,16 +62,21 @@ class Storage {
 
   /// Messages of MTP that could not be written.
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
+  /// Those that were written and are not removed, after close().
+  [[nodiscard]] std::vector<std::string> files() const;
   /// The file that is being written; of several the name they are numbered after.
   [[nodiscard]] const std::string& file() const {
     return file_ && !is_numbered() ? file_->path() : options_.file;
   }
 
  private:
-  explicit Storage(StorageOptions options) : options_(std::move(options)) {}
+  explicit Storage(StorageOptions options)
+      : options_(std::move(options)), packer_(std::make_unique<ChunkPacker>(options_.level)) {}
   [[nodiscard]] bool is_numbered() const { return options_.split > 0 || options_.last.count() > 0; }
-  Status begin_file();
+  /// @param time  at which it begins. [ns since the Unix epoch]
+  Status begin_file(std::uint64_t time);
   Status end_file();
+  Status write(const Lasting& message, std::uint64_t time);
   void remove_old();
 
   struct Done {
@@ -72,7 +88,8 @@ class Storage {
   std::vector<SchemaRecord> schemas_;
   std::vector<ChannelRecord> channels_;
   std::map<std::string, MetadataRecord> metadata_;  // the newest of each name
-  std::vector<PackedChunk> each_;                   // chunks that are in each file
+  std::vector<Lasting> lasting_;
+  std::unique_ptr<ChunkPacker> packer_;
   std::optional<File> file_;
   std::deque<Done> done_;
   std::deque<PackedChunk> memory_;

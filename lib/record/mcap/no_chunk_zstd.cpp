@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <mcap/chunk_codec.h>
+#include <record/mcap/chunk_codec.h>
 
 namespace hc::internal {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <mcap/storage.h>
+#include <record/mcap/storage.h>
 
 #include <unistd.h>
 
@@ -62,12 +62,12 @@ Result<Storage> Storage::make(const StorageOptions& options) {
     return Error{Code::Invalid, "what is kept in memory is not split into files"};
   Storage storage(options);
   if (options.last.count() == 0)
-    if (auto begun = storage.begin_file(); !begun) return begun.error();
+    if (auto begun = storage.begin_file(0); !begun) return begun.error();
   return storage;
 }
 
 /// One file has the name that was given; of several each has a number.
-Status Storage::begin_file() {
+Status Storage::begin_file(std::uint64_t time) {
   if (is_numbered()) number_ = std::max(number_, highest_number(options_.file));
   auto file = File::create(is_numbered() ? numbered(options_.file, number_ + 1) : options_.file);
   if (!file) return file.error();
@@ -80,9 +80,22 @@ Status Storage::begin_file() {
     if (done) done = file_->add(channel);
   for (const auto& [name, metadata] : metadata_)
     if (done) done = file_->add(metadata);
-  for (const auto& chunk : each_)
-    if (done) done = file_->add(chunk);
+  for (const auto& message : lasting_)
+    if (done) done = write(message, time);
   return done;
+}
+
+Status Storage::write(const Lasting& message, std::uint64_t time) {
+  ChunkBuilder chunk;
+  const std::span<const std::byte> data[] = {message.data};
+  chunk.add({message.channel, message.sequence, time, time}, data);
+  return file_->add(packer_->pack(chunk));
+}
+
+std::vector<std::string> Storage::files() const {
+  std::vector<std::string> files;
+  for (const auto& each : done_) files.push_back(each.path);
+  return files;
 }
 
 Status Storage::end_file() {
@@ -118,18 +131,20 @@ Status Storage::add(MetadataRecord metadata) {
   return file_ ? file_->add(newest) : Status();
 }
 
-Status Storage::add(PackedChunk chunk, bool in_each) {
-  if (in_each) {
-    each_.push_back(chunk);
-    return file_ ? file_->add(chunk) : Status();
-  }
+Status Storage::add(Lasting message) {
+  lasting_.push_back(std::move(message));
+  return file_ ? write(lasting_.back(), lasting_.back().log_time) : Status();
+}
+
+Status Storage::add(const ChunkBuilder& messages) {
+  auto chunk = packer_->pack(messages);
   if (file_) {
     auto added = file_->add(chunk);
     if (!added) lost_ += chunk.messages;
     if (!added || options_.split == 0 || file_->size() < options_.split) return added;
     if (auto ended = end_file(); !ended) return ended;
     if (options_.keep > 0) remove_old();
-    return begin_file();
+    return begin_file(chunk.info.end);
   }
   in_memory_ += chunk.bytes.size();
   const auto now = chunk.info.end;
@@ -144,7 +159,7 @@ Status Storage::add(PackedChunk chunk, bool in_each) {
 }
 
 Result<std::string> Storage::save() {
-  auto done = begin_file();
+  auto done = begin_file(memory_.empty() ? 0 : memory_.front().info.begin);
   const std::string name = file_ ? file_->path() : "";
   for (const auto& chunk : memory_)
     if (done) done = file_->add(chunk);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <mcap/chunk.h>
+#include <record/mcap/chunk.h>
 
 #include <algorithm>
 
-#include <mcap/chunk_codec.h>
+#include <record/mcap/chunk_codec.h>
 
 namespace hc::mcap {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <hc/base/result.h>
-#include <mcap/record.h>
+#include <record/mcap/records.h>
 
 namespace hc::internal {
 class Compressor;

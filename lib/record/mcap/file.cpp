@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <mcap/file.h>
+#include <record/mcap/file.h>
 
 #include <fcntl.h>
 #include <sys/resource.h>

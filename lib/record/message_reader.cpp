@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files of messages as recordings: they have no log times but those of their messages.
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include <record/reader.h>
+
+namespace hc::record {
+namespace {
+
+/// Times that never go back, out of those of messages.
+class LogTimes {
+ public:
+  std::int64_t last = 0;  ///< 0: none is known yet
+
+  void add(std::int64_t time) {
+    constexpr std::int64_t kDisorder = 1'000'000'000;  // of messages of several modules [ns]
+    constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
+    if (time <= 0) return;
+    const bool is_back = time < last - kDisorder;
+    if (is_back) time = time > kMost - shift_ ? kMost : time + shift_;
+    if (is_back && time < last - kDisorder) {  // the clock was set back, once more
+      shift_ += last - time;
+      time = last;
+    }
+    last = std::max(last, time);
+  }
+
+ private:
+  std::int64_t shift_ = 0;
+};
+
+class MessageReader final : public Reader {
+ public:
+  MessageReader(const Place& place, const LinkOptions& options, std::unique_ptr<Source> source)
+      : place_(place), options_(options), source_(std::move(source)) {
+    name_ = !place.stream.empty()             ? place.stream
+            : place.kind == Place::Kind::Link ? "messages"
+            : std::filesystem::path(place.path).extension() == ".mtp"
+                ? std::filesystem::path(place.path).stem().string()
+                : std::filesystem::path(place.path).filename().string();
+  }
+
+  Result<Got> take(Message& message) override {
+    message = {};
+    auto got = look();
+    if (got && *got == Got::Message) message = std::move(*std::exchange(ahead_, std::nullopt));
+    return got;
+  }
+  Result<std::optional<std::int64_t>> next_time() override {
+    auto got = look();
+    if (!got) return got.error();
+    return *got == Got::Message ? std::optional(times_.last) : std::nullopt;
+  }
+
+  [[nodiscard]] std::int64_t log_time() const override { return times_.last; }
+  [[nodiscard]] std::string_view stream() const override { return name_; }
+  [[nodiscard]] bool is_of_outputs() const override { return !place_.stream.empty(); }
+  [[nodiscard]] int descriptor() const override { return source_->descriptor(); }
+  [[nodiscard]] int wake_descriptor() const override { return source_->wake_descriptor(); }
+  bool prepare_wait() override { return !ahead_ && source_->prepare_wait(); }
+  [[nodiscard]] Traffic traffic() const override { return source_->traffic(); }
+  Status resume() override { return source_->resume(); }
+  void start_at(std::int64_t log_time) override {
+    start_ = log_time;
+    if (times_.last < start_) ahead_.reset();
+  }
+
+  Result<std::vector<StreamInfo>> streams(bool counted) override {
+    StreamInfo info{name_, "", {}, 0, 0, 0};
+    if (!counted) return std::vector{std::move(info)};
+    auto source = hc::open_source(place_.uri, options_);
+    if (!source) return source.error();
+    LogTimes times;
+    Message message;
+    Result<Got> got = Got::Message;
+    while ((got = (*source)->take(message)) && *got == Got::Message) {
+      times.add(message.header.time);
+      if (info.begin == 0) info.begin = times.last;
+      if (info.messages++ == 0) info.type = name(message.header.info.type);
+    }
+    info.end = times.last;
+    return std::vector{std::move(info)};
+  }
+  Result<std::map<std::string, mcap::Words>> metadata() override {
+    return std::map<std::string, mcap::Words>();
+  }
+
+ private:
+  /// Has the next message in `ahead_`.
+  Result<Got> look() {
+    while (!ahead_) {
+      Message message;
+      auto got = source_->take(message);
+      if (!got || *got != Got::Message) return got;
+      if (times_.last == 0 && message.header.time == 0) times_.add(first_time());
+      times_.add(message.header.time);
+      if (times_.last >= start_) ahead_ = std::move(message);
+    }
+    return Got::Message;
+  }
+
+  /// The first time that a message of the file has, if it is near its begin; else 0.
+  std::int64_t first_time() {
+    constexpr std::uint64_t kNear = std::uint64_t{64} << 20;  // [byte]
+    if (std::exchange(has_looked_, true) || place_.kind == Place::Kind::Link) return 0;
+    auto source = hc::open_source(place_.uri, options_);
+    Message message;
+    while (source && (*source)->traffic().bytes < kNear) {
+      auto got = (*source)->take(message);
+      if (!got || *got != Got::Message) break;
+      if (message.header.time != 0) return message.header.time;
+    }
+    return 0;
+  }
+
+  const Place place_;
+  const LinkOptions options_;
+  const std::unique_ptr<Source> source_;
+  std::string name_;
+  LogTimes times_;
+  std::int64_t start_ = 0;
+  bool has_looked_ = false;
+  std::optional<Message> ahead_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Reader>> read_messages(const Place& place, const LinkOptions& options) {
+  auto source = hc::open_source(place.uri, options);
+  if (!source) return source.error();
+  return std::unique_ptr<Reader>(new MessageReader(place, options, std::move(*source)));
+}
+
+}  // namespace hc::record

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <record/place.h>
+
+#include <filesystem>
+
+#include <hc/os/new_file.h>
+
+namespace hc::record {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_no_recording(const std::string& folder) {
+  std::error_code missing;
+  fs::directory_iterator each(folder, missing);
+  for (; !missing && each != fs::directory_iterator(); each.increment(missing))
+    if (each->path().extension() == ".mtp") return false;
+  return true;
+}
+
+bool has_no_contents(const std::string& file) {
+  std::error_code missing;
+  return fs::file_size(file, missing) == 0 || missing;
+}
+
+}  // namespace
+
+std::string Place::text() const {
+  if (kind == Kind::Link) return uri.text();
+  return stream.empty() || kind == Kind::File ? path : path + "?stream=" + stream;
+}
+
+Place place_of(std::string_view word) {
+  Place place;
+  // What cannot be a URI is a file: "2025-11-25T13:00:00.mcap", "odd?name".
+  auto uri = parse_uri(word);
+  place.uri = uri ? *uri : Uri{"file", std::string(word), {}};
+  std::error_code missing;
+  if (uri && uri->scheme == "file" && !uri->options.empty() && fs::exists(word, missing))
+    place.uri = {"file", std::string(word), {}};
+  if (place.uri.scheme != "file") {
+    place.kind = Place::Kind::Link;
+    return place;
+  }
+  place.path = place.uri.rest;
+  place.stream = place.uri.option("stream", "");
+  if (place.path.ends_with(".mcap"))
+    place.kind = Place::Kind::Mcap;
+  else if (place.path.ends_with('/') || fs::is_directory(place.path, missing))
+    place.kind = Place::Kind::Folder;
+  return place;
+}
+
+Place place_of_streams(std::string_view word) {
+  Place place = place_of(word);
+  if (place.kind == Place::Kind::Link) place.path = word;
+  if (place.kind != Place::Kind::Mcap) place.kind = Place::Kind::Folder;
+  return place;
+}
+
+Place free_place(Place place, bool is_numbered) {
+  if (place.kind == Place::Kind::Folder)
+    place.path = free_name(place.path, "", has_no_recording);
+  else if (!is_numbered)
+    place.path = free_name(place.path, ".mcap", has_no_contents);
+  return place;
+}
+
+std::string stream_file(const std::string& folder, const std::string& stream) {
+  return (fs::path(folder) / (stream + ".mtp")).string();
+}
+
+}  // namespace hc::record
