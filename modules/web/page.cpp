@@ -183,29 +183,16 @@ web::Reply Page::reply_with_recording(const web::Request& request) const {
                          json_string(each.name), each.bytes, json_list(each.streams));
     return {200, "application/json", text("[" + list + "]"), {}, {{"Cache-Control", "no-store"}}};
   }
-  std::string_view rest =
-      std::string_view(request.path).substr(std::string_view("/recordings/").size());
-  const auto slash = rest.find('/');
-  if (slash == std::string_view::npos && rest.ends_with(".tar")) {
-    rest.remove_suffix(4);
-    if (!is_recording_name(rest)) return refusal(404, "there is no such recording");
-    auto parts = archive_of(options_.recordings, std::string(rest));
-    if (!parts) return refusal(404, parts.error().detail);
-    return {200,
-            "application/x-tar",
-            {},
-            std::move(*parts),
-            {{"Content-Disposition", "attachment; filename=\"" + std::string(rest) + ".tar\""}}};
-  }
-  if (slash == std::string_view::npos || !rest.ends_with(".mtp"))
-    return refusal(404, "there is no such recording");
-  const std::string name(rest.substr(0, slash));
-  const std::string port(rest.substr(slash + 1, rest.size() - slash - 1 - 4));
-  if (!is_recording_name(name) || !is_port_name(port))
-    return refusal(404, "there is no such recording");
-  auto part = recorded_file(options_.recordings, name, port);
+  const auto file = request.path.substr(std::string_view("/recordings/").size());
+  auto part = file.ends_with(".mcap")
+                  ? recorded_file(options_.recordings, file.substr(0, file.size() - 5))
+                  : hc::Error{hc::Code::NotFound, "there is no such recording"};
   if (!part) return refusal(404, part.error().detail);
-  return {200, "application/octet-stream", {}, {std::move(*part)}, {}};
+  return {200,
+          "application/octet-stream",
+          {},
+          {std::move(*part)},
+          {{"Content-Disposition", "attachment; filename=\"" + file + "\""}}};
 }
 
 // Sockets.
@@ -381,11 +368,11 @@ Rows Page::record(const Rows& words) {
   }
   if (recorder_) return {"there is a recording already: " + recorder_->name()};
   if (words.size() < 3) return {"record is followed by a name and outputs, MODULE.PORT, or by end"};
-  auto begun = Recorder::begin(
-      options_.graph, options_.recordings, words[1], {words.begin() + 2, words.end()},
-      [log = callbacks_.log, &server = server_](hc::Level, std::string_view line) {
-        server.post([log, kept = std::string(line)] { log(kept); });
-      });
+  const auto log = [log = callbacks_.log, &server = server_](hc::Level, std::string_view line) {
+    server.post([log, kept = std::string(line)] { log(kept); });
+  };
+  auto begun = Recorder::begin(options_.graph, {options_.recordings, options_.frames, log},
+                               words[1], {words.begin() + 2, words.end()});
   if (!begun) return {begun.error().detail};
   recorder_ = std::move(*begun);
   return {"ok"};
@@ -398,7 +385,7 @@ void Page::give(const std::vector<Order>& orders) const {
 void Page::tick() {
   robot_.served = clock_.monotonic();
   if (driver_socket_) give(driver_.tick(clock_.wall(), clock_.monotonic()));
-  if (recorder_ && recorder_->has_failed()) recorder_.reset();
+  if (recorder_ && !recorder_->poll()) recorder_.reset();
   for (auto& [number, session] : sessions_) send_session(session);
   std::erase_if(streams_, [&](const auto& each) { return !each.second->is_viewed(); });
 }

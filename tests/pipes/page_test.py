@@ -2,7 +2,6 @@
 """The server of the page, as any client sees it: who may do what, streams, the seat, recordings."""
 
 import contextlib
-import io
 import json
 import os
 import pathlib
@@ -10,11 +9,20 @@ import re
 import resource
 import signal
 import ssl
+<<<<<<< HEAD
 import tarfile
+=======
+import struct
+>>>>>>> 8b3d4f75 (web, page: record into MCAP by the engine, and open it in the browser)
 import unittest
 
 from graphs import GRAPH, Graphs
+<<<<<<< HEAD
 from web_socket import BINARY, TEXT, Refused, WebSocket, connect, get, read_head
+=======
+from harness import wait_until
+from web_socket import BINARY, CLOSE, TEXT, Refused, WebSocket, connect, get, read_head
+>>>>>>> 8b3d4f75 (web, page: record into MCAP by the engine, and open it in the browser)
 
 TASKS = (
     GRAPH
@@ -138,10 +146,10 @@ class Access(Page):
         for path in (
             "/../../etc/passwd",
             "/%2e%2e/%2e%2e/etc/passwd",
-            "/recordings/../../etc/passwd.mtp",
-            "/recordings/a/..%2f..%2fx.y.mtp",
-            "/recordings/a/%00.b.mtp",
-            "/recordings/..tar",
+            "/recordings/../../etc/passwd.mcap",
+            "/recordings/a/..%2f..%2fx.mcap",
+            "/recordings/%00.mcap",
+            "/recordings/..mcap",
             "/nothing",
         ):
             self.assertIn(get(self.port, path, Cookie=cookie)[0], (400, 404), path)
@@ -544,72 +552,80 @@ class Recordings(Page):
     def test_a_download_lasts_as_long_as_it_takes_and_no_link_ends_the_server(self):
         self.serve()
         cookie = self.session()
-        folder = pathlib.Path(self.path("recordings/one"))
-        folder.mkdir(parents=True)
+        folder = pathlib.Path(self.path("recordings"))
+        folder.mkdir()
+        self.shell("hc send 1 2 | hc record recordings/one.mcap")
         size = 40 << 20
-        with open(folder / "a.b.mtp", "wb") as file:
-            file.truncate(size)
-        (folder / "c.d.mtp").symlink_to("nowhere")
-        os.mkfifo(folder / "e.f.mtp")
+        os.truncate(folder / "one.mcap", size)  # its end is lost, as if its writer had been killed
+        (folder / "two.mcap").symlink_to("nowhere")
+        (folder / "four.mcap").symlink_to("four.mcap")
+        (folder / "five.mcap").mkdir()
+        os.mkfifo(folder / "three.mcap")
         graph = self.socket("/graph", cookie)
         listed = json.loads(get(self.port, "/recordings", Cookie=cookie)[2])
-        self.assertEqual(listed, [{"name": "one", "bytes": size, "streams": ["a.b"]}])
-        for name in ("c.d", "e.f", "g.h"):
-            path = "/recordings/one/%s.mtp" % name
+        self.assertEqual(listed, [{"name": "one", "bytes": size, "streams": ["messages"]}])
+        for name in ("two", "three", "four", "five", "six"):
+            path = "/recordings/%s.mcap" % name
             self.assertEqual(get(self.port, path, Cookie=cookie)[0], 404)
         # Two at the same time, of which one waits for the other.
-        request = "GET /recordings/one.tar HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nCookie: %s\r\n\r\n"
+        request = "GET /recordings/one.mcap HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nCookie: %s\r\n\r\n"
         request = (request % (self.port, cookie)).encode()
         with connect(self.port) as first, first.makefile("rb") as file:
             first.sendall(request)
             head = read_head(file)
-            total = int(re.search(r"Content-Length: (\d+)", head)[1])
-            self.assertEqual(len(get(self.port, "/recordings/one.tar", Cookie=cookie)[2]), total)
-            archive = file.read(total)
-        with tarfile.open(fileobj=io.BytesIO(archive)) as files:
-            self.assertEqual([(each.name, each.size) for each in files], [("one/a.b.mtp", size)])
-        self.assertEqual(os.listdir(self.path("recordings")), ["one"])  # nothing was left there
-        self.assertIn("already", self.command(graph, "record one camera.left")[0])
-        self.assertEqual((folder / "a.b.mtp").stat().st_size, size)
+            self.assertIn("Content-Length: %d\r\n" % size, head)
+            self.assertEqual(len(get(self.port, "/recordings/one.mcap", Cookie=cookie)[2]), size)
+            self.assertEqual(len(file.read(size)), size)
+        for name in ("one", "two"):
+            said = self.command(graph, "record %s camera.left" % name)
+            self.assertIn("already", said[0])
+        for command in (
+            "record a/b camera.left",
+            "record new",
+            "record new camera",
+            "record new ../x.y",
+        ):
+            self.assertNotEqual(self.command(graph, command), ["ok"], command)
+        self.assertEqual((folder / "one.mcap").stat().st_size, size)
+        self.assertEqual(len(os.listdir(folder)), 5)  # nothing was left there
+
+    def record(self, graph):
+        """Begins a recording, of which something is on the disk then."""
+        self.assertEqual(self.command(graph, "record one camera.left brightness.mean"), ["ok"])
+        path = pathlib.Path(self.path("recordings/one.mcap"))
+        wait_until(lambda: path.stat().st_size > 20000)
+        return path
 
     def test_a_full_disk_ends_the_recording_and_keeps_it(self):
         self.serve(before="trap '' XFSZ; ")
-        cookie = self.session()
-        graph = self.socket("/graph", cookie)
-        self.assertEqual(self.command(graph, "record one camera.left"), ["ok"])
-        self.hear(
-            graph, 3, lambda text: (json.loads(text)["recording"] or {}).get("bytes", 0) > 9999
-        )
+        graph = self.socket("/graph", self.session())
+        path = self.record(graph)
         state = json.loads(self.hear(graph, 1))
         pid = next(each["pid"] for each in state["modules"] if each["name"] == "web")
-        path = self.path("recordings/one/camera.left.mtp")
         # As on a full disk: a write that fails.
-        resource.prlimit(pid, resource.RLIMIT_FSIZE, (os.stat(path).st_size + 5000,) * 2)
+        resource.prlimit(pid, resource.RLIMIT_FSIZE, (path.stat().st_size + 5000,) * 2)
         self.hear(graph, 2, lambda text: "what was written before is kept" in text)
         self.hear(graph, 3, lambda text: json.loads(text)["recording"] is None)
-        self.assertGreater(os.stat(path).st_size, 9999)
+        self.assertRegex(self.shell("hc info recordings/one.mcap"), r"camera\.left +[1-9]")
 
     def test_what_is_recorded_is_listed_and_read_again(self):
         process = self.serve()
         cookie = self.session()
         graph = self.socket("/graph", cookie)
-        self.assertEqual(self.command(graph, "record one camera.left brightness.mean"), ["ok"])
+        self.record(graph)
         self.assertIn("already", self.command(graph, "record two camera.left")[0])
-        self.hear(
-            graph, 3, lambda text: (json.loads(text)["recording"] or {}).get("bytes", 0) > 9999
-        )
+        self.hear(graph, 3, lambda text: json.loads(text)["recording"]["bytes"] > 9999)
         self.assertEqual(self.command(graph, "record end"), ["ok"])
         self.assertIn("already", self.command(graph, "record one camera.left")[0])
         self.assertIn("nothing", self.command(graph, "record end")[0])
         recordings = json.loads(get(self.port, "/recordings", Cookie=cookie)[2])
         self.assertEqual(recordings[0]["streams"], ["brightness.mean", "camera.left"])
-        status, _, data = get(self.port, "/recordings/one/camera.left.mtp", Cookie=cookie)
-        self.assertEqual((status, data.split()[6]), (200, b"30303"))
-        self.assertIn("rgb_image", self.shell("hc info recordings/one/camera.left.mtp"))
-        archive = get(self.port, "/recordings/one.tar", Cookie=cookie)[2]
-        with tarfile.open(fileobj=io.BytesIO(archive)) as files:
-            self.assertEqual(files.extractfile("one/camera.left.mtp").read(), data)
-        self.assertEqual(get(self.port, "/recordings/two.tar", Cookie=cookie)[0], 404)
+        status, _, data = get(self.port, "/recordings/one.mcap", Cookie=cookie)
+        self.write("copy.mcap", data)
+        self.assertEqual(status, 200)
+        out = self.shell("hc info copy.mcap")
+        self.assertRegex(out, r"camera\.left +\d+ .* sensor_msgs/msg/CompressedImage\n")
+        self.assertEqual(get(self.port, "/recordings/two.mcap", Cookie=cookie)[0], 404)
         self.stop(process)
 
 

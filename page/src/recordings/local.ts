@@ -1,62 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Server } from "../server";
-import { filesOfTar, type NamedFile } from "./tar";
-import { Track } from "./track";
+import { openMcap } from "./mcap";
+import { openMessages, type Track } from "./track";
 
 /** Files that the person has given this page; a URL cannot hold them. */
-let given: readonly NamedFile[] = [];
+let given: readonly File[] = [];
 
-/** Takes .mtp files, and those in .tar archives; returns how many streams there are. */
-export async function giveFiles(files: Iterable<File>): Promise<number> {
-  const all = await Promise.all(
-    [...files].map((file) =>
-      file.name.endsWith(".tar") ? filesOfTar(file) : [{ name: file.name, blob: file }],
-    ),
-  );
-  const streams = all.flat().filter((file) => file.name.endsWith(".mtp"));
-  if (streams.length > 0) given = streams;
-  return streams.length;
+const isRecording = (name: string) => /\.(mtp|mcap)$/.test(name);
+
+/** Takes .mtp and .mcap files; returns how many there are. */
+export function giveFiles(files: Iterable<File>): number {
+  const recordings = [...files].filter(({ name }) => isRecording(name));
+  if (recordings.length > 0) given = recordings;
+  return recordings.length;
 }
 
 /** Indexes the streams of a recording of the server, or of the files given where `name` is empty. */
 export async function openRecording(
-  server: Server,
   name: string,
   progress: (words: string) => void,
 ): Promise<Track[]> {
-  const files =
-    name === ""
-      ? given.map(({ name: fileName, blob }) => ({ name: fileName, blob: () => blob }))
-      : await filesOf(server, name);
+  const files = name === "" ? given : [await fileOf(name, progress)];
   const tracks: Track[] = [];
-  for (const { name: fileName, blob } of files) {
-    const port = fileName.replace(/\.mtp$/, "");
-    progress(`Reading ${port} …`);
-    const file = await blob();
-    tracks.push(
-      await Track.open(port, file, (part) =>
-        progress(`Reading ${port}: ${Math.round(100 * part)} %`),
-      ),
-    );
+  for (const file of files) {
+    const words = (part: number) => progress(`Reading ${file.name}: ${Math.round(100 * part)} %`);
+    if (file.name.endsWith(".mcap")) tracks.push(...(await openMcap(file, words)));
+    else tracks.push(await openMessages(file.name.replace(/\.mtp$/, ""), file, words));
   }
   return tracks.filter((track) => track.length > 0);
 }
 
-interface RecordedFile {
-  readonly name: string;
-  blob(): Blob | Promise<Blob>;
-}
-
-async function filesOf(server: Server, name: string): Promise<RecordedFile[]> {
-  const recording = (await server.recordings()).find((each) => each.name === name);
-  if (!recording) throw new Error(`The server has no recording ${name}.`);
-  return recording.streams.map((port) => ({
-    name: `${port}.mtp`,
-    // The browser keeps large blobs on disk.
-    blob: async () => {
-      const response = await fetch(`/recordings/${name}/${port}.mtp`);
-      if (!response.ok) throw new Error(`The server does not give ${port}: ${response.status}.`);
-      return response.blob();
-    },
-  }));
+/** A recording of the server. The browser keeps large ones on disk. */
+async function fileOf(name: string, progress: (words: string) => void): Promise<File> {
+  progress(`Reading ${name} …`);
+  const response = await fetch(`/recordings/${name}.mcap`);
+  if (!response.ok) throw new Error(`The server does not give ${name}: ${response.status}.`);
+  return new File([await response.blob()], `${name}.mcap`);
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-import { headerLine, type Message } from "../mtp";
+import { elementsOf, headerLine, infoOf, scalarBytes, scalarCount, type Message } from "../mtp";
 import { Signal, type Arrival, type Unsubscribe } from "../server";
 import type { Source } from "../views";
 import type { Track } from "./track";
+import { expandZstd } from "./zstd";
 
 const mostAtOnce = 500; // messages of one stream in one step
 const pastOfPlots = 30; // [s] that are read again after a jump
@@ -84,13 +85,16 @@ export class ReplaySource implements Source {
   }
 }
 
-/** Elements of the encoding zstd are expanded where the browser can. */
-async function expanded(message: Message): Promise<Message> {
-  if (message.header.encoding !== "zstd") return message;
-  throw new Error(
-    `The elements of this recording are compressed with zstd, which a browser does not open. ` +
-      `"hc cat --raw" or "hc play" expands them.`,
-  );
+/** The message with elements of the encoding zstd expanded. */
+async function expanded({ header, elements }: Message): Promise<Message> {
+  if (header.encoding !== "zstd") return { header, elements };
+  const size = scalarCount(header) * scalarBytes[header.scalar];
+  const bytes = await expandZstd(elements as Uint8Array<ArrayBuffer>, size);
+  const kind = { ...header, encoding: "binary" as const };
+  return {
+    header: { ...kind, info: infoOf(kind) },
+    elements: elementsOf(header.scalar, bytes),
+  };
 }
 
 /** Plays tracks by one clock. */

@@ -76,9 +76,9 @@ class RecordingsPanel {
     const files = h("input", {
       type: "file",
       multiple: true,
-      accept: ".mtp,.tar",
+      accept: ".mcap,.mtp",
       "aria-label": "Files to open",
-      onchange: () => void this.openFiles(files.files ?? []),
+      onchange: () => this.openFiles(files.files ?? []),
     });
     this.element = h(
       "div",
@@ -87,7 +87,7 @@ class RecordingsPanel {
         ondragover: (event) => event.preventDefault(),
         ondrop: (event) => {
           event.preventDefault();
-          void this.openFiles(event.dataTransfer?.files ?? []);
+          this.openFiles(event.dataTransfer?.files ?? []);
         },
       },
       this.problem,
@@ -97,7 +97,7 @@ class RecordingsPanel {
       h("h3", {}, "On the server"),
       this.list,
       h("h3", {}, "Files"),
-      h("p", { class: "muted" }, "Choose .mtp files or a .tar of a recording, or drop them here."),
+      h("p", { class: "muted" }, "Choose .mcap or .mtp files, or drop them here."),
       files,
     );
     this.ends = [
@@ -226,13 +226,13 @@ class RecordingsPanel {
         },
         "Open",
       ),
-      h("a", { href: `/recordings/${name}.tar`, download: `${name}.tar` }, "Download"),
+      h("a", { href: `/recordings/${name}.mcap`, download: `${name}.mcap` }, "Download"),
     );
   }
 
-  private async openFiles(files: Iterable<File>): Promise<void> {
-    const count = await giveFiles(files);
-    if (count === 0) return this.showProblem("None of these files is a .mtp file.");
+  private openFiles(files: Iterable<File>): void {
+    if (giveFiles(files) === 0)
+      return this.showProblem("None of these files is a recording, .mcap or .mtp.");
     this.showProblem("");
     this.host.openPanel({ kind: "replay", files: String(Date.now() % 1_000_000) });
   }

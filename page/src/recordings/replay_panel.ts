@@ -16,13 +16,13 @@ export const replayPanel: PanelKind = (args, host) => {
   const element = h("div", { class: "replay" }, status);
   let replay: Replay | undefined;
   let isClosed = false;
-  openRecording(host.server, name, (words) => (status.textContent = words))
+  openRecording(name, (words) => (status.textContent = words))
     .then((tracks) => {
       if (isClosed) return;
       if (tracks.length === 0) {
         status.textContent =
           name === ""
-            ? "No files are open. Open .mtp files or a .tar in the panel Recordings."
+            ? "No files are open. Open .mcap or .mtp files in the panel Recordings."
             : "This recording holds no message.";
         return;
       }

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { numbersMessage, textMessage, writeMessage } from "../mtp";
-import { Track } from "./track";
+import { openMessages } from "./track";
 
 const second = 1_000_000_000n;
 
@@ -15,7 +15,7 @@ function file(times: readonly number[]): Blob {
 }
 
 test("messages are found by their time", async () => {
-  const track = await Track.open("a.b", file([100, 101, 103]));
+  const track = await openMessages("a.b", file([100, 101, 103]));
   assert.equal(track.length, 3);
   assert.deepEqual(
     [99, 100, 102, 103, 500].map((time) => track.indexAt(time)),
@@ -26,7 +26,7 @@ test("messages are found by their time", async () => {
 });
 
 test("times that are missing or go back count as those before", async () => {
-  const track = await Track.open("a.b", file([100, 0, 90, 101]));
+  const track = await openMessages("a.b", file([100, 0, 90, 101]));
   assert.deepEqual(
     [0, 1, 2, 3].map((index) => track.timeAt(index)),
     [100, 100, 100, 101],
@@ -35,11 +35,11 @@ test("times that are missing or go back count as those before", async () => {
 
 test("a recording that was broken off gives what is whole", async () => {
   const whole = file([1, 2]);
-  const track = await Track.open("a.b", whole.slice(0, whole.size - 3));
+  const track = await openMessages("a.b", whole.slice(0, whole.size - 3));
   assert.equal(track.length, 1);
 });
 
 test("what is no message is refused", async () => {
   const bytes = writeMessage(textMessage("x"));
-  await assert.rejects(Track.open("a.b", new Blob([bytes, "hello\n"])), /R5/);
+  await assert.rejects(openMessages("a.b", new Blob([bytes, "hello\n"])), /R5/);
 });

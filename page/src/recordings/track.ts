@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One stream of a recording: a file of messages, and where in it each of them is.
+// One stream of a recording: when its messages are, and how to read each of them.
 import { Reader, readMessage, type Message } from "../mtp";
 
 /** Numbers that are added one by one. */
-class Column {
+export class Column {
   private numbers = new Float64Array(256);
   length = 0;
 
@@ -22,40 +22,21 @@ class Column {
 }
 
 export class Track {
-  private readonly starts = new Column(); // [byte]
   private readonly times = new Column(); // [s since 1970]
-  private end = 0;
+  private bytes = 0;
 
-  private constructor(
+  constructor(
     /** MODULE.PORT */
     readonly port: string,
-    private readonly file: Blob,
+    /** Reads a message. */
+    readonly message: (index: number) => Promise<Message>,
   ) {}
 
-  /**
-   * Reads a file through once, and keeps where its messages are and when.
-   *
-   * @param progress  called with the part that has been read, 0 … 1.
-   * Errors: MtpError where a message is malformed. A truncated last message is ignored: the
-   * recording may have been interrupted.
-   */
-  static async open(
-    port: string,
-    file: Blob,
-    progress: (part: number) => void = () => {},
-  ): Promise<Track> {
-    const track = new Track(port, file);
-    const reader = new Reader();
-    let read = 0;
-    const pieces = file.stream().getReader();
-    for (;;) {
-      const { done, value } = await pieces.read();
-      if (done) return track;
-      reader.push(value as Uint8Array<ArrayBuffer>);
-      for (let message; (message = reader.next());) track.add(message, reader.byte);
-      read += value.length;
-      progress(read / file.size);
-    }
+  /** Adds a message, which takes so many bytes. */
+  add(time: number, bytes: number): void {
+    // Times that go back, or that are not given, count as those before, so that they can be searched.
+    this.times.push(this.length > 0 ? Math.max(time, this.lastTime) : time);
+    this.bytes += bytes;
   }
 
   get length(): number {
@@ -77,7 +58,7 @@ export class Track {
 
   /** Bytes of a message in the middle. */
   get usualBytes(): number {
-    return this.length === 0 ? 0 : this.end / this.length;
+    return this.length === 0 ? 0 : this.bytes / this.length;
   }
 
   /** Index of the last message at or before a time; -1: none. */
@@ -90,20 +71,38 @@ export class Track {
     }
     return low - 1;
   }
+}
 
-  /** Reads a message from the file. */
-  async message(index: number): Promise<Message> {
-    const end = index + 1 < this.length ? this.starts.at(index + 1) : this.end;
-    const bytes = await this.file.slice(this.starts.at(index), end).arrayBuffer();
+/**
+ * Reads a file of messages through once, and keeps where they are and when.
+ *
+ * @param progress  called with the part that has been read, 0 … 1.
+ * Errors: MtpError where a message is malformed. A truncated last message is ignored: the
+ * recording may have been interrupted.
+ */
+export async function openMessages(
+  port: string,
+  file: Blob,
+  progress: (part: number) => void = () => {},
+): Promise<Track> {
+  const ends = new Column(); // [byte]
+  const track = new Track(port, async (index) => {
+    const begin = index > 0 ? ends.at(index - 1) : 0;
+    const bytes = await file.slice(begin, ends.at(index)).arrayBuffer();
     return readMessage(new Uint8Array(bytes));
-  }
-
-  private add({ header }: Message, end: number): void {
-    const time = Number(header.time) / 1e9;
-    // Times that go back, or that are not given, count as those before, so that they can be searched.
-    const before = this.length > 0 ? this.lastTime : 0;
-    this.starts.push(this.end);
-    this.times.push(Math.max(time, before));
-    this.end = end;
+  });
+  const reader = new Reader();
+  let [read, end] = [0, 0];
+  const pieces = file.stream().getReader();
+  for (;;) {
+    const { done, value } = await pieces.read();
+    if (done) return track;
+    reader.push(value as Uint8Array<ArrayBuffer>);
+    for (let message; (message = reader.next()); end = reader.byte) {
+      ends.push(reader.byte);
+      track.add(Number(message.header.time) / 1e9, reader.byte - end);
+    }
+    read += value.length;
+    progress(read / file.size);
   }
 }
