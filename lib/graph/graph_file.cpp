@@ -253,7 +253,7 @@ std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::strin
   // A folder lacks no message; where the network might be slower than the module, none waits for
   // it.
   const bool is_whole = parameters.contains("folder");
-  constexpr const char* kKept = "1024";  // messages, while the recorder waits for the disk
+  constexpr const char* kKept = "1024";   // messages, while the recorder waits for the disk
   constexpr const char* kPatience = "1";  // for a recorder that hangs or was killed [s]
   GraphModule recorder;
   recorder.name = "recorder";

@@ -163,8 +163,8 @@ inline constexpr std::array<std::string_view, 8> kPolicyKeys = {
 Status check_policy(Uri policy);
 
 /// Has a module `recorder`, on the host of `hc run`, record every linked output and the focus: into
-/// one file of MCAP, which makes no module wait, or into a folder, which lacks no message as long as
-/// the recorder runs.
+/// one file of MCAP, which makes no module wait, or into a folder, which lacks no message as long
+/// as the recorder runs.
 /// @param traced  modules whose output `trace` is recorded too.
 /// @param parameters  of it: `file` or `folder`, and more.
 /// @returns  its inputs, one for each output, which `--describe` of its program does not say.

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Folder : public testing::Test {
+class Recorded : public testing::Test {
  protected:
   void SetUp() override {
     std::string name = (fs::temp_directory_path() / "hc-test-XXXXXX").string();
@@ -79,7 +79,7 @@ class Folder : public testing::Test {
   std::string kept;
 };
 
-TEST_F(Folder, AnErrorLeavesNothingBehind) {
+TEST_F(Recorded, AnErrorLeavesNothingBehind) {
   const std::string too_long(300, 'x');
   for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(refusal(kept, {"eyes.left", too_long}).code, Code::System);
@@ -90,7 +90,7 @@ TEST_F(Folder, AnErrorLeavesNothingBehind) {
   EXPECT_TRUE(fs::is_empty(kept));
 }
 
-TEST_F(Folder, HasAFileOfEachStream) {
+TEST_F(Recorded, HasAFileOfEachStream) {
   auto made = recording(kept, {"eyes.left", "eyes.right", "neck.pose"});
   ASSERT_TRUE(made->add(0, sized(3)));
   ASSERT_TRUE(made->add(1, sized(100000)));
@@ -106,7 +106,7 @@ TEST_F(Folder, HasAFileOfEachStream) {
   EXPECT_TRUE(fs::exists(root / "kept/neck.pose.mtp"));
 }
 
-TEST_F(Folder, OfAnEarlierProcessIsLeftAlone) {
+TEST_F(Recorded, OfAnEarlierProcessIsLeftAlone) {
   auto record_one = [&](const std::string& folder) {
     auto made = recording(folder, {"a.out"});
     EXPECT_TRUE(made->add(0, sized(1)));
@@ -120,7 +120,7 @@ TEST_F(Folder, OfAnEarlierProcessIsLeftAlone) {
     EXPECT_EQ(count(root / file), 1U) << file;
 }
 
-TEST_F(Folder, WrongNamesAreRefused) {
+TEST_F(Recorded, WrongNamesAreRefused) {
   for (const auto& [streams, what] :
        {std::pair(std::vector<std::string>{""}, "\"\" cannot be a file name"),
         {{"../a.out"}, "\"../a.out\" cannot be a file name"},
@@ -132,7 +132,7 @@ TEST_F(Folder, WrongNamesAreRefused) {
   EXPECT_FALSE(fs::exists(kept));
 }
 
-TEST_F(Folder, WhereNoneCanBeMadeIsAnError) {
+TEST_F(Recorded, WhereNoneCanBeMadeIsAnError) {
   std::ofstream(root / "file") << "a";
   const std::string below = (root / "file/kept").string();
   EXPECT_EQ(refusal(below, {"a.out"}).detail, below + ": Not a directory");
@@ -142,12 +142,12 @@ TEST_F(Folder, WhereNoneCanBeMadeIsAnError) {
 }
 
 /// Files become no larger, as on a full disk.
-class FullDisk : public Folder {
+class FullDisk : public Recorded {
  protected:
   static constexpr rlim_t kMost = 100000;  // [byte]
 
   void SetUp() override {
-    Folder::SetUp();
+    Recorded::SetUp();
     before_ = std::signal(SIGXFSZ, SIG_IGN);
     ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit_), 0);
     const rlimit small{kMost, limit_.rlim_max};
@@ -156,7 +156,7 @@ class FullDisk : public Folder {
   void TearDown() override {
     ::setrlimit(RLIMIT_FSIZE, &limit_);
     std::signal(SIGXFSZ, before_);
-    Folder::TearDown();
+    Recorded::TearDown();
   }
 
   /// Records until the disk is full; every message that is said to be recorded is whole.
@@ -199,7 +199,7 @@ struct Held {
   [[nodiscard]] std::int64_t duration() const { return times.back() - times.front(); }
 };
 
-class Recordings : public Folder {
+class Recordings : public Recorded {
  protected:
   static Message at(std::int64_t time, std::int32_t seq, std::int32_t src = 7) {
     auto message = sized(3);

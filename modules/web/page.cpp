@@ -8,6 +8,7 @@
 
 #include <hc/base/format.h>
 #include <hc/base/json_string.h>
+#include <hc/contract/description.h>
 #include <hc/mtp/codec.h>
 #include <hc/mtp/rows.h>
 #include <hc/mtp/stream_reader.h>
@@ -130,7 +131,7 @@ web::Reply Page::reply(const web::Request& request) {
       return refusal(403, lacks(*right, web::Right::Drive));
     const bool is_known =
         request.path == "/graph" || request.path == "/drive" ||
-        (request.path.starts_with("/streams/") && is_port_name(request.path.substr(9)));
+        (request.path.starts_with("/streams/") && hc::is_port_name(request.path.substr(9)));
     return is_known ? web::Reply{101, {}, {}, {}, {}} : refusal(404, "there is no such socket");
   }
   if (request.path == "/recordings" || request.path.starts_with("/recordings/"))

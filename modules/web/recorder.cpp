@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <hc/compress/compress.h>
+#include <hc/contract/description.h>
 
 #include "encoder.h"
 
@@ -17,19 +18,6 @@ namespace {
 
 constexpr std::size_t kMaxName = 40, kMaxPorts = 64;
 constexpr std::string_view kEnding = ".mcap";
-
-bool is_word(std::string_view word) {
-  return !word.empty() && std::ranges::all_of(word, [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-  });
-}
-
-/// Whether a text is MODULE.PORT.
-bool is_port_name(std::string_view text) {
-  const auto dot = text.find('.');
-  return dot != std::string_view::npos && is_word(text.substr(0, dot)) &&
-         is_word(text.substr(dot + 1));
-}
 
 }  // namespace
 
@@ -77,7 +65,7 @@ hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& gr
       std::set<std::string>(ports.begin(), ports.end()).size() < ports.size())
     return hc::Error{Code::Invalid, "1 to 64 different outputs are recorded, as MODULE.PORT"};
   for (const auto& port : ports)
-    if (!is_port_name(port)) return hc::Error{Code::Invalid, "\"" + port + "\" is not MODULE.PORT"};
+    if (!hc::is_port_name(port)) return hc::Error{Code::Invalid, "\"" + port + "\" is not MODULE.PORT"};
   const auto place = hc::record::place_of(options.folder + "/" + name + std::string(kEnding));
   std::error_code failed;
   if (fs::symlink_status(place.path, failed).type() != fs::file_type::not_found)

@@ -266,7 +266,9 @@ class Hosts(HostsTest):
         wait_until(lambda: os.path.exists(self.path("kept/more.trace.mtp")))
         goes_on()
         for name in ("recorder", "camera"):
-            self.kill(self.module(self.state(messages), name)["pid"])
+            pid = lambda state, name=name: self.module(state, name)["pid"]
+            lives = lambda state, pid=pid: os.path.exists("/proc/%d" % pid(state))
+            self.kill(pid(self.state(messages, lives)))
             goes_on()
         self.assertEqual(self.ask(process, "remove more"), ["ok"])
         goes_on()

@@ -9,20 +9,12 @@ import re
 import resource
 import signal
 import ssl
-<<<<<<< HEAD
-import tarfile
-=======
 import struct
->>>>>>> 8b3d4f75 (web, page: record into MCAP by the engine, and open it in the browser)
 import unittest
 
 from graphs import GRAPH, Graphs
-<<<<<<< HEAD
-from web_socket import BINARY, TEXT, Refused, WebSocket, connect, get, read_head
-=======
 from harness import wait_until
 from web_socket import BINARY, CLOSE, TEXT, Refused, WebSocket, connect, get, read_head
->>>>>>> 8b3d4f75 (web, page: record into MCAP by the engine, and open it in the browser)
 
 TASKS = (
     GRAPH

@@ -193,21 +193,6 @@ class Replay(Pipes):
         self.shell("hc replay kept --out again --graph g.toml")
         self.assertEqual(self.read("again/second.out.mtp"), self.read("kept/second.out.mtp"))
 
-    def test_the_eyes_continue_when_the_neck_falls_silent(self):
-        def write(name, header, elements, until):
-            with open(self.path(name), "w") as file:
-                for time in range(10**9, 10**9 + until, 10**7):
-                    file.write("1 1 0 0 8 %d %s 1\n%s\n" % (time, header, elements))
-
-        write("gaze.mtp", "20390 0 13 1", "0 0 0.1", 2 * 10**8)
-        write("text.mtp", "60100 0 30 5", "HELLO", 10**9)
-        self.shell(
-            "hc simulator --clock messages --width 16 --height 16 --rate 20 --in gaze=gaze.mtp"
-            " --in text=text.mtp --out left_pose=pose.mtp --out left=left.mtp"
-        )
-        times = [(each.time - 10**9) // 10**6 for each in read_messages(self.path("pose.mtp"))]
-        # 0.1 s behind the last gaze, at 190, it waits for no other.
-        self.assertEqual(times, [0, 50, 100, 150] + list(range(250, 1000, 50)))
 
 
 if __name__ == "__main__":

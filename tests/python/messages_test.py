@@ -131,7 +131,7 @@ for use in (message.copy, lambda: message.text, lambda: message.numbers):
         self.assertEqual(message.numbers, (2,))
         self.assertEqual([m.numbers for m in hc.read(self.path("kept"))], [(1,), (2,)])
         for folder, stream, text in (
-            ("kept", "m.out", 'no stream "m.out"; did you mean "m.out_'),
+            ("kept", "m.out", 'no stream "m.out", did you mean "m.out_'),
             ("empty", "", "no MODULE.PORT.mtp in it"),
         ):
             with self.subTest(text), self.assertRaisesRegex(hc.Error, text) as caught:
@@ -150,7 +150,7 @@ for use in (message.copy, lambda: message.text, lambda: message.numbers):
             hc.read(self.path("missing"))
         self.assertEqual(caught.exception.code, "NotFound")
         with self.assertRaises(hc.Error) as caught:
-            hc.open("no_such:thing")
+            hc.open("tpc:1")
         self.assertEqual(caught.exception.code, "Invalid")
         with self.assertRaises(hc.Error) as caught:
             list(hc.read(self.path("bad.mtp"), limit=1))

@@ -32,18 +32,6 @@ bool is_of_this_folder(int process) {
   return !unknown && folder == std::filesystem::current_path(unknown);
 }
 
-/// Whether it is spelled as MODULE.PORT.
-bool is_port_name(std::string_view text) {
-  auto is_word = [](std::string_view word) {
-    return !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-    });
-  };
-  const auto dot = text.find('.');
-  return dot != std::string_view::npos && is_word(text.substr(0, dot)) &&
-         is_word(text.substr(dot + 1));
-}
-
 }  // namespace
 
 RunningGraph choose_running(const std::string& wanted) {
@@ -126,7 +114,7 @@ std::unique_ptr<hc::Source> open_port(const RunningGraph& graph, const std::stri
 }
 
 bool is_running_port(const std::string& text, const std::string& of) {
-  if (!is_port_name(text) || find_running().empty()) return false;
+  if (!hc::is_port_name(text) || find_running().empty()) return false;
   const auto dot = text.find('.');
   const auto name = text.substr(0, dot), port = text.substr(dot + 1);
   try {
@@ -143,7 +131,7 @@ bool is_running_port(const std::string& text, const std::string& of) {
 std::optional<RunningGraph> graph_of_port(const std::string& text, const std::string& of) {
   if (!of.empty()) return choose_running(of);
   std::error_code missing;
-  if (!is_port_name(text)) return std::nullopt;
+  if (!hc::is_port_name(text)) return std::nullopt;
   if (std::filesystem::exists(text, missing) && !is_running_port(text, of)) return std::nullopt;
   if (find_running().empty())
     throw Failure({hc::Code::NotFound, text + ": no such file, and no graph is running here"});

@@ -141,9 +141,9 @@ class Recording {
     if (!options_.when.empty()) options.when = stream_name(options_.when);
     options.log = [](hc::Level severity, std::string_view line) {
       const bool is_file = line.starts_with("file:");  // as links log it
-      say((is_file                           ? ""
+      say((is_file                        ? ""
            : severity == hc::Level::Error ? "hc record: error: "
-                                             : "hc record: ") +
+                                          : "hc record: ") +
           std::string(line));
     };
     writer_ = value_or_fail(hc::record::Writer::open(place, options), options_.file);

@@ -230,6 +230,11 @@ bool is_name(std::string_view text) {
          std::all_of(text.begin(), text.end(), is_letter);
 }
 
+bool is_port_name(std::string_view text) {
+  const auto dot = std::min(text.find('.'), text.size());
+  return is_name(text.substr(0, dot)) && dot < text.size() && is_name(text.substr(dot + 1));
+}
+
 Status check_names(const Description& description) {
   for (const auto* ports : {&description.inputs, &description.outputs})
     for (const auto& port : *ports)

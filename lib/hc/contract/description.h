@@ -45,6 +45,8 @@ std::optional<Description> parse_description(std::string_view text);
 
 /// Whether a text is snake_case: a small letter, then small letters, digits and _, 64 at most.
 bool is_name(std::string_view text);
+/// Whether a text is MODULE.PORT.
+bool is_port_name(std::string_view text);
 
 /// Whether the names of all ports are. Errors: Invalid.
 Status check_names(const Description& description);
