@@ -13,7 +13,7 @@ Status TrackedHead::pass(MonotonicTime now) {
   if (!active_ || now - *active_ < options_.silence) return {};
   active_.reset();
   receives_ = false;
-  log_("no packets received on UDP " + address_);
+  log_(Level::Warning, "no packets received on UDP " + address_);
   return {};
 }
 
@@ -30,7 +30,7 @@ Status TrackedHead::listen(MonotonicTime now) {
   active_ = now;
   const bool is_six = options_.host.find(':') != std::string::npos;
   address_ = hc::format(is_six ? "[{}]:{}" : "{}:{}", options_.host, tracker_->port());
-  log_("listening on UDP " + address_);
+  log_(Level::Info, "listening on UDP " + address_);
   return {};
 }
 
@@ -39,11 +39,12 @@ Result<std::optional<TimedHeadPose>> TrackedHead::receive(MonotonicTime now) {
   auto pose = tracker_->receive(now, problem_);
   if (!pose || !*pose) return pose;
   active_ = now;
-  if (!std::exchange(receives_, true)) log_("receiving from the tracker");
+  if (!std::exchange(receives_, true)) log_(Level::Info, "receiving from the tracker");
   HeadPose& head = (*pose)->pose;
   if (std::exchange(is_first_, false) && options_.centre_first) {
     const Eigen::Vector3d angles = head.angles().array() + 0.0;  // not -0
-    log_(hc::format("zero set to the first pose: roll {:.2f}, pitch {:.2f}, yaw {:.2f} rad",
+    log_(Level::Info,
+         hc::format("zero set to the first pose: roll {:.2f}, pitch {:.2f}, yaw {:.2f} rad",
                     angles.x(), angles.y(), angles.z()));
     centres_next_ = true;
   }

@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +14,7 @@
 #include <drivers/head_tracker/head_tracker.h>
 #include <hc/base/backoff.h>
 #include <hc/base/clock.h>
+#include <hc/base/log.h>
 
 namespace hc {
 
@@ -31,9 +31,8 @@ struct TrackedHeadOptions {
 class TrackedHead {
  public:
   static constexpr std::chrono::milliseconds kLook{20};  ///< how often pass() is to be called
-  using Log = std::function<void(std::string_view line)>;
 
-  TrackedHead(TrackedHeadOptions options, Log log, Problem problem)
+  TrackedHead(TrackedHeadOptions options, LogSink log, Problem problem)
       : options_(std::move(options)), log_(std::move(log)), problem_(std::move(problem)) {}
 
   /// Opens the port, retrying while it is in use, and logs when no pose has come for a while.
@@ -55,7 +54,7 @@ class TrackedHead {
   Status listen(MonotonicTime now);
 
   TrackedHeadOptions options_;
-  Log log_;
+  LogSink log_;
   Problem problem_;
   std::optional<HeadTracker> tracker_;
   Backoff backoff_;

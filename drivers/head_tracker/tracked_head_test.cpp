@@ -19,7 +19,7 @@ class TrackedHeadTest : public ::testing::Test {
  protected:
   hc::TrackedHead head(int port, bool centre_first = true) {
     return {{"127.0.0.1", port, {}, kSilence, centre_first},
-            [this](std::string_view line) { log.emplace_back(line); },
+            [this](hc::Level, std::string_view line) { log.emplace_back(line); },
             [this](const std::string& kind, std::string_view line) {
               problems.push_back(kind + ": " + std::string(line));
             }};

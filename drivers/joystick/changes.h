@@ -6,11 +6,13 @@
 
 #include <drivers/joystick/joystick.h>
 #include <drivers/joystick/stick.h>
+#include <hc/base/log.h>
 
 namespace hc {
 
 struct JoystickChanges {
-  std::string line;  ///< which one was connected or disconnected; empty: neither
+  std::string line;  ///< for the log, which one was connected or disconnected; empty: neither
+  Level level = Level::Info;  ///< of the line
   bool stick = false, axes = false, buttons = false;
 };
 

@@ -67,7 +67,7 @@ void Neck::log_fault(const Error& error) {
   well_since_ = MonotonicTime::max();
   const bool is_garbage = error.code == Code::Malformed || error.code == Code::TooLarge;
   if (faults_.insert(is_garbage ? "garbage" : error.detail).second)
-    log_(device_ + ": " + error.detail);
+    log_(Level::Warning, device_ + ": " + error.detail);
 }
 
 void Neck::read(MonotonicTime now) {
@@ -90,7 +90,7 @@ void Neck::work(MonotonicTime now) {
   if (auto fault = conversation_.fault()) log_fault(*fault);
   if (auto remark = conversation_.remark();
       !remark.empty() && remarks_.size() < kMostRemarks && remarks_.insert(remark).second)
-    log_(device_ + ": " + remark);
+    log_(Level::Warning, device_ + ": " + remark);
   if (conversation_.phase() == Phase::Lost) return close(now, {Code::Stopped, "reopening"});
   if (conversation_.phase() == Phase::Ready && well_since_ == MonotonicTime::max())
     well_since_ = now;
@@ -107,7 +107,7 @@ void Neck::pass(MonotonicTime now, const NeckSettings& settings) {
   if (conversation_.phase() != Phase::Ready) return;
   if (!was_ready_ || now - well_since_ >= kSettled) backoff_.reset();
   if (was_ready_ && (faults_.empty() || now - well_since_ < kSettled)) return;
-  log_(device_ + ": " + (was_ready_ ? "reconnected" : conversation_.character()));
+  log_(Level::Info, device_ + ": " + (was_ready_ ? "reconnected" : conversation_.character()));
   was_ready_ = true;
   faults_.clear();
   remarks_.clear();

@@ -14,6 +14,7 @@
 #include <drivers/pan_tilt/serial.h>
 #include <hc/base/backoff.h>
 #include <hc/base/clock.h>
+#include <hc/base/log.h>
 #include <hc/base/turn.h>
 
 namespace hc::pan_tilt {
@@ -39,14 +40,13 @@ class Neck {
   static constexpr std::chrono::seconds kSettled{1};  ///< without a fault, before it counts as well
   static constexpr std::chrono::milliseconds kTick{10};  ///< how often pass() is to be called
   static constexpr std::chrono::milliseconds kTurn{150};
-  using Log = std::function<void(std::string_view line)>;
   using Problem = std::function<void(const std::string& kind, std::string_view line)>;
   using Seen = std::function<void(const Gaze& gaze)>;
 
   /// @param log  gets a line when the unit is connected, disconnected, or refuses something.
   /// @param problem  gets why a command is dropped, to log the first of a kind.
   /// @param seen  called by read() and pass() with each measured gaze.
-  Neck(Log log, Problem problem, Seen seen)
+  Neck(LogSink log, Problem problem, Seen seen)
       : log_(std::move(log)), problem_(std::move(problem)), seen_(std::move(seen)) {}
   Neck(const Neck&) = delete;
   Neck& operator=(const Neck&) = delete;
@@ -87,7 +87,7 @@ class Neck {
   void work(MonotonicTime now);
   void log_fault(const Error& error);
 
-  Log log_;
+  LogSink log_;
   Problem problem_;
   Seen seen_;
   NeckSettings settings_;

@@ -41,7 +41,7 @@ class NeckTest : public ::testing::Test {
   NeckSettings settings_;
   std::vector<std::string> log_, problems_;
   std::vector<Gaze> seen_;
-  Neck neck_{[this](std::string_view line) { log_.emplace_back(line); },
+  Neck neck_{[this](Level, std::string_view line) { log_.emplace_back(line); },
              [this](const std::string& kind, std::string_view line) {
                problems_.push_back(kind + ": " + std::string(line));
              },

@@ -51,9 +51,9 @@ LiveCameras::~LiveCameras() {
   for (auto& camera : cameras_) camera->thread.join();
 }
 
-void LiveCameras::report(std::string line) {
+void LiveCameras::report(std::string text) {
   const std::lock_guard lock(mutex_);
-  remarks_.push_back(std::move(line));
+  remarks_.push_back({hc::Level::Warning, std::move(text)});
 }
 
 /// Waits; false when it is to end.
@@ -77,8 +77,8 @@ void LiveCameras::run(Camera& camera) {
         failure_ = hc::Error{device.error().code, camera.how.name + ": " + device.error().detail};
       } else if (!camera.is_missing) {
         camera.is_missing = true;
-        remarks_.push_back(camera.how.name + ": cannot connect: " + device.error().detail +
-                           "; retrying");
+        remarks_.push_back({hc::Level::Warning, camera.how.name + ": cannot connect: " +
+                                                    device.error().detail + "; retrying"});
       }
     }
     {
@@ -117,8 +117,8 @@ void LiveCameras::serve(Camera& camera, Device& device) {
       if (!reopen_)
         failure_ = hc::Error{frame.error().code, camera.how.name + ": " + frame.error().detail};
       else if (!camera.is_missing)
-        remarks_.push_back(camera.how.name + ": disconnected: " + frame.error().detail +
-                           "; reconnecting");
+        remarks_.push_back({hc::Level::Warning, camera.how.name + ": disconnected: " +
+                                                    frame.error().detail + "; reconnecting"});
       camera.is_missing = true;
       return;
     }
@@ -128,7 +128,7 @@ void LiveCameras::serve(Camera& camera, Device& device) {
       // It is connected when it gives an image, and not when it can merely be opened.
       first = now;
       if (std::exchange(camera.is_missing, false))
-        remarks_.push_back(camera.how.name + ": reconnected");
+        remarks_.push_back({hc::Level::Info, camera.how.name + ": reconnected"});
     }
     const bool is_alone = std::none_of(cameras_.begin(), cameras_.end(), [&](const auto& other) {
       return other->side != camera.side && !other->is_missing;
@@ -166,7 +166,7 @@ void LiveCameras::adjust(const Adjustment& adjustment) {
   adjustment_ = adjustment;
 }
 
-std::vector<std::string> LiveCameras::remarks() {
+std::vector<Remark> LiveCameras::remarks() {
   const std::lock_guard lock(mutex_);
   return std::exchange(remarks_, {});
 }

@@ -16,6 +16,7 @@
 
 #include <hc/base/backoff.h>
 #include <hc/base/clock.h>
+#include <hc/base/log.h>
 #include <hc/base/result.h>
 
 #include "pairing.h"
@@ -51,6 +52,13 @@ class Device {
 /// Opens a camera; is called on its thread, again and again while it fails.
 using OpenDevice = std::function<hc::Result<std::unique_ptr<Device>>()>;
 
+/// A line of the log about a camera.
+struct Remark {
+  hc::Level level = hc::Level::Warning;
+  std::string text;
+  bool operator==(const Remark&) const = default;
+};
+
 struct LiveCamera {
   std::string name;  ///< as remarks call it
   OpenDevice open;
@@ -75,14 +83,14 @@ class LiveCameras {
   hc::Result<std::optional<Taken>> next(std::chrono::milliseconds timeout);
   /// Sets what the cameras are to do from now on. The same again changes nothing.
   void adjust(const Adjustment& adjustment);
-  /// Log lines about the cameras: one for each change.
-  std::vector<std::string> remarks();
+  /// One for each change.
+  std::vector<Remark> remarks();
 
  private:
   struct Camera;
   void run(Camera& camera);
   void serve(Camera& camera, Device& device);
-  void report(std::string line);
+  void report(std::string text);
   bool pause(std::chrono::nanoseconds time);
 
   const bool reopen_;
@@ -90,7 +98,7 @@ class LiveCameras {
   std::condition_variable changed_;
   bool stopping_ = false;
   Adjustment adjustment_;
-  std::vector<std::string> remarks_;
+  std::vector<Remark> remarks_;
   std::optional<hc::Error> failure_;
   Pairing pairing_;
   std::vector<std::unique_ptr<Camera>> cameras_;

@@ -54,8 +54,8 @@ LiveCamera camera(const std::string& name, Plug& plug) {
 
 /// Takes images until one is as wanted; all that was said meanwhile. The watchdog is the test's.
 template <typename Wanted>
-std::vector<std::string> take_until(LiveCameras& cameras, Wanted wanted) {
-  std::vector<std::string> said;
+std::vector<Remark> take_until(LiveCameras& cameras, Wanted wanted) {
+  std::vector<Remark> said;
   while (true) {
     auto taken = cameras.next(milliseconds(20));
     for (auto& line : cameras.remarks()) said.push_back(std::move(line));
@@ -83,13 +83,14 @@ TEST(LiveCameras, one_that_is_lost_is_reported_once_and_once_when_it_is_back) {
   const int before = plug.opened;
   while (plug.opened < before + 3) std::this_thread::yield();
   plug.is_in = true;
-  std::vector<std::string> said;
+  std::vector<Remark> said;
   while (said.size() < 2) {
     EXPECT_TRUE(cameras.next(milliseconds(20)));
     for (auto& line : cameras.remarks()) said.push_back(line);
   }
-  EXPECT_EQ(said, (std::vector<std::string>{"eye: disconnected: pulled out; reconnecting",
-                                            "eye: reconnected"}));
+  EXPECT_EQ(said, (std::vector<Remark>{
+                      {hc::Level::Warning, "eye: disconnected: pulled out; reconnecting"},
+                      {hc::Level::Info, "eye: reconnected"}}));
   take_until(cameras, any);
 }
 
@@ -99,10 +100,12 @@ TEST(LiveCameras, the_other_one_continues_alone) {
   take_until(cameras, pair());
   left.is_in = false;
   auto said = take_until(cameras, [](const auto& taken) { return !taken.left && taken.right; });
-  EXPECT_EQ(said, std::vector<std::string>{"left: disconnected: pulled out; reconnecting"});
+  EXPECT_EQ(
+      said,
+      (std::vector<Remark>{{hc::Level::Warning, "left: disconnected: pulled out; reconnecting"}}));
   left.is_in = true;
   said = take_until(cameras, pair());
-  EXPECT_EQ(said, std::vector<std::string>{"left: reconnected"});
+  EXPECT_EQ(said, (std::vector<Remark>{{hc::Level::Info, "left: reconnected"}}));
 }
 
 TEST(LiveCameras, one_that_is_not_there_is_waited_for) {
@@ -110,8 +113,9 @@ TEST(LiveCameras, one_that_is_not_there_is_waited_for) {
   plug.is_in = false;
   LiveCameras cameras({camera("eye", plug)}, true, {});
   while (plug.opened < 2) std::this_thread::yield();
-  EXPECT_EQ(cameras.remarks(),
-            std::vector<std::string>{"eye: cannot connect: no such camera; retrying"});
+  EXPECT_EQ(
+      cameras.remarks(),
+      (std::vector<Remark>{{hc::Level::Warning, "eye: cannot connect: no such camera; retrying"}}));
 }
 
 TEST(LiveCameras, one_that_comes_and_goes_is_looked_for_less_and_less_often) {
@@ -163,12 +167,12 @@ TEST(LiveCameras, what_differs_is_reported_once) {
   plug.is_small = true;
   LiveCameras cameras({camera("eye", plug)}, true, {});
   auto any = [](const LiveCameras::Taken&) { return true; };
-  EXPECT_EQ(take_until(cameras, any), std::vector<std::string>{"eye: is small"});
+  EXPECT_EQ(take_until(cameras, any), std::vector<Remark>({{hc::Level::Warning, "eye: is small"}}));
   plug.is_in = false;
   while (plug.opened < 2) std::this_thread::yield();
   plug.is_in = true;
   const auto said = take_until(cameras, [&](const auto&) { return plug.opened > 2; });
-  EXPECT_EQ(std::count(said.begin(), said.end(), "eye: is small"), 0);
+  EXPECT_EQ(std::ranges::count(said, "eye: is small", &Remark::text), 0);
 }
 
 TEST(LiveCameras, is_set_to_its_own_choice_from_the_beginning) {
@@ -182,7 +186,8 @@ TEST(LiveCameras, what_cannot_be_set_is_reported_and_images_continue) {
   Plug plug;
   LiveCameras cameras({camera("eye", plug)}, true, {0, 11});
   auto adjusted = [&](const auto&) { return plug.adjusted > 0; };
-  EXPECT_EQ(take_until(cameras, adjusted), std::vector<std::string>{"eye: too much gain"});
+  EXPECT_EQ(take_until(cameras, adjusted),
+            std::vector<Remark>({{hc::Level::Warning, "eye: too much gain"}}));
   cameras.adjust({0.01, 3});
   EXPECT_TRUE(take_until(cameras, [&](const auto&) { return plug.adjusted == 2; }).empty());
 }

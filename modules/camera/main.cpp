@@ -111,7 +111,7 @@ int main(int argc, char** argv) {
   auto take_live = [&] {
     cameras->adjust({*exposure, *gain});
     auto taken = cameras->next(kTimeout);
-    for (const auto& line : cameras->remarks()) module.log(line);
+    for (const auto& [level, line] : cameras->remarks()) module.log(line, level);
     if (!taken) throw hc::ModuleError(taken.error().detail);
     if (!*taken) return;
     const auto& [left_frame, right_frame] = **taken;

@@ -64,7 +64,7 @@ int main(int argc, char** argv) {
     head.emplace(
         hc::TrackedHeadOptions{place.host, place.port, words(*sender), hc::duration(*silence),
                                *centre_first},
-        [&](std::string_view line) { module.log(line); },
+        [&](hc::Level level, std::string_view line) { module.log(line, level); },
         [&](const auto&... problem) { module.log_once(problem...); });
     pass();
   });

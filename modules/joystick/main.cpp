@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
     const auto& state = joystick->state();
     const auto time = module.now();
     const auto changes = watch.take(state, *dead_zone);
-    if (!changes.line.empty()) module.log(changes.line);
+    if (!changes.line.empty()) module.log(changes.line, changes.level);
     // The stick first: the head moves by it.
     if (changes.stick) send_stick();
     if (changes.axes) axes.send(hc::table<double>(state.axes).at(time));
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
   auto update = [&] {
     while (joystick->update()) send_changes();
     if (std::exchange(taken, joystick->taken()) != taken && !taken.empty())
-      module.log(taken + " is used by another graph; waiting for it");
+      module.log(taken + " is used by another graph; waiting for it", hc::Level::Warning);
   };
   hc::Timeout look = module.after(std::chrono::nanoseconds(0), [&] {
     update();
@@ -57,7 +57,8 @@ int main(int argc, char** argv) {
   module.on_start([&] {
     joystick = hc::value_or_end(hc::Joystick::open());
     update();
-    if (joystick->state().name.empty() && taken.empty()) module.log("no joystick found; waiting");
+    if (joystick->state().name.empty() && taken.empty())
+      module.log("no joystick found; waiting", hc::Level::Warning);
     send_changes();
   });
   module.on_readable([&] { return joystick->descriptor(); }, update);

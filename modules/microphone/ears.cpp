@@ -50,9 +50,9 @@ std::optional<Piece> DeviceEar::next() {
   auto heard = capture_->take(std::chrono::milliseconds(0));
   if (!heard) return std::nullopt;
   heard_at_ = hc::SystemClock().monotonic();
-  if (std::exchange(is_silent_, false)) log_("microphone resumed");
+  if (std::exchange(is_silent_, false)) log_(hc::Level::Info, "microphone resumed");
   if (capture_->lost() > 0 && !std::exchange(has_lost_, true))
-    log_("sound dropped: not read in time (further drops are not logged)");
+    log_(hc::Level::Warning, "sound dropped: not read in time (further drops are not logged)");
   const auto piece = hc::audio::message_of(heard->samples, format_);
   return piece.at(times_.stamp(piece.header.width, heard->time));
 }
@@ -63,22 +63,23 @@ void DeviceEar::look() {
     capture_.reset();
     is_silent_ = false;
     is_missing_ = true;
-    log_("microphone disconnected; retrying");
+    log_(hc::Level::Warning, "microphone disconnected; retrying");
   }
   if (capture_ != nullptr) {
     if (now - heard_at_ > kTimeout && !std::exchange(is_silent_, true))
-      log_("microphone unresponsive; waiting");
+      log_(hc::Level::Warning, "microphone unresponsive; waiting");
     return;
   }
   if (!backoff_.is_due(now)) return;
   auto opened = hc::audio::Capture::open(device_, format_, format_.rate / kPiecesPerSecond);
   if (!opened) {
     backoff_.fail(now);
-    if (!std::exchange(is_missing_, true)) log_(opened.error().detail + "; retrying");
+    if (!std::exchange(is_missing_, true))
+      log_(hc::Level::Warning, opened.error().detail + "; retrying");
     return;
   }
   capture_ = std::move(*opened);
   heard_at_ = now;
   backoff_.reset();
-  if (std::exchange(is_missing_, false)) log_("microphone connected");
+  if (std::exchange(is_missing_, false)) log_(hc::Level::Info, "microphone connected");
 }

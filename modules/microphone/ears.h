@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 
 #include <hc/base/backoff.h>
 #include <hc/base/clock.h>
+#include <hc/base/log.h>
 #include <hc/base/result.h>
 #include <sound/capture.h>
 #include <sound/converter.h>
@@ -56,8 +56,7 @@ class DeviceEar {
  public:
   static constexpr std::chrono::seconds kTimeout{3};      ///< some servers begin late
   static constexpr std::chrono::milliseconds kLook{100};  ///< how often look() is to be called
-  using Log = std::function<void(std::string_view line)>;
-  DeviceEar(std::string device, const hc::audio::Format& format, Log log)
+  DeviceEar(std::string device, const hc::audio::Format& format, hc::LogSink log)
       : device_(std::move(device)), format_(format), log_(std::move(log)), times_(format.rate) {}
 
   /// Checks whether the device is connected, and opens it again.
@@ -70,7 +69,7 @@ class DeviceEar {
  private:
   std::string device_;
   hc::audio::Format format_;
-  Log log_;
+  hc::LogSink log_;
   hc::audio::FrameClock times_;
   hc::Backoff backoff_;
   std::unique_ptr<hc::audio::Capture> capture_;

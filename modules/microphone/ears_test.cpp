@@ -69,7 +69,7 @@ TEST_F(Ears, an_empty_file_is_at_its_end_at_once) {
 TEST_F(Ears, a_missing_microphone_is_logged_once_and_found_later) {
   ::setenv("SDL_AUDIODRIVER", "no_such_driver", 1);
   std::vector<std::string> log;
-  DeviceEar ear("", {16000, 1}, [&](std::string_view line) { log.emplace_back(line); });
+  DeviceEar ear("", {16000, 1}, [&](hc::Level, std::string_view line) { log.emplace_back(line); });
   for (int i = 0; i < 3; ++i) ear.look();
   EXPECT_EQ(ear.descriptor(), -1);
   EXPECT_FALSE(ear.next());

@@ -44,7 +44,8 @@ int main(int argc, char** argv) {
       from_file.emplace(hc::value_or_end(FileEar::open(*file, format, module.now())));
       return module.generate(send_from_file);
     }
-    from_device.emplace(*device, format, [&](std::string_view line) { module.log(line); });
+    from_device.emplace(*device, format,
+                        [&](hc::Level level, std::string_view line) { module.log(line, level); });
     from_device->look();
   });
   module.on_readable([&] { return from_device ? from_device->descriptor() : -1; },

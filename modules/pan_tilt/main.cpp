@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
 
   auto now = [] { return hc::SystemClock().monotonic(); };
   hc::pan_tilt::Neck neck(
-      [&](std::string_view line) { module.log(line); },
+      [&](hc::Level level, std::string_view line) { module.log(line, level); },
       [&](const auto&... problem) { module.log_once(problem...); },
       [&](const hc::pan_tilt::Gaze& seen) {
         const std::int64_t time = module.now() - (now() - seen.time).count();

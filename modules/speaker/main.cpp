@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
     player.emplace(
         PlayerOptions{*device != "none", *device, *save, static_cast<int>(*rate),
                       static_cast<int>(*channels), *buffer},
-        [&](std::string_view line, hc::Level level) { module.log(line, level); },
+        [&](hc::Level level, std::string_view line) { module.log(line, level); },
         hc::stop_descriptor());
   });
   module.on(sound, [&](const hc::Message& message) {

@@ -63,13 +63,13 @@ void Player::save(std::span<const std::int16_t> samples) {
   if (!writer_ || is_full) {
     auto begun = hc::audio::WavWriter::create(options_.file, *format_);
     if (begun && begun->path() != options_.file)
-      log_("continuing in " + begun->path(), hc::Level::Info);
+      log_(hc::Level::Info, "continuing in " + begun->path());
     written = begun ? begun->write(samples) : begun.error();
     if (begun) writer_.emplace(std::move(*begun));
   }
   if (written) return;
   file_error_ = true;
-  log_("recording of sound ended: " + written.error().detail, hc::Level::Error);
+  log_(hc::Level::Error, "recording of sound ended: " + written.error().detail);
 }
 
 Status Player::give_out() {
@@ -99,7 +99,7 @@ void Player::wait_until_at_most(double seconds) {
     last = waiting;
     if (clock.monotonic() - since > kTimeout) {
       stuck_at_ = waiting;
-      return log_("loudspeaker unresponsive; dropping sound", hc::Level::Warning);
+      return log_(hc::Level::Warning, "loudspeaker unresponsive; dropping sound");
     }
     pollfd stop{stop_, POLLIN, 0};
     if (::poll(&stop, 1, kPoll) != 0) return;
@@ -109,8 +109,8 @@ void Player::wait_until_at_most(double seconds) {
 void Player::look_whether_stuck() {
   if (!stuck_at_ || playback_->waiting() >= *stuck_at_) return;
   stuck_at_.reset();
-  log_("loudspeaker resumed; dropped " + std::to_string(dropped_ - dropped_logged_) + " messages",
-       hc::Level::Info);
+  log_(hc::Level::Info,
+       "loudspeaker resumed; dropped " + std::to_string(dropped_ - dropped_logged_) + " messages");
   dropped_logged_ = dropped_;
 }
 
@@ -121,23 +121,22 @@ void Player::look() {
     playback_.reset();
     stuck_at_.reset();
     is_missing_ = true;
-    log_("loudspeaker disconnected; dropping sound", hc::Level::Warning);
+    log_(hc::Level::Warning, "loudspeaker disconnected; dropping sound");
   }
   if (playback_ != nullptr) return look_whether_stuck();
   if (!backoff_.is_due(now)) return;
   auto opened = hc::audio::Playback::open(options_.device, *format_);
   if (!opened) {
     backoff_.fail(now);
-    if (!is_missing_) log_(opened.error().detail + "; dropping sound", hc::Level::Warning);
+    if (!is_missing_) log_(hc::Level::Warning, opened.error().detail + "; dropping sound");
     is_missing_ = true;
     return;
   }
   playback_ = std::move(*opened);
   backoff_.reset();
   if (is_missing_)
-    log_("loudspeaker connected; dropped " + std::to_string(dropped_ - dropped_logged_) +
-             " messages",
-         hc::Level::Info);
+    log_(hc::Level::Info, "loudspeaker connected; dropped " +
+                              std::to_string(dropped_ - dropped_logged_) + " messages");
   dropped_logged_ = dropped_;
   is_missing_ = false;
 }

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,8 +12,8 @@
 
 #include <hc/base/backoff.h>
 #include <hc/base/clock.h>
+#include <hc/base/log.h>
 #include <hc/base/result.h>
-#include <hc/contract/log_line.h>
 #include <hc/mtp/message.h>
 #include <sound/converter.h>
 #include <sound/playback.h>
@@ -34,9 +33,8 @@ class Player {
  public:
   static constexpr std::chrono::seconds kTimeout{1};
   static constexpr std::chrono::milliseconds kLook{100};  ///< how often look() is to be called
-  using Log = std::function<void(std::string_view line, hc::Level level)>;
   /// @param stop  descriptor that is readable when waiting is to end.
-  Player(PlayerOptions options, Log log, int stop)
+  Player(PlayerOptions options, hc::LogSink log, int stop)
       : options_(std::move(options)), log_(std::move(log)), stop_(stop) {}
 
   /// Takes a sound; waits while more than `buffer` waits to be played. Without a device, or when it
@@ -67,7 +65,7 @@ class Player {
   void look_whether_stuck();
 
   PlayerOptions options_;
-  Log log_;
+  hc::LogSink log_;
   int stop_;
   std::optional<hc::audio::Format> format_;  // of device and file, once it is known
   std::optional<hc::audio::Converter> converter_;

@@ -31,7 +31,7 @@ class PlayerTest : public testing::Test {
 
   Player player(PlayerOptions options) {
     return {std::move(options),
-            [this](std::string_view line, hc::Level) { log.emplace_back(line); }, -1};
+            [this](hc::Level, std::string_view line) { log.emplace_back(line); }, -1};
   }
   [[nodiscard]] std::vector<std::int16_t> written(const Format& format) const {
     auto reader = hc::audio::WavReader::open(wav);

@@ -77,7 +77,8 @@ class NeckAtLine {
   hc::pan_tilt::Unit unit_;
   hc::pan_tilt::NeckSettings settings_;
   std::string answer_;
-  Neck neck_{[](std::string_view) {}, [this](const auto&...) { ++dropped; }, [](const auto&) {}};
+  Neck neck_{[](hc::Level, std::string_view) {}, [this](const auto&...) { ++dropped; },
+             [](const auto&) {}};
   hc::MonotonicTime halted_{};
   int number_ = 0;
 };
