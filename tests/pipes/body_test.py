@@ -153,7 +153,7 @@ class SoundServer(Bodies):
         ears = self.start("exec hc microphone --out mono=file:heard.mtp 2>ears", stdout=-3)
         heard = pathlib.Path(self.path("heard.mtp"))
         ears_said = lambda: re.findall(
-            r"microphone: microphone (unresponsive|resumed)", self.read("ears")
+            r"microphone: (?:warning: )?microphone (unresponsive|resumed)", self.read("ears")
         )
         wait_until(lambda: heard.exists() and heard.stat().st_size > 0)
         for times in (1, 2):

@@ -22,7 +22,7 @@ OWN = move_to_own_network("ip link set lo up && ip addr add 127.0.0.2/8 dev lo")
 from harness import Pipes, WATCHDOG, wait_until  # noqa: E402
 
 CHANGE = re.compile(
-    r"camera: aravis:127\.0\.0\.(\d): (?:(disconnected): .*; reconnecting|(reconnected))"
+    r"camera: (?:warning: )?aravis:127\.0\.0\.(\d): (?:(disconnected): .*; reconnecting|(reconnected))"
 )
 
 
@@ -115,7 +115,7 @@ class CameraDevices(Pipes):
         # What cannot be set is reported, and images continue.
         command = self.start("hc send --text 'set gain=9999' >commands")
         wait_until(self.others)
-        self.assertRegex(self.others()[0], "^camera: aravis:127.0.0.1: gain must be from ")
+        self.assertRegex(self.others()[0], "^camera: warning: aravis:127.0.0.1: gain must be from ")
         count = self.seen()
         wait_until(lambda: self.seen() > count)
         self.assertIsNone(camera.poll())
@@ -151,7 +151,7 @@ class CameraDevices(Pipes):
     def test_a_camera_that_comes_later(self):
         self.camera("aravis:127.0.0.1")
         wait_until(self.said)
-        self.assertRegex(self.said()[0], "^camera: aravis:127.0.0.1: cannot connect: .*; retrying$")
+        self.assertRegex(self.said()[0], "^camera: warning: aravis:127.0.0.1: cannot connect: .*; retrying$")
         self.fake(1)
         wait_until(lambda: self.seen() > 0)
         self.assertEqual(self.said()[1], "camera: aravis:127.0.0.1: reconnected")

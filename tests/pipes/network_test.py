@@ -149,9 +149,11 @@ class Network(Pipes):
             other = self.within(self.far, '%s -c "%s"' % (PYTHON, send))
             lines = iter(tracker.stdout.readline, b"")
             self.assertTrue(any(re.search(said, line.decode()) for line in lines))
+            if THERE in sender:
+                wait_until(lambda: "0.349" in self.read("rotation"))
             for process in (other, tracker):
                 self.end(process)
-        self.assertIn("0.349", self.read("rotation"))
+            self.assertEqual("0.349" in self.read("rotation"), THERE in sender)
 
 
 class ManyClients(Pipes):
