@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drawing of a graph: laid out once for a structure, and its texts and colours kept up to date.
 import type { GraphLink, GraphModule, GraphState } from "../server";
-import { h, svg } from "../shell";
+import { h, setText, svg } from "../shell";
 import { DropRates } from "./drops";
 import { Failures } from "./failures";
 import { layoutOf, pathThrough, type Box, type Layout, type Point } from "./layout";
@@ -33,11 +33,7 @@ interface EdgeElements {
   readonly edge: Edge;
 }
 
-/** Sets an attribute or a text where it has changed, so that nothing is redrawn needlessly. */
-function setText(element: Element, text: string): void {
-  if (element.textContent !== text) element.textContent = text;
-}
-
+/** As setText(), of an attribute. */
 function setAttribute(element: Element, name: string, value: string): void {
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }
@@ -46,30 +42,31 @@ export class Drawing {
   private readonly groups = svg("g");
   private readonly edges = svg("g");
   private readonly nodes = svg("g");
-  private readonly scene = svg("g", {}, this.groups, this.edges, this.nodes);
+  private readonly scene = svg("g", [this.groups, this.edges, this.nodes]);
   private readonly svg = svg(
-    "svg",
-    { class: "graph-drawing", tabindex: 0, role: "group", "aria-label": "Drawing of the graph" },
-    svg(
-      "defs",
-      {},
+    "svg.graph-drawing",
+    { tabindex: 0, role: "group", "aria-label": "Drawing of the graph" },
+    [
       svg(
-        "marker",
-        {
-          id: "arrow",
-          viewBox: "0 0 8 8",
-          refX: 7,
-          refY: 4,
-          markerWidth: 9,
-          markerHeight: 9,
-          markerUnits: "userSpaceOnUse",
-        },
-        svg("path", { d: "M0 0L8 4L0 8z", class: "arrow" }),
+        "defs",
+        svg(
+          "marker",
+          {
+            id: "arrow",
+            viewBox: "0 0 8 8",
+            refX: 7,
+            refY: 4,
+            markerWidth: 9,
+            markerHeight: 9,
+            markerUnits: "userSpaceOnUse",
+          },
+          svg("path.arrow", { d: "M0 0L8 4L0 8z" }),
+        ),
       ),
-    ),
-    this.scene,
+      this.scene,
+    ],
   );
-  readonly element = h("div", { class: "graph-window" }, []);
+  readonly element = h("div.graph-window", this.svg);
   readonly viewport = new Viewport(this.svg, this.scene);
   private readonly nodeElements = new Map<string, NodeElements>();
   private readonly edgeElements = new Map<string, EdgeElements>();
@@ -80,7 +77,6 @@ export class Drawing {
   private current = "";
 
   constructor(private readonly events: DrawingEvents) {
-    this.element.append(this.svg);
     this.svg.addEventListener("keydown", (event) => this.key(event));
   }
 
@@ -127,18 +123,16 @@ export class Drawing {
     const title = svg("title");
     const left = -box.width / 2;
     const top = -box.height / 2;
-    const detail = svg("text", { class: "node-detail", x: left + 10, y: top + 37 });
-    const mode = svg("text", {
-      class: "node-mode",
+    const detail = svg("text.node-detail", { x: left + 10, y: top + 37 });
+    const mode = svg("text.node-mode", {
       x: -left - 8,
       y: top - 3,
       "text-anchor": "end",
     });
-    const load = svg("rect", { class: "node-load", x: left + 2, y: -top - 5, height: 3, width: 0 });
+    const load = svg("rect.node-load", { x: left + 2, y: -top - 5, height: 3, width: 0 });
     const group = svg(
-      "g",
+      "g.node",
       {
-        class: "node",
         role: "button",
         tabindex: -1,
         "data-module": name,
@@ -146,19 +140,20 @@ export class Drawing {
         onclick: () => this.events.openModule(name),
         onfocus: () => this.moveTo(name),
       },
-      title,
-      svg("rect", {
-        class: "node-box",
-        x: left,
-        y: top,
-        width: box.width,
-        height: box.height,
-        rx: 6,
-      }),
-      svg("text", { class: "node-name", x: left + 10, y: top + 20 }, name),
-      detail,
-      mode,
-      load,
+      [
+        title,
+        svg("rect.node-box", {
+          x: left,
+          y: top,
+          width: box.width,
+          height: box.height,
+          rx: 6,
+        }),
+        svg("text.node-name", { x: left + 10, y: top + 20 }, name),
+        detail,
+        mode,
+        load,
+      ],
     );
     this.nodeElements.set(name, { group, title, detail, mode, load, box });
     return group;
@@ -168,9 +163,9 @@ export class Drawing {
     const { points, label } = layout.edges.get(edge.key)!;
     const d = pathThrough(points);
     const title = svg("title");
-    const rate = svg("tspan", { class: "edge-rate" });
-    const dropped = svg("tspan", { class: "edge-dropped" });
-    const latency = svg("text", { class: "edge-latency", x: label.x, y: label.y + 12 });
+    const rate = svg("tspan.edge-rate");
+    const dropped = svg("tspan.edge-dropped");
+    const latency = svg("text.edge-latency", { x: label.x, y: label.y + 12 });
     const group = svg(
       "g",
       {
@@ -179,11 +174,13 @@ export class Drawing {
         onclick: (event: MouseEvent) =>
           this.events.openEdge(edge, { x: event.clientX, y: event.clientY }),
       },
-      title,
-      svg("path", { class: "edge-line", d, "marker-end": "url(#arrow)" }),
-      svg("path", { class: "edge-hit", d }),
-      svg("text", { class: "edge-label", x: label.x, y: label.y - 2 }, rate, dropped),
-      latency,
+      [
+        title,
+        svg("path.edge-line", { d, "marker-end": "url(#arrow)" }),
+        svg("path.edge-hit", { d }),
+        svg("text.edge-label", { x: label.x, y: label.y - 2 }, [rate, dropped]),
+        latency,
+      ],
     );
     this.edgeElements.set(edge.key, { group, title, rate, dropped, latency, edge });
     return group;
@@ -276,12 +273,10 @@ function drawGroup({ group, box }: Layout["groups"][number]): SVGGElement {
   const x = box.x - box.width / 2;
   const y = box.y - box.height / 2;
   const { width, height } = box;
-  return svg(
-    "g",
-    { class: "group" },
+  return svg("g.group", [
     svg("rect", { x, y, width, height, rx: 10 }),
     svg("text", { x: x + 10, y: y + 16 }, group),
-  );
+  ]);
 }
 
 /** A link in words: its ports, how it is, its latency, and what it dropped. */

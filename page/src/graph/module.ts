@@ -6,7 +6,7 @@ import {
   type GraphState,
   type LogLine,
 } from "../server";
-import { fill, h, type PanelHost, type PanelKind } from "../shell";
+import { fill, h, setText, type PanelHost, type PanelKind } from "../shell";
 import { describe, typeText, type Description, type PortDescription } from "./describe";
 import { Failures } from "./failures";
 import { ParameterView } from "./parameter";
@@ -25,13 +25,12 @@ export const modulePanel: PanelKind = (args, host) => {
 };
 
 class ModuleView {
-  private readonly status = h("p", { class: "module-status", role: "status" });
-  private readonly summary = h("p", { class: "summary" });
-  private readonly facts = h("dl", { class: "facts" });
-  private readonly ports = h("div", { class: "ports" });
-  private readonly parameters = h("div", { class: "parameters" });
-  private readonly log = h("pre", {
-    class: "log",
+  private readonly status = h("p.module-status", { role: "status" });
+  private readonly summary = h("p.summary");
+  private readonly facts = h("dl.facts");
+  private readonly ports = h("div.ports");
+  private readonly parameters = h("div.parameters");
+  private readonly log = h("pre.log", {
     tabindex: 0,
     role: "log",
     "aria-label": "Log of the module",
@@ -50,19 +49,17 @@ class ModuleView {
   ) {
     this.restart = h("button", { onclick: () => void this.askRestart() }, "Restart");
     host.tools.append(this.restart);
-    this.element = h(
-      "div",
-      { class: "module" },
+    this.element = h("div.module", [
       this.status,
       this.summary,
       this.facts,
-      h("h3", {}, "Parameters"),
+      h("h3", "Parameters"),
       this.parameters,
-      h("h3", {}, "Ports"),
+      h("h3", "Ports"),
       this.ports,
-      h("h3", {}, "Log"),
+      h("h3", "Log"),
       this.log,
-    );
+    ]);
     const { server } = host;
     this.ends.push(
       // The server begins a connection with the last lines of the log.
@@ -104,7 +101,7 @@ class ModuleView {
     this.failures.take(state);
     const { is, why } = this.failures.conditionOf(module);
     const text = why ? `${module.status}: ${why}` : module.status;
-    if (this.status.textContent !== text) this.status.textContent = text;
+    setText(this.status, text);
     this.status.className = `module-status ${is}`;
     this.updateFacts(module);
     this.updateParameters(module);
@@ -123,7 +120,7 @@ class ModuleView {
     ];
     fill(
       this.facts,
-      facts.map(([title, value]) => h("div", {}, h("dt", {}, title), h("dd", {}, value))),
+      facts.map(([title, value]) => h("div", [h("dt", title), h("dd", value)])),
     );
   }
 
@@ -139,7 +136,7 @@ class ModuleView {
         }),
       );
       const views = [...this.parameterViews.values()].map((view) => view.element);
-      fill(this.parameters, views.length > 0 ? views : h("p", {}, "None."));
+      fill(this.parameters, views.length > 0 ? views : h("p", "None."));
     }
     for (const [name, view] of this.parameterViews) {
       const usual = this.description?.parameters.find((each) => each.name === name)?.default;
@@ -168,7 +165,7 @@ class ModuleView {
         latencyText(link.age),
       ];
       const text = facts.filter((fact) => fact !== "").join("; ");
-      if (element && element.textContent !== text) element.textContent = text;
+      if (element) setText(element, text);
     }
   }
 
@@ -197,21 +194,17 @@ class ModuleView {
       },
       port.name,
     );
-    return h(
-      "div",
-      { class: "port" },
-      h("span", { class: "way" }, way === "in" ? "in" : "out"),
+    return h("div.port", [
+      h("span.way", way === "in" ? "in" : "out"),
       open,
-      h("span", { class: "port-doc" }, [types, port.doc].filter(Boolean).join("; ")),
+      h("span.port-doc", [types, port.doc].filter(Boolean).join("; ")),
       links.map((link) =>
-        h(
-          "p",
-          { class: "port-link" },
+        h("p.port-link", [
           way === "in" ? `from ${link.from}: ` : `to ${link.to}: `,
           h("span", { "data-link": `${link.from} ${link.to}` }),
-        ),
+        ]),
       ),
-    );
+    ]);
   }
 
   /** A line of the log that is of this module. */

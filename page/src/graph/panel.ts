@@ -20,7 +20,7 @@ export const graphPanel: PanelKind = (args, host) => {
   const linksOfEdge = (edge: Edge): GraphLink[] =>
     server.state?.links.filter((link) => edge.links.includes(linkKey(link))) ?? [];
 
-  const menu = h("div", { class: "edge-menu", hidden: true });
+  const menu = h("div.edge-menu", { hidden: true });
   /** Two modules that are joined by several links: which one? */
   const choose = (edge: Edge, at: Point): void => {
     const links = linksOfEdge(edge);
@@ -30,12 +30,10 @@ export const graphPanel: PanelKind = (args, host) => {
     }
     const buttons = links.map((link) => {
       const facts = [rateText(link.per_second), latencyText(link.age), ...dropTexts(link)];
-      return h(
-        "button",
-        { onclick: () => (closeMenu(), openLink(link)) },
-        h("b", {}, `${link.from} → ${link.to}`),
-        h("span", {}, facts.filter((fact) => fact !== "").join("; ")),
-      );
+      return h("button", { onclick: () => (closeMenu(), openLink(link)) }, [
+        h("b", `${link.from} → ${link.to}`),
+        h("span", facts.filter((fact) => fact !== "").join("; ")),
+      ]);
     });
     fill(menu, buttons);
     menu.hidden = false;
@@ -54,9 +52,9 @@ export const graphPanel: PanelKind = (args, host) => {
 
   const drawing = new Drawing({ openModule, openEdge: choose });
   const tables = new Tables({ openModule, openLink });
-  const workspaces = h("div", { class: "workspaces" });
+  const workspaces = h("div.workspaces");
   const views = new Map<string, WorkspaceView>();
-  const element = h("div", { class: "graph" }, workspaces, drawing.element, tables.element, menu);
+  const element = h("div.graph", [workspaces, drawing.element, tables.element, menu]);
 
   let chosen = args.show;
   const background = h("input", {
@@ -80,7 +78,7 @@ export const graphPanel: PanelKind = (args, host) => {
   const zoom = (label: string, text: string, action: () => void): HTMLElement =>
     h("button", { "aria-label": label, title: label, onclick: action }, text);
   const drawingTools = [
-    h("label", { class: "tool" }, background, "focus and poses"),
+    h("label.tool", [background, "focus and poses"]),
     zoom("Smaller", "−", () => drawing.viewport.zoom(0.8)),
     zoom("Larger", "+", () => drawing.viewport.zoom(1.25)),
     zoom("Show all", "⤢", () => drawing.viewport.fit()),

@@ -13,7 +13,7 @@ export class ParameterView {
   readonly element: HTMLElement;
   private readonly control: Control;
   private readonly slider?: HTMLInputElement;
-  private readonly problem = h("p", { class: "problem", role: "alert" });
+  private readonly problem = h("p.problem", { role: "alert" });
   /** As the module said it last. */
   private value = "";
 
@@ -51,15 +51,13 @@ export class ParameterView {
         this.control.value = shortest(this.slider!.value);
       });
     }
-    const unit = is.unit ? h("span", { class: "unit" }, is.unit) : null;
-    this.element = h(
-      "div",
-      { class: "parameter", "data-parameter": is.name },
+    const unit = is.unit ? h("span.unit", is.unit) : null;
+    this.element = h("div.parameter", { "data-parameter": is.name }, [
       h("label", { for: id }, is.name),
-      h("div", { class: "control" }, this.control, unit, this.slider),
-      h("p", { class: "note", id: note }, noteText(is)),
+      h("div.control", [this.control, unit, this.slider]),
+      h("p.note", { id: note }, noteText(is)),
       this.problem,
-    );
+    ]);
   }
 
   /** Shows what the module has, unless a person is changing it. */

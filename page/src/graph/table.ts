@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Modules and links of a graph as tables, for screen readers, phones, and who likes lists.
 import type { GraphLink, GraphModule, GraphState } from "../server";
-import { h } from "../shell";
+import { h, setText } from "../shell";
 import { linkKey } from "./structure";
 import {
   bytesText,
@@ -34,15 +34,9 @@ class LiveTable<Row> {
   ) {
     const titles = columns.map(({ title }) => h("th", { scope: "col" }, title));
     this.element = h(
-      "div",
-      { class: "table-window", tabindex: 0, role: "region", "aria-label": caption },
-      h(
-        "table",
-        { class: "live-table" },
-        h("caption", {}, caption),
-        h("thead", {}, h("tr", {}, titles)),
-        this.body,
-      ),
+      "div.table-window",
+      { tabindex: 0, role: "region", "aria-label": caption },
+      h("table.live-table", [h("caption", caption), h("thead", h("tr", titles)), this.body]),
     );
   }
 
@@ -62,21 +56,18 @@ class LiveTable<Row> {
       if (element.className !== this.classOf(row)) element.className = this.classOf(row);
       this.columns.forEach((column, j) => {
         const text = column.text(row);
-        if (cells[j]!.textContent !== text) cells[j]!.textContent = text;
+        setText(cells[j]!, text);
       });
     });
   }
 
   private add(key: string): { element: HTMLTableRowElement; cells: HTMLElement[] } {
     const cells = this.columns.map(({ open }) =>
-      open
-        ? h("button", { class: "cell-button", onclick: () => open(this.data.get(key)!) })
-        : h("span"),
+      open ? h("button.cell-button", { onclick: () => open(this.data.get(key)!) }) : h("span"),
     );
     const element = h(
       "tr",
-      {},
-      cells.map((cell, j) => (j === 0 ? h("th", { scope: "row" }, cell) : h("td", {}, cell))),
+      cells.map((cell, j) => (j === 0 ? h("th", { scope: "row" }, cell) : h("td", cell))),
     );
     const row = { element, cells };
     this.rows.set(key, row);
@@ -125,7 +116,7 @@ export class Tables {
       linkKey,
       (link) => (link.status ? "broken" : "works") + (link.in_workspace ? " in-workspace" : ""),
     );
-    this.element = h("div", { class: "graph-tables" }, this.modules.element, this.links.element);
+    this.element = h("div.graph-tables", [this.modules.element, this.links.element]);
   }
 
   update(state: GraphState): void {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A workspace: who has the focus and why, and a small chart of each task's bids.
 import type { GraphState, Server, Stream } from "../server";
-import { fill, h, svg } from "../shell";
+import { fill, h, setText, svg } from "../shell";
 import { BidHistory, bidsOf, whyText, type Bid } from "./bids";
 
 const chart = { width: 240, height: 34 }; // [px]
 
 export class WorkspaceView {
-  private readonly why = h("p", { class: "why", role: "status" });
-  private readonly charts = h("div", { class: "bid-charts" });
+  private readonly why = h("p.why", { role: "status" });
+  private readonly charts = h("div.bid-charts");
   readonly element: HTMLElement;
   private readonly history = new BidHistory();
   private readonly stream: Stream;
@@ -19,12 +19,10 @@ export class WorkspaceView {
     private readonly server: Server,
     private readonly name: string,
   ) {
-    this.element = h(
-      "section",
-      { class: "workspace", "aria-label": `Focus, by ${name}` },
+    this.element = h("section.workspace", { "aria-label": `Focus, by ${name}` }, [
       this.why,
       this.charts,
-    );
+    ]);
     this.stream = server.stream(`${name}.standings`, { rate: 10 });
     this.stream.on("message", ({ message, at }) => {
       this.bids = bidsOf(message);
@@ -50,7 +48,7 @@ export class WorkspaceView {
     };
     const nameOf = (mode: number): string => modeName(state, mode);
     const why = whyText(this.bids, rules, nameOf);
-    if (this.why.textContent !== why) this.why.textContent = why;
+    setText(this.why, why);
     fill(
       this.charts,
       this.history.modes().map((mode) => this.drawMode(mode, nameOf(mode))),
@@ -75,24 +73,20 @@ export class WorkspaceView {
     });
     const bid = this.bids.find((each) => each.mode === mode);
     const now = bid ? bid.salience.toFixed(2) + (bid.ofPerson ? " (a person's)" : "") : "no bid";
-    return h(
-      "div",
-      { class: bid?.inFocus ? "bid in-focus" : "bid" },
-      h("span", { class: "bid-name" }, name),
+    return h("div", { class: bid?.inFocus ? "bid in-focus" : "bid" }, [
+      h("span.bid-name", name),
       svg(
-        "svg",
+        "svg.bid-chart",
         {
-          class: "bid-chart",
           viewBox: `0 0 ${chart.width} ${chart.height}`,
           preserveAspectRatio: "none",
           role: "img",
           "aria-label": `Bids of ${name} in the last minute; now ${now}`,
         },
-        svg("path", { class: "bid-line", d: line }),
-        svg("path", { class: "bid-focus", d: bars }),
+        [svg("path.bid-line", { d: line }), svg("path.bid-focus", { d: bars })],
       ),
-      h("span", { class: "bid-value" }, now),
-    );
+      h("span.bid-value", now),
+    ]);
   }
 }
 

@@ -7,24 +7,10 @@ import { isInteger } from "./number";
 
 export const maxHeaderBytes = 256;
 
-export const headerFields = [
-  "version",
-  "src",
-  "dst",
-  "seq",
-  "ttl",
-  "time",
-  "info",
-  "mode",
-  "coord",
-  "width",
-  "height",
-] as const;
-type Field = (typeof headerFields)[number];
-
 const i31 = 2n ** 31n - 1n;
 const i63 = 2n ** 63n - 1n;
-const ranges: Record<Field, readonly [bigint, bigint]> = {
+/** The fields in their order, and the least and greatest value of each. */
+const ranges = {
   version: [1n, 1n],
   src: [0n, i31],
   dst: [-(2n ** 31n), i31],
@@ -36,7 +22,9 @@ const ranges: Record<Field, readonly [bigint, bigint]> = {
   coord: [0n, i31],
   width: [0n, i31],
   height: [0n, i31],
-};
+} as const;
+export type HeaderField = keyof typeof ranges;
+export const headerFields = Object.keys(ranges) as HeaderField[];
 
 interface Word {
   readonly text: string;
@@ -60,7 +48,7 @@ export function parseHeader(line: string, start: number, limit: number): Header 
   const refuse = (rule: string, field: string, at: number, why = ""): never => {
     throw new MtpError(rule, field, start + at, why);
   };
-  const values = {} as Record<Field, bigint>;
+  const values = {} as Record<HeaderField, bigint>;
   let kind: Kind | undefined;
   headerFields.forEach((field, index) => {
     const word = words[index];
@@ -101,8 +89,21 @@ export function parseHeader(line: string, start: number, limit: number): Header 
   };
 }
 
+/** The header of a line as it was sent, of any size; undefined: it is none. */
+export function sentHeader(line: string): Header | undefined {
+  try {
+    return parseHeader(line.trim(), 0, Infinity);
+  } catch {
+    return undefined;
+  }
+}
+
 /** The rule that the width or height breaks, of R21 … R23. */
-function sideRule(kind: Kind, field: Field, values: Record<Field, bigint>): string | undefined {
+function sideRule(
+  kind: Kind,
+  field: HeaderField,
+  values: Record<HeaderField, bigint>,
+): string | undefined {
   if (field !== "width" && field !== "height") return undefined;
   const value = values[field];
   if (kind.encoding === "jpeg" && (value < 1n || value > 65500n)) return "R21";

@@ -17,21 +17,8 @@ export const matrixTypes = [
 ] as const;
 export type MatrixType = (typeof matrixTypes)[number];
 
-export const scalars = [
-  "u8",
-  "i8",
-  "u16",
-  "i16",
-  "u32",
-  "i32",
-  "u64",
-  "i64",
-  "f32",
-  "f64",
-] as const;
-export type Scalar = (typeof scalars)[number];
-
-export const scalarBytes: Record<Scalar, number> = {
+/** The size of each scalar, in the order of their numbers [byte]. */
+export const scalarBytes = {
   u8: 1,
   i8: 1,
   u16: 2,
@@ -42,7 +29,9 @@ export const scalarBytes: Record<Scalar, number> = {
   i64: 8,
   f32: 4,
   f64: 8,
-};
+} as const;
+export type Scalar = keyof typeof scalarBytes;
+export const scalars = Object.keys(scalarBytes) as Scalar[];
 
 export const encodings = ["text", "binary", "zstd", "jpeg"] as const;
 export type Encoding = (typeof encodings)[number];

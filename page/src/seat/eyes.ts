@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The images of a pair of eyes, as they come, for whoever draws them.
-import { numbersOf, type Message } from "../mtp";
+import { sentHeader } from "../mtp";
 import type { Arrival, GraphState, Server, Stream } from "../server";
 import { moduleOf, portOf } from "../graph/structure";
+import { bitmapOf } from "../views/picture";
 
 export type Side = "left" | "right";
 
@@ -63,32 +64,6 @@ export interface Picture {
   readonly decoded: number;
 }
 
-/** Decodes an image of u8, as JPEG or not. */
-async function bitmapOf(message: Message): Promise<ImageBitmap> {
-  const { header, elements } = message;
-  if (header.encoding === "jpeg") {
-    return createImageBitmap(
-      new Blob([elements as Uint8Array<ArrayBuffer>], { type: "image/jpeg" }),
-    );
-  }
-  const numbers = numbersOf(message);
-  const { width, height, components } = header;
-  const image = new ImageData(width, height);
-  for (let i = 0; i < width * height; ++i) {
-    for (let c = 0; c < 3; ++c)
-      image.data[4 * i + c] = numbers[i * components + (components > 1 ? c : 0)]!;
-    image.data[4 * i + 3] = 255;
-  }
-  return createImageBitmap(image);
-}
-
-/** Width and height of a header line [px]. */
-export function sizeOf(line = ""): { width: number; height: number } | undefined {
-  const fields = line.trim().split(/ +/).map(Number);
-  const [width, height] = fields.slice(9, 11);
-  return fields.length === 11 && width && height ? { width, height } : undefined;
-}
-
 /** One eye's stream. */
 export class Eye {
   private readonly stream: Stream;
@@ -120,8 +95,8 @@ export class Eye {
 
   private async take({ message, at }: Arrival): Promise<void> {
     const bitmap = await bitmapOf(message);
-    if (this.closed) return bitmap.close();
-    const sensor = sizeOf(this.stream.header) ?? message.header;
+    if (!bitmap || this.closed) return bitmap?.close();
+    const sensor = sentHeader(this.stream.header ?? "") ?? message.header;
     this.picture?.bitmap.close();
     this.picture = {
       bitmap,

@@ -2,15 +2,15 @@
 // Where the robot's head looked at a time, by the output that moves its frame.
 import { numbersOf } from "../mtp";
 import type { Server, Stream } from "../server";
+import { framesOf } from "../views/frames";
 import { anglesOfPose, type Angles } from "./orientation";
 
 /** So many poses are kept: some seconds. */
 const most = 300;
 
-/** The output that moves the frame `head`, of the text of G31: `NAME COORD PARENT OUTPUT ADDRESS`. */
+/** The output that moves the frame `head`, of the text of G31. */
 export function headOutput(frames: string): string | undefined {
-  const words = frames.split(";").map((frame) => frame.trim().split(/ +/));
-  return words.find((frame) => frame.length === 5 && frame[0] === "head")?.[3];
+  return framesOf(frames).find(({ name }) => name === "head")?.movedBy;
 }
 
 export class GazeHistory {

@@ -38,6 +38,8 @@ export class Seat {
   private readonly clock = new WallClock();
   private readonly states = new Signal<SeatState>({ is: "free" });
   private readonly tasks = new Signal<number>(0);
+  readonly onState = this.states.on;
+  readonly onTask = this.tasks.on;
   private drive?: Drive;
   private steering = false;
   /** When this page last could command, and when it last was too late [ms]. */
@@ -95,17 +97,9 @@ export class Seat {
     return performance.now() - this.chosenAt < onItsWay;
   }
 
-  onState(listener: (state: SeatState) => void): () => void {
-    return this.states.on(listener);
-  }
-
   /** Number of the task that the person has chosen; 0: none. */
   get task(): number {
     return this.tasks.value ?? 0;
-  }
-
-  onTask(listener: (task: number) => void): () => void {
-    return this.tasks.on(listener);
   }
 
   /** @param fromOther  takes it from whoever has it. */

@@ -32,31 +32,13 @@ function transpose(m: Matrix): Matrix {
   return [0, 1, 2].map((i) => [m[0]![i]!, m[1]![i]!, m[2]![i]!]);
 }
 
-function aboutX(angle: number): Matrix {
+/** A turn about the x axis (0), y (1) or z (2). */
+function about(axis: 0 | 1 | 2, angle: number): Matrix {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
-  return [
-    [1, 0, 0],
-    [0, c, -s],
-    [0, s, c],
-  ];
-}
-
-function aboutY(angle: number): Matrix {
-  const [c, s] = [Math.cos(angle), Math.sin(angle)];
-  return [
-    [c, 0, s],
-    [0, 1, 0],
-    [-s, 0, c],
-  ];
-}
-
-function aboutZ(angle: number): Matrix {
-  const [c, s] = [Math.cos(angle), Math.sin(angle)];
-  return [
-    [c, -s, 0],
-    [s, c, 0],
-    [0, 0, 1],
-  ];
+  const [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
+  const m = [0, 1, 2].map((row) => [0, 1, 2].map((column) => Number(row === column)));
+  [m[i]![i], m[i]![j], m[j]![i], m[j]![j]] = [c, -s, s, c];
+  return m as unknown as Matrix;
 }
 
 function anglesOf(m: Matrix): Angles {
@@ -74,11 +56,8 @@ function anglesOf(m: Matrix): Angles {
  * @param screen  angle of screen.orientation [degree].
  */
 export function anglesOfDevice(alpha: number, beta: number, gamma: number, screen: number): Angles {
-  const device = product(
-    product(aboutZ(alpha * degree), aboutX(beta * degree)),
-    aboutY(gamma * degree),
-  );
-  return anglesOf(product(product(device, aboutZ(-screen * degree)), screenFromBody));
+  const device = [about(2, alpha * degree), about(0, beta * degree), about(1, gamma * degree)];
+  return anglesOf([...device, about(2, -screen * degree), screenFromBody].reduce(product));
 }
 
 /** Where a headset looks, from its orientation in a space whose y is up, a quaternion. */
@@ -89,7 +68,7 @@ export function anglesOfHeadset(q: { x: number; y: number; z: number; w: number 
     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
   ];
-  return anglesOf(product(product(transpose(screenFromBody), headset), screenFromBody));
+  return anglesOf([transpose(screenFromBody), headset, screenFromBody].reduce(product));
 }
 
 /** Angles of a transformation from a frame of a body to another, 4 × 4, row by row. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The supervisor's seat: what the robot sees, and all by which a person moves it.
-import { mayDrive, modesInFocus, type DriveOutput, type GraphState, type Session } from "../server";
-import { fill, h, type PanelHost, type PanelKind } from "../shell";
+import { mayDrive, modesInFocus, type DriveOutput, type GraphState } from "../server";
+import { fill, h, setText, type PanelHost, type PanelKind } from "../shell";
 import { Ears } from "./ears";
 import { earsOf } from "./eyes";
 import { GazeHistory, headOutput } from "./gaze";
@@ -38,22 +38,18 @@ class SeatPanel {
   private ears?: Ears;
   private readonly ends: (() => void)[] = [];
 
-  private readonly who = h("p", { class: "seat-who", role: "status" });
-  private readonly takeButton = h(
-    "button",
-    { class: "take", onclick: () => this.take() },
-    "Take the seat",
-  );
+  private readonly who = h("p.seat-who", { role: "status" });
+  private readonly takeButton = h("button.take", { onclick: () => this.take() }, "Take the seat");
   private readonly leaveButton = h(
     "button",
     { onclick: () => this.seat.leave() },
     "Leave the seat",
   );
-  private readonly tasks = h("div", { class: "tasks", role: "group", "aria-label": "Tasks" });
-  private readonly knob = h("div", { class: "knob" });
+  private readonly tasks = h("div.tasks", { role: "group", "aria-label": "Tasks" });
+  private readonly knob = h("div.knob");
   private readonly pad = h(
-    "div",
-    { class: "pad", "aria-hidden": "true", title: "Drag to turn the head" },
+    "div.pad",
+    { "aria-hidden": "true", title: "Drag to turn the head" },
     this.knob,
   );
   private readonly phoneButton = h(
@@ -84,7 +80,7 @@ class SeatPanel {
     { "aria-pressed": "false", onclick: () => this.toggleEars() },
     "Listen",
   );
-  private readonly delay = h("p", { class: "seat-latency" });
+  private readonly delay = h("p.seat-latency");
   readonly element: HTMLElement;
 
   constructor(private readonly host: PanelHost) {
@@ -104,9 +100,8 @@ class SeatPanel {
     host.tools.append(this.view.tools);
 
     const speak = h(
-      "form",
+      "form.speak",
       {
-        class: "speak",
         onsubmit: (event: SubmitEvent) => {
           event.preventDefault();
           const text = this.text.value.trim();
@@ -116,38 +111,31 @@ class SeatPanel {
           host.say(`Sent to be spoken: ${text}`);
         },
       },
-      h("label", { for: "seat-text" }, "Say"),
-      this.text,
-      this.speakButton,
+      [h("label", { for: "seat-text" }, "Say"), this.text, this.speakButton],
     );
     this.element = h(
-      "div",
+      "div.seat",
       {
-        class: "seat",
         tabindex: 0,
         role: "group",
         "aria-label": "Seat: arrow keys or W A S D turn the head while you have the seat",
       },
-      h("div", { class: "seat-bar" }, this.who, this.takeButton, this.leaveButton),
-      h(
-        "div",
-        { class: "seat-body" },
-        this.view.element,
-        h(
-          "div",
-          { class: "seat-controls" },
-          this.pad,
-          h(
-            "div",
-            { class: "seat-column" },
-            this.tasks,
-            h("div", { class: "telepresence" }, this.phoneButton, this.xrButton, this.zeroButton),
-            speak,
-            h("div", { class: "listen" }, this.listenButton),
-            this.delay,
-          ),
-        ),
-      ),
+      [
+        h("div.seat-bar", [this.who, this.takeButton, this.leaveButton]),
+        h("div.seat-body", [
+          this.view.element,
+          h("div.seat-controls", [
+            this.pad,
+            h("div.seat-column", [
+              this.tasks,
+              h("div.telepresence", [this.phoneButton, this.xrButton, this.zeroButton]),
+              speak,
+              h("div.listen", this.listenButton),
+              this.delay,
+            ]),
+          ]),
+        ]),
+      ],
     );
 
     this.bindHands();
@@ -155,7 +143,7 @@ class SeatPanel {
       this.seat.onState((state) => this.showSeat(state)),
       this.seat.onTask(() => server.state && this.showTasks(server.state)),
       server.onState((state) => this.showState(state)),
-      server.onSession((session) => this.showSession(session)),
+      server.onSession(() => this.showWho()),
     );
     void navigator.xr?.isSessionSupported("immersive-vr").then(
       (supported) => (this.xrButton.hidden = !supported),
@@ -273,10 +261,6 @@ class SeatPanel {
     if (this.host.server.state) this.showTasks(this.host.server.state);
   }
 
-  private showSession(_session: Session): void {
-    this.showWho();
-  }
-
   private showState(state: GraphState): void {
     this.view.update(state);
     this.listenButton.disabled = earsOf(state) === undefined;
@@ -298,13 +282,11 @@ class SeatPanel {
       bid: seat.task && state ? modeName(state, seat.task) : "",
       fresh: seat.isFresh,
     });
-    if (this.who.textContent !== text) {
-      this.who.textContent = text;
-      this.who.title = text; // where there is no room for all of it
-    }
+    setText(this.who, text);
+    this.who.title = text; // where there is no room for all of it
     this.takeButton.hidden = !mayDrive(session) || seat.isHeld || seat.state.is === "waiting";
     const take = session?.driver === "other" ? "Take the seat from them" : "Take the seat";
-    if (this.takeButton.textContent !== take) this.takeButton.textContent = take;
+    setText(this.takeButton, take);
     this.leaveButton.hidden = !seat.isHeld;
     const free = !seat.isHeld;
     this.phoneButton.disabled = free || !this.has("rotation");
@@ -328,10 +310,9 @@ class SeatPanel {
       this.tasks,
       names.length > 0 &&
         h(
-          "button",
+          "button.task-button",
           {
             "data-task": "",
-            class: "task-button",
             "aria-pressed": String(can && this.seat.task === 0),
             disabled: !can,
             title: "Gives the head back, and keeps the seat",
@@ -366,6 +347,6 @@ class SeatPanel {
       median === undefined || p99 === undefined
         ? "Motion to photon: not measured yet."
         : `Motion to photon: ${Math.round(median)} ms, p99 ${Math.round(p99)} ms (${measurements.length}).`;
-    if (this.delay.textContent !== text) this.delay.textContent = text;
+    setText(this.delay, text);
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { sizeOf } from "./eyes";
+import { sentHeader } from "../mtp";
 import { headOutput } from "./gaze";
 import { Latency } from "./latency";
 import { anglesOfDevice, anglesOfHeadset, anglesOfPose, since, type Angles } from "./orientation";
@@ -94,8 +94,9 @@ test("a point of the canvas is a pixel of the sensor", () => {
   assert.equal(pixelAt(one, { x: 50, y: 300 }, sensor), undefined);
   const two = placesOf("side by side", { width: 400, height: 300 }, canvas);
   assert.equal(pixelAt(two, { x: 750, y: 300 }, sensor)?.side, "right");
-  assert.deepEqual(sizeOf("1 7 0 0 8 0 30301 1 7 800 600\n"), sensor);
-  assert.equal(sizeOf("nothing"), undefined);
+  const { width, height } = sentHeader("1 7 0 0 8 0 30301 1 7 800 600\n")!;
+  assert.deepEqual({ width, height }, sensor);
+  assert.equal(sentHeader("nothing"), undefined);
 });
 
 test("motion to photon is to the first later image that changed more than before", () => {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stop: always visible, one press, for viewers too. It is cleared by two other controls.
 import { CommandError, mayDrive, type Session } from "../server";
-import { h, type Shell } from "../shell";
+import { h, setText, type Shell } from "../shell";
 import { Stopping } from "./stopping";
 
 /** Two presses of Escape within this time stop the robot [ms]. */
@@ -52,29 +52,27 @@ export function addStop(shell: Shell): void {
   }, period);
 
   const button = h(
-    "button",
-    { class: "stop", title: "Stop the robot (Escape twice)", onclick: stop },
+    "button.stop",
+    { title: "Stop the robot (Escape twice)", onclick: stop },
     "Stop",
   );
   const { bar, showBar } = stoppedBar(() => {
     stopping.press(false, performance.now());
     void order(false);
   });
-  const why = h("p", { class: "not-stopped-why" });
-  const alarm = h(
-    "div",
-    { class: "not-stopped", role: "alert", hidden: true },
-    h("strong", {}, "NOT STOPPED"),
+  const why = h("p.not-stopped-why");
+  const alarm = h("div.not-stopped", { role: "alert", hidden: true }, [
+    h("strong", "NOT STOPPED"),
     why,
-    h("p", {}, "The stop is being repeated. If the robot moves, switch it off at the robot."),
-  );
+    h("p", "The stop is being repeated. If the robot moves, switch it off at the robot."),
+  ]);
   shell.headerSlot.append(button);
   shell.element.append(bar, alarm);
 
   const show = (): void => {
     const text = stopping.alarm(performance.now());
     alarm.hidden = text === "";
-    if (text !== "" && why.textContent !== text) why.textContent = text;
+    if (text !== "") setText(why, text);
   };
   let last = -Infinity;
   document.addEventListener("keydown", (event) => {
@@ -102,29 +100,21 @@ function stoppedBar(clear: () => void): {
   showBar: (stopped: boolean, mayClear: boolean) => void;
 } {
   const confirm = h("input", { type: "checkbox", id: "stop-confirm" });
-  const button = h(
-    "button",
-    { class: "stop-clear", disabled: true, onclick: clear },
-    "Let it move",
-  );
+  const button = h("button.stop-clear", { disabled: true, onclick: clear }, "Let it move");
   confirm.addEventListener("change", () => {
     button.disabled = !confirm.checked;
   });
-  const controls = h(
-    "span",
-    { class: "stop-controls" },
-    h("label", { for: "stop-confirm" }, confirm, "nobody is in its way"),
+  const controls = h("span.stop-controls", [
+    h("label", { for: "stop-confirm" }, [confirm, "nobody is in its way"]),
     button,
-  );
-  const note = h("span", { class: "stop-note" }, "Only who may drive can clear this stop.");
-  const bar = h(
-    "div",
-    { class: "stopped-bar", role: "alert", hidden: true },
-    h("strong", {}, "STOPPED"),
-    h("span", {}, "The robot is stopped: no task has the focus."),
+  ]);
+  const note = h("span.stop-note", "Only who may drive can clear this stop.");
+  const bar = h("div.stopped-bar", { role: "alert", hidden: true }, [
+    h("strong", "STOPPED"),
+    h("span", "The robot is stopped: no task has the focus."),
     controls,
     note,
-  );
+  ]);
   const showBar = (stopped: boolean, mayClear: boolean): void => {
     if (bar.hidden === stopped) {
       bar.hidden = !stopped;

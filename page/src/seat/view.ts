@@ -21,12 +21,11 @@ export interface SeenPixel {
 }
 
 export class SeatView {
-  readonly canvas = h("canvas", {
-    class: "seat-image",
+  readonly canvas = h("canvas.seat-image", {
     role: "img",
     "aria-label": "What the robot sees",
   });
-  private readonly problem = h("p", { class: "seat-problem", role: "status" });
+  private readonly problem = h("p.seat-problem", { role: "status" });
   private readonly way: HTMLSelectElement;
   private readonly source: HTMLSelectElement;
   readonly tools: HTMLElement;
@@ -45,11 +44,11 @@ export class SeatView {
     this.way = h(
       "select",
       name("How the eyes are shown"),
-      ways.map((way) => h("option", {}, way)),
+      ways.map((way) => h("option", way)),
     );
     this.source = h("select", name("Whose images"));
-    this.tools = h("div", { class: "seat-tools" }, this.source, this.way);
-    this.element = h("div", { class: "seat-view" }, this.canvas, this.problem);
+    this.tools = h("div.seat-tools", [this.source, this.way]);
+    this.element = h("div.seat-view", [this.canvas, this.problem]);
     this.resizing = new ResizeObserver(() => this.resize());
     this.resizing.observe(this.canvas);
   }

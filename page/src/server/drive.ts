@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { headerOf, writeMessage, type Message } from "../mtp";
-import { Signal, type Unsubscribe } from "./signal";
+import { Signal } from "./signal";
 import { Socket } from "./socket";
 import type { DriveOutput } from "./types";
 
@@ -31,6 +31,9 @@ const beat = writeMessage({
 export class Drive {
   private readonly statuses = new Signal<DriveStatus>({ status: "connecting" });
   private readonly refusals = new Signal<string>();
+  readonly onStatus = this.statuses.on;
+  /** Why something that was sent is not done. */
+  readonly onRefusal = this.refusals.on;
   private readonly socket: Socket;
   private readonly timer: number;
   private seq = 0n;
@@ -51,19 +54,6 @@ export class Drive {
       },
     });
     this.timer = window.setInterval(() => this.socket.send(beat), 50);
-  }
-
-  onStatus(listener: (status: DriveStatus) => void): Unsubscribe {
-    return this.statuses.on(listener);
-  }
-
-  /** Why something that was sent is not done. */
-  onRefusal(listener: (why: string) => void): Unsubscribe {
-    return this.refusals.on(listener);
-  }
-
-  get status(): DriveStatus {
-    return this.statuses.value ?? { status: "connecting" };
   }
 
   /** Sends to an output of `web`, with the next seq; returns whether the socket was open. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { readMessage, rowsOf } from "../mtp";
 import { Drive } from "./drive";
-import { Signal, type Unsubscribe } from "./signal";
+import { Signal } from "./signal";
 import { Socket } from "./socket";
 import { Stream, type StreamOptions } from "./stream";
 import type { Connection, GraphState, LogLine, Recording, Session } from "./types";
@@ -27,6 +27,11 @@ export class Server {
   private readonly sessions = new Signal<Session>();
   private readonly lines = new Signal<LogLine>();
   private readonly connections = new Signal<Connection>({ status: "connecting" });
+  readonly onState = this.states.on;
+  readonly onSession = this.sessions.on;
+  readonly onConnection = this.connections.on;
+  /** Each line of the log as it comes (G46); those before are in `log`. */
+  readonly onLog = this.lines.on;
   private readonly waiting = new Map<bigint, Waiting>(); // by the number of the command
   private asked = 0n; // over this connection
   private readonly logged: LogLine[] = [];
@@ -78,23 +83,6 @@ export class Server {
     return this.logged;
   }
 
-  onState(listener: (state: GraphState) => void): Unsubscribe {
-    return this.states.on(listener);
-  }
-
-  onSession(listener: (session: Session) => void): Unsubscribe {
-    return this.sessions.on(listener);
-  }
-
-  onConnection(listener: (connection: Connection) => void): Unsubscribe {
-    return this.connections.on(listener);
-  }
-
-  /** Each line of the log as it comes (G46); those before are in `log`. */
-  onLog(listener: (line: LogLine) => void): Unsubscribe {
-    return this.lines.on(listener);
-  }
-
   /**
    * Sends commands, a row each (W7).
    *
@@ -128,10 +116,6 @@ export class Server {
   /** Connects at once, where it would have waited. */
   reconnect(): void {
     this.socket.retry();
-  }
-
-  close(): void {
-    this.socket.close();
   }
 
   private receive(bytes: Uint8Array<ArrayBuffer>): void {

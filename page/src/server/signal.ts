@@ -22,11 +22,12 @@ export class Signal<T> {
     for (const listener of [...this.listeners]) listener(value);
   }
 
-  on(listener: (value: T) => void): Unsubscribe {
+  /** May be handed out as it is. */
+  readonly on = (listener: (value: T) => void): Unsubscribe => {
     this.listeners.add(listener);
     if (this.current !== undefined) listener(this.current);
     return () => this.listeners.delete(listener);
-  }
+  };
 
   /** The value, as soon as there is one. */
   first(): Promise<T> {

@@ -30,19 +30,10 @@ export class Socket {
     this.connect();
   }
 
-  get isOpen(): boolean {
-    return this.socket?.readyState === WebSocket.OPEN;
-  }
-
-  /** Bytes that have not been sent yet. */
-  get waiting(): number {
-    return this.socket?.bufferedAmount ?? 0;
-  }
-
   /** Sends if the socket is open; returns whether it was. */
   send(data: string | Uint8Array<ArrayBuffer>): boolean {
-    if (!this.isOpen) return false;
-    this.socket?.send(data);
+    if (this.socket?.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(data);
     return true;
   }
 

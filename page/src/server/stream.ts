@@ -19,20 +19,16 @@ export interface Arrival {
   readonly bytes: number;
 }
 
-/** Says that a message has been used; the server then sends a further one (W11). */
-export type Done = () => void;
-
 /**
  * The messages of an output. The newest only: a listener that returns a promise holds the stream
  * up until it is settled.
  */
 export class Stream {
-  private readonly arrivals = new Signal<Arrival>();
   private readonly headers = new Signal<string>();
   private readonly problems = new Signal<string>();
   private readonly consumers = new Set<(arrival: Arrival) => void | Promise<void>>();
   private readonly socket: Socket;
-  private asked: StreamOptions = {}; // with the path
+  private askedWidth?: number; // with the path
 
   constructor(
     readonly port: string,
@@ -68,20 +64,10 @@ export class Stream {
     return this.headers.value;
   }
 
-  get last(): Arrival | undefined {
-    return this.arrivals.value;
-  }
-
   setWidth(width: number): void {
     if (width === this.options.width) return;
     this.options = { ...this.options, width };
     this.socket.send(`width=${width}`);
-  }
-
-  setRate(rate: number): void {
-    if (rate === this.options.rate) return;
-    this.options = { ...this.options, rate };
-    this.socket.send(`rate=${rate}`);
   }
 
   /** Starts over: with the last message, and of video with a key frame. */
@@ -95,7 +81,7 @@ export class Stream {
   }
 
   private path(): string {
-    this.asked = this.options;
+    this.askedWidth = this.options.width;
     const query = Object.entries(this.options)
       .filter(([, value]) => value !== undefined)
       .map(([key, value]) => `${key}=${value}`)
@@ -105,16 +91,14 @@ export class Stream {
 
   private opened(): void {
     this.problems.set("");
-    const { width, rate } = this.options;
-    if (width !== this.asked.width) this.socket.send(`width=${width}`);
-    if (rate !== this.asked.rate) this.socket.send(`rate=${rate}`);
+    const { width } = this.options;
+    if (width !== this.askedWidth) this.socket.send(`width=${width}`);
   }
 
   private async receive(bytes: Uint8Array<ArrayBuffer>): Promise<void> {
     const at = Date.now();
     try {
       const arrival = { message: readMessage(bytes), at, bytes: bytes.length };
-      this.arrivals.set(arrival);
       await Promise.all([...this.consumers].map((consumer) => consumer(arrival)));
     } catch (error) {
       if (!(error instanceof MtpError)) console.error(error);

@@ -18,7 +18,7 @@ interface Target {
 }
 
 export class Board {
-  readonly element = h("main", { class: "board", id: "main", tabindex: -1 });
+  readonly element = h("main.board", { id: "main", tabindex: -1 });
   private layout: Layout = [];
   private readonly frames = new Map<Place, Frame>();
 
@@ -135,7 +135,7 @@ export class Board {
 
   private drag(place: Place, down: PointerEvent): void {
     const element = this.frames.get(place)!.element;
-    const mark = h("div", { class: "drop-mark" });
+    const mark = h("div.drop-mark");
     let target: Target | undefined;
     const move = (event: PointerEvent) => {
       if (Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) < 8) return;
@@ -228,7 +228,7 @@ export class Board {
           element,
         ];
       });
-      return h("div", { class: "column" }, parts);
+      return h("div.column", parts);
     });
     const apply = () =>
       this.layout.forEach(({ share }, i) => columns[i]!.style.setProperty("--share", `${share}`));
@@ -240,7 +240,7 @@ export class Board {
       return [splitter("vertical", "Widths of the columns left and right", neighbours), element];
     });
     if (parts.length === 0) {
-      parts.push(h("p", { class: "empty" }, "No panel is open. Press “Open…” to choose one."));
+      parts.push(h("p.empty", "No panel is open. Press “Open…” to choose one."));
     }
     this.element.replaceChildren(...parts);
     const isLarge = this.element.querySelector(".enlarged") !== null;

@@ -19,8 +19,8 @@ export interface FrameActions {
 /** A panel with its bar: title, tools, menu. */
 export class Frame {
   readonly element: HTMLElement;
-  private readonly title = h("h2", {});
-  private readonly tools = h("div", { class: "tools" });
+  private readonly title = h("h2");
+  private readonly tools = h("div.tools");
   private readonly menuButton: HTMLButtonElement;
   private readonly panel: Panel;
 
@@ -31,9 +31,8 @@ export class Frame {
   ) {
     const menu = this.menu();
     this.menuButton = h(
-      "button",
+      "button.icon",
       {
-        class: "icon",
         "aria-haspopup": "true",
         "aria-expanded": "false",
         title: "Move, resize; with Alt and an arrow key: move",
@@ -42,15 +41,13 @@ export class Frame {
       },
       "⋮",
     );
-    const bar = h(
-      "header",
-      { class: "panel-bar", onpointerdown: (event) => this.grab(event) },
+    const bar = h("header.panel-bar", { onpointerdown: (event) => this.grab(event) }, [
       this.title,
       this.tools,
       this.menuButton,
-      h("button", { class: "icon", title: "Close", onclick: () => actions.close() }, "✕"),
+      h("button.icon", { title: "Close", onclick: () => actions.close() }, "✕"),
       menu,
-    );
+    ]);
     this.setTitle(place.args.kind);
     const kind = panelKinds[place.args.kind];
     this.panel = kind?.(place.args, {
@@ -58,10 +55,10 @@ export class Frame {
       setTitle: (t) => this.setTitle(t),
       tools: this.tools,
     }) ?? {
-      element: h("p", { class: "empty" }, `There is no panel “${place.args.kind}”.`),
+      element: h("p.empty", `There is no panel “${place.args.kind}”.`),
     };
-    const body = h("div", { class: "panel-body" }, this.panel.element);
-    this.element = h("section", { class: `panel kind-${place.args.kind}` }, bar, body);
+    const body = h("div.panel-body", this.panel.element);
+    this.element = h("section", { class: `panel kind-${place.args.kind}` }, [bar, body]);
   }
 
   focus(): void {
@@ -88,9 +85,8 @@ export class Frame {
     const item = (label: string, act: () => void) =>
       h("button", { role: "menuitem", onclick: () => (this.toggle(menu, false), act()) }, label);
     const menu: HTMLElement = h(
-      "div",
+      "div.menu",
       {
-        class: "menu",
         role: "menu",
         hidden: true,
         onkeydown: (event) => this.menuKey(menu, event),
@@ -101,14 +97,16 @@ export class Frame {
           }
         },
       },
-      item("Enlarge or restore", () => this.actions.enlarge()),
-      item("Move left", () => this.actions.move("left")),
-      item("Move right", () => this.actions.move("right")),
-      item("Move up", () => this.actions.move("up")),
-      item("Move down", () => this.actions.move("down")),
-      item("Larger", () => this.actions.grow(1.25)),
-      item("Smaller", () => this.actions.grow(0.8)),
-      item("Close", () => this.actions.close()),
+      [
+        item("Enlarge or restore", () => this.actions.enlarge()),
+        item("Move left", () => this.actions.move("left")),
+        item("Move right", () => this.actions.move("right")),
+        item("Move up", () => this.actions.move("up")),
+        item("Move down", () => this.actions.move("down")),
+        item("Larger", () => this.actions.grow(1.25)),
+        item("Smaller", () => this.actions.grow(0.8)),
+        item("Close", () => this.actions.close()),
+      ],
     );
     return menu;
   }

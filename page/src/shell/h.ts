@@ -1,62 +1,71 @@
 // SPDX-License-Identifier: Apache-2.0
 
-export type Child = Node | string | number | null | undefined | false;
+type Child = Node | string | number | null | undefined | false;
+/** A child, or several; what is null, undefined or false is left out. */
+export type Children = Child | readonly (Child | readonly Child[])[];
 
 type Handlers = {
   [K in keyof HTMLElementEventMap as `on${K}`]?: (event: HTMLElementEventMap[K]) => void;
 };
-export type Attributes = Handlers & { [name: string]: unknown };
+type Attributes = Handlers & { [name: string]: unknown };
+type Parts = readonly (Attributes | Children)[];
 
 /**
- * An element: h("button", { class: "small", onclick: stop, "aria-label": "Stop" }, "Stop").
- * Functions become listeners, true an empty attribute; false, null and undefined are dropped.
+ * An element: h("button.small", { onclick: stop, "aria-label": "Stop" }, "Stop"), with its classes
+ * after its tag, then its attributes, if it has any, and what it holds. Functions become listeners,
+ * true an empty attribute; false, null and undefined are dropped.
  */
 export function h<K extends keyof HTMLElementTagNameMap>(
-  tag: K,
-  attributes: Attributes = {},
-  ...children: readonly (Child | readonly Child[])[]
+  tag: K | `${K}.${string}`,
+  ...parts: Parts
 ): HTMLElementTagNameMap[K] {
-  const element = document.createElement(tag);
-  setAttributes(element, attributes);
-  element.append(...nodes(children));
-  return element;
+  const [name = "", ...classes] = tag.split(".");
+  return complete(document.createElement(name as K), classes, parts);
 }
 
 /** As h(), of SVG. */
 export function svg<K extends keyof SVGElementTagNameMap>(
-  tag: K,
-  attributes: { [name: string]: unknown } = {},
-  ...children: readonly (Child | readonly Child[])[]
+  tag: K | `${K}.${string}`,
+  ...parts: Parts
 ): SVGElementTagNameMap[K] {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  setAttributes(element, attributes);
-  element.append(...nodes(children));
-  return element;
+  const [name = "", ...classes] = tag.split(".");
+  const element = document.createElementNS("http://www.w3.org/2000/svg", name as K);
+  return complete(element, classes, parts);
 }
 
 /** Replaces what an element holds. */
-export function fill(element: Element, ...children: readonly (Child | readonly Child[])[]): void {
-  element.replaceChildren(...nodes(children));
+export function fill(element: Element, ...children: readonly Children[]): void {
+  const shown = children
+    .flat(2)
+    .filter((child) => child !== null && child !== undefined && child !== false);
+  element.replaceChildren(...(shown as (Node | string)[]));
 }
 
-function nodes(children: readonly (Child | readonly Child[])[]): (Node | string)[] {
-  return children
-    .flat()
-    .filter(
-      (child): child is Node | string | number =>
-        child !== null && child !== undefined && child !== false,
-    )
-    .map((child) => (typeof child === "number" ? String(child) : child));
+/** Sets a text where it is another one, so that nothing is drawn, or read out, needlessly. */
+export function setText(element: Element, text: string): void {
+  if (element.textContent !== text) element.textContent = text;
 }
 
-function setAttributes(element: Element, attributes: { [name: string]: unknown }): void {
-  for (const [name, value] of Object.entries(attributes)) {
+function complete<E extends Element>(element: E, classes: readonly string[], parts: Parts): E {
+  if (classes.length > 0) element.setAttribute("class", classes.join(" "));
+  const [first, ...others] = parts;
+  if (!isAttributes(first)) {
+    fill(element, ...(parts as Children[]));
+    return element;
+  }
+  for (const [name, value] of Object.entries(first)) {
     if (typeof value === "function") {
       element.addEventListener(name.slice(2), value as EventListener);
-    } else if (value === true) {
-      element.setAttribute(name, "");
     } else if (value !== false && value !== null && value !== undefined) {
-      element.setAttribute(name, String(value));
+      element.setAttribute(name, value === true ? "" : String(value));
     }
   }
+  fill(element, ...(others as Children[]));
+  return element;
+}
+
+function isAttributes(part: Attributes | Children): part is Attributes {
+  return (
+    typeof part === "object" && part !== null && !(part instanceof Node) && !Array.isArray(part)
+  );
 }

@@ -32,7 +32,7 @@ export function opener(
   outputs: Outputs,
 ): HTMLDialogElement {
   let streams: Choice[] = [];
-  const list = h("ul", { class: "choices" });
+  const list = h("ul.choices");
   const choose = (args: PanelArgs) => {
     dialog.close();
     open(args);
@@ -40,13 +40,7 @@ export function opener(
   const item = ({ label, detail, args }: Choice) =>
     h(
       "li",
-      {},
-      h(
-        "button",
-        { onclick: () => choose(args) },
-        h("span", {}, label),
-        h("span", { class: "muted" }, detail),
-      ),
+      h("button", { onclick: () => choose(args) }, [h("span", label), h("span.muted", detail)]),
     );
   const show = () => {
     const typed = search.value.trim();
@@ -60,7 +54,7 @@ export function opener(
       found.push({ label: typed, detail: "stream", args: { kind: "stream", port: typed } });
     }
     fill(list, found.map(item));
-    if (found.length === 0) fill(list, h("li", { class: "muted" }, "Nothing has that name."));
+    if (found.length === 0) fill(list, h("li.muted", "Nothing has that name."));
   };
   const search = h("input", {
     type: "search",
@@ -83,13 +77,12 @@ export function opener(
     (buttons[at + step] ?? search).focus();
   });
   const dialog = h(
-    "dialog",
+    "dialog.opener",
     {
-      class: "opener",
       "aria-label": "Open a panel",
       onclick: (event) => event.target === dialog && dialog.close(),
     },
-    h("div", { class: "opener-body" }, search, list),
+    h("div.opener-body", [search, list]),
   );
   dialog.addEventListener("toggle", () => {
     if (!dialog.open) return;

@@ -23,18 +23,16 @@ const sentenceLife = 10_000;
 export class Shell {
   readonly element: HTMLElement;
   /** Room in the header for what is always visible: the stop button. */
-  readonly headerSlot = h("div", { class: "header-slot" });
-  private readonly graphName = h("h1", {}, "Hypercolumn");
-  private readonly connection = h("span", { class: "connection", role: "status" });
-  private readonly focus = h("span", { class: "focus" });
-  private readonly recording = h("button", {
-    class: "recording-now",
+  readonly headerSlot = h("div.header-slot");
+  private readonly graphName = h("h1", "Hypercolumn");
+  private readonly connection = h("span.connection", { role: "status" });
+  private readonly focus = h("span.focus");
+  private readonly recording = h("button.recording-now", {
     hidden: true,
     onclick: () => this.openPanel({ kind: "recordings" }),
   });
-  private readonly trouble = h("div", { class: "trouble", role: "alert", hidden: true });
-  private readonly status = h("div", {
-    class: "status-line",
+  private readonly trouble = h("div.trouble", { role: "alert", hidden: true });
+  private readonly status = h("div.status-line", {
     role: "status",
     "aria-live": "polite",
   });
@@ -52,27 +50,23 @@ export class Shell {
       changed: () => this.store(),
     });
     const dialog = opener(server, (args) => this.openPanel(args), outputs);
-    this.element = h(
-      "div",
-      { class: "shell" },
-      h("button", { class: "skip", onclick: () => this.board.element.focus() }, "Go to the panels"),
-      h(
-        "header",
-        { class: "bar" },
+    this.element = h("div.shell", [
+      h("button.skip", { onclick: () => this.board.element.focus() }, "Go to the panels"),
+      h("header.bar", [
         this.graphName,
         this.connection,
         this.focus,
         this.recording,
-        h("div", { class: "spring" }),
+        h("div.spring"),
         h("button", { onclick: () => dialog.showModal() }, "Open…"),
         themeButton(),
         this.headerSlot,
-      ),
+      ]),
       this.trouble,
       this.board.element,
       this.status,
       dialog,
-    );
+    ]);
     server.onConnection((connection) => this.showConnection(connection));
     server.onState((state) => this.showState(state));
     server.onSession((session) => this.showSession(session));
@@ -122,7 +116,7 @@ export class Shell {
     this.trouble.hidden = false;
     fill(
       this.trouble,
-      h("span", {}, connection.why),
+      h("span", connection.why),
       connection.retry !== null &&
         h("button", { onclick: () => this.server.reconnect() }, "Try now"),
     );

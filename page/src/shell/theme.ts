@@ -19,7 +19,7 @@ function apply(theme: Theme): void {
 
 /** A button that goes from the system's theme to light, to dark, and round. */
 export function themeButton(): HTMLButtonElement {
-  const button = h("button", { class: "icon theme-button", onclick: () => show(following()) });
+  const button = h("button.icon.theme-button", { onclick: () => show(following()) });
   const following = () => themes[(themes.indexOf(stored()) + 1) % themes.length]!;
   const show = (theme: Theme) => {
     localStorage.setItem("theme", theme);

@@ -9,8 +9,7 @@ const mostLines = 5000;
 
 export class ConsoleView implements View {
   readonly keepsPast = true;
-  private readonly lines = h("div", {
-    class: "console mono",
+  private readonly lines = h("div.console.mono", {
     role: "log",
     tabindex: 0,
     "aria-label": "Lines as they came",
@@ -31,7 +30,7 @@ export class ConsoleView implements View {
     const isAtEnd = this.lines.scrollTop + this.lines.clientHeight >= this.lines.scrollHeight - 20;
     for (const row of rowsOf(arrival.message)) {
       this.lines.append(
-        h("div", {}, h("time", { class: "muted", datetime: at.toISOString() }, clock), " ", row),
+        h("div", [h("time.muted", { datetime: at.toISOString() }, clock), " ", row]),
       );
     }
     while (this.lines.childElementCount > mostLines) this.lines.firstElementChild?.remove();

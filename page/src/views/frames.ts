@@ -22,15 +22,7 @@ export function framesOf(text: string): Frame[] {
     if (!name || !parent) return [];
     const frame = { name, coord: Number(coord), parent };
     if (place.length === 7) {
-      const [x, y, z, qx, qy, qz, qw] = place.map(Number) as [
-        number,
-        number,
-        number,
-        number,
-        number,
-        number,
-        number,
-      ];
+      const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 0] = place.map(Number);
       return [{ ...frame, fixed: { translation: [x, y, z], quaternion: [qx, qy, qz, qw] } }];
     }
     return [{ ...frame, movedBy: place[0] }];

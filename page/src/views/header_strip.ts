@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-import { coordName, headerFields, type Header } from "../mtp";
+import { coordName, headerFields, type Header, type HeaderField } from "../mtp";
 import type { Arrival } from "../server";
 import { fill, h } from "../shell/h";
 
-const meanings: Record<(typeof headerFields)[number], string> = {
+const meanings: Record<HeaderField, string> = {
   version: "version of the protocol",
   src: "address of the output that made the message",
   dst: "0: follows the link; above: one port; below: everybody or a group",
@@ -22,21 +22,22 @@ const period = 2; // [s] that rates are measured over
 /** The header as it is on the wire, with its fields' names; rate, latency, loss. */
 export class HeaderStrip {
   private readonly fields = headerFields.map((name) => {
-    const value = h("span", { class: "value" });
-    const element = h("span", { class: "field", title: `${name}: ${meanings[name]}` });
-    element.append(h("span", { class: "name" }, name), " ", value);
+    const value = h("span.value");
+    const element = h("span.field", { title: `${name}: ${meanings[name]}` });
+    element.append(h("span.name", name), " ", value);
     return { name, element, value };
   });
-  private readonly summary = h("span", { class: "summary" });
+  private readonly summary = h("span.summary");
   readonly element = h(
-    "div",
-    { class: "header-strip", tabindex: 0, role: "group", "aria-label": "Header and figures" },
-    this.summary,
-    h(
-      "div",
-      { class: "fields mono" },
-      this.fields.map(({ element }) => element),
-    ),
+    "div.header-strip",
+    { tabindex: 0, role: "group", "aria-label": "Header and figures" },
+    [
+      this.summary,
+      h(
+        "div.fields.mono",
+        this.fields.map(({ element }) => element),
+      ),
+    ],
   );
   private readonly times: number[] = []; // of arrivals, by performance.now() [ms]
   private latency?: number; // [s]
@@ -80,7 +81,7 @@ export class HeaderStrip {
         : "",
       this.lost > 0n ? `${this.lost} not shown` : "",
     ];
-    fill(this.summary, ...parts.filter(Boolean).map((part) => h("span", {}, part)));
+    fill(this.summary, ...parts.filter(Boolean).map((part) => h("span", part)));
     this.summary.title =
       "Type and size; messages a second here; time from sensing to arrival; gaps of seq: messages that " +
       "this page did not take because a newer one was there";

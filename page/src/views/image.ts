@@ -10,7 +10,7 @@ import type { View, ViewHost, ViewKind } from "./view";
 
 export class ImageView implements View {
   readonly element: HTMLElement;
-  private readonly canvas = h("canvas", { class: "picture", role: "img" });
+  private readonly canvas = h("canvas.picture", { role: "img" });
   private readonly context = this.canvas.getContext("2d", { alpha: false })!;
   private readonly pixel = h("canvas", { width: 1, height: 1 }).getContext("2d", {
     willReadFrequently: true,
@@ -32,7 +32,7 @@ export class ImageView implements View {
       const [r, g, b] = this.colourAt(across * this.canvas.width, down * this.canvas.height);
       return `${x.toFixed(0)}, ${y.toFixed(0)} px  ${sent.components === 1 ? r : `${r} ${g} ${b}`}`;
     });
-    this.element = h("div", { class: "image-view" }, this.canvas, this.probe.output);
+    this.element = h("div.image-view", [this.canvas, this.probe.output]);
     this.endRoom = askForWidth(this.canvas, host.source, () => this.shown?.sent);
   }
 

@@ -23,7 +23,8 @@ const trailLength = 500; // positions
 /** What a stream puts into the scene. */
 export interface Layer {
   readonly object: Object3D;
-  fits(header: Header): boolean;
+  /** The type of its messages. */
+  readonly type: Header["type"];
   show(message: Message): void;
   remove(): void;
 }
@@ -41,10 +42,7 @@ class CloudLayer implements Layer {
   private readonly geometry = new BufferGeometry();
   private readonly material = new PointsMaterial({ size: 0.012, vertexColors: true });
   readonly object = new Points(this.geometry, this.material);
-
-  fits(header: Header): boolean {
-    return header.type === "vector_field";
-  }
+  readonly type = "vector_field";
 
   show(message: Message): void {
     const { components } = message.header;
@@ -95,6 +93,7 @@ function linear(value: number): number {
 
 /** Positions as balls, and the way of a single one as a line. */
 class PositionsLayer implements Layer {
+  readonly type = "position";
   readonly object = new Group();
   private readonly ball = new SphereGeometry(0.03, 16, 12);
   private readonly material = new MeshLambertMaterial({ color: colour("series-2") });
@@ -107,10 +106,6 @@ class PositionsLayer implements Layer {
     const line = new Line(this.trail, this.trailMaterial);
     line.frustumCulled = false;
     this.object.add(line);
-  }
-
-  fits(header: Header): boolean {
-    return header.type === "position";
   }
 
   show(message: Message): void {
@@ -144,12 +139,8 @@ class PoseLayer implements Layer {
   readonly object = new Group();
   private readonly axes = new AxesHelper(0.3);
 
-  constructor(private readonly type: string) {
+  constructor(readonly type: "rotation" | "transformation") {
     this.object.add(this.axes);
-  }
-
-  fits(header: Header): boolean {
-    return header.type === this.type;
   }
 
   show(message: Message): void {

@@ -16,8 +16,8 @@ interface Point {
 
 export class NetworkView implements View {
   private readonly drawing = svg("svg", { viewBox: "-110 -110 220 220", role: "img" });
-  private readonly words = h("p", { class: "muted" });
-  readonly element = h("div", { class: "network-view" }, this.words, this.drawing);
+  private readonly words = h("p.muted");
+  readonly element = h("div.network-view", [this.words, this.drawing]);
   private drawn = 0;
   private timer?: number;
 
@@ -51,7 +51,6 @@ export class NetworkView implements View {
       this.drawing,
       svg(
         "defs",
-        {},
         svg(
           "marker",
           {
@@ -63,20 +62,18 @@ export class NetworkView implements View {
             markerHeight: 5,
             orient: "auto",
           },
-          svg("path", { d: "M0 0 L6 3 L0 6 Z", class: "network-arrow" }),
+          svg("path.network-arrow", { d: "M0 0 L6 3 L0 6 Z" }),
         ),
       ),
       ...lines.map((edge) => edgeLine(edge, at(edge.from), at(edge.to), size, sizeOf(edge) / most)),
       ...Array.from({ length: shown }, (_, node) => {
         const { x, y } = at(node);
-        return svg(
-          "g",
-          {},
-          svg("circle", { cx: x, cy: y, r: size, class: "network-node" }),
+        return svg("g", [
+          svg("circle.network-node", { cx: x, cy: y, r: size }),
           shown <= 60
-            ? svg("text", { x, y, "font-size": size * 1.1, class: "network-name" }, String(node))
+            ? svg("text.network-name", { x, y, "font-size": size * 1.1 }, String(node))
             : null,
-        );
+        ]);
       }),
     );
   }
@@ -94,7 +91,7 @@ function edgeLine(
   nodeSize: number,
   strength: number,
 ): SVGElement {
-  const title = svg("title", {}, `${edge.from} → ${edge.to}: ${edge.weights.join(", ")}`);
+  const title = svg("title", `${edge.from} → ${edge.to}: ${edge.weights.join(", ")}`);
   const look = {
     class: `network-edge${(edge.weights[0] ?? 1) < 0 ? " negative" : ""}`,
     "stroke-width": 0.3 + 1.2 * strength,

@@ -50,14 +50,9 @@ export class PictureDecoder {
 
   /** The picture of a message; undefined: none can be made of it. */
   async decode(message: Message, sent: Header): Promise<Picture | undefined> {
-    if (isVideo(message, sent))
-      return this.decodeVideo(message.elements as Uint8Array<ArrayBuffer>);
-    if (message.header.encoding === "jpeg") {
-      const blob = new Blob([message.elements as Uint8Array<ArrayBuffer>], { type: "image/jpeg" });
-      return createImageBitmap(blob);
-    }
-    const data = pixelsOf(message);
-    return data && createImageBitmap(data);
+    return isVideo(message, sent)
+      ? this.decodeVideo(message.elements as Uint8Array<ArrayBuffer>)
+      : bitmapOf(message);
   }
 
   close(): void {
@@ -110,8 +105,18 @@ function whiteOf(header: Header): number {
   return { u8: 255, u16: 65535, u32: 2 ** 32 - 1, u64: 2 ** 64 }[header.scalar as string] ?? 1;
 }
 
+/** The picture of an image that is no video, as JPEG or not; undefined: it has no pixels. */
+export async function bitmapOf(message: Message): Promise<ImageBitmap | undefined> {
+  if (message.header.encoding === "jpeg") {
+    const blob = new Blob([message.elements as Uint8Array<ArrayBuffer>], { type: "image/jpeg" });
+    return createImageBitmap(blob);
+  }
+  const data = pixelsOf(message);
+  return data && createImageBitmap(data);
+}
+
 /** An uncompressed image as pixels of a canvas. */
-export function pixelsOf(message: Message): ImageData | undefined {
+function pixelsOf(message: Message): ImageData | undefined {
   const { header } = message;
   const { width, height, components } = header;
   if (width === 0 || height === 0) return undefined;

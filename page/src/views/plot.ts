@@ -3,7 +3,7 @@
 import uPlot from "uplot";
 import { numbersOf, type Header } from "../mtp";
 import type { Arrival } from "../server";
-import { h } from "../shell/h";
+import { h, setText } from "../shell/h";
 import { colour, onTheme } from "../shell/theme";
 import { Sight } from "./room";
 import { Series } from "./series";
@@ -66,16 +66,14 @@ export class PlotView implements View {
   readonly element: HTMLElement;
   readonly keepsPast = true;
   readonly tools: readonly HTMLElement[];
-  private readonly span = h(
-    "select",
-    { "aria-label": "Time shown", onchange: () => this.draw() },
+  private readonly span = h("select", { "aria-label": "Time shown", onchange: () => this.draw() }, [
     h("option", { value: 10 }, "10 s"),
     h("option", { value: 30, selected: true }, "30 s"),
     h("option", { value: 120 }, "2 min"),
     h("option", { value: 600 }, "10 min"),
-  );
-  private readonly buttons = h("div", { class: "series-buttons" });
-  private readonly room = h("div", { class: "plot-room" });
+  ]);
+  private readonly buttons = h("div.series-buttons");
+  private readonly room = h("div.plot-room");
   private readonly slider = h("input", {
     type: "range",
     min: 0,
@@ -101,7 +99,7 @@ export class PlotView implements View {
   private unit = "";
 
   constructor() {
-    this.element = h("div", { class: "plot-view" }, this.buttons, this.room, this.slider);
+    this.element = h("div.plot-view", [this.buttons, this.room, this.slider]);
     this.tools = [this.span];
     this.sight = new Sight(this.element);
     this.observer = new ResizeObserver(() => this.resize());
@@ -146,26 +144,20 @@ export class PlotView implements View {
     this.names = columnNames(header);
     this.series = new Series(this.names.length);
     this.chosen = new Set(this.names.slice(0, 3).keys());
-    this.values = this.names.map(() => h("span", { class: "mono" }));
+    this.values = this.names.map(() => h("span.mono"));
     this.buttons.replaceChildren(
       ...this.names.map((name, i) =>
         h(
-          "button",
+          "button.series-button",
           {
-            class: "series-button",
-            "aria-pressed": this.chosen.has(i),
+            "aria-pressed": String(this.chosen.has(i)),
             "data-series": (i % colours) + 1,
             onclick: (event) => this.choose(i, event.currentTarget as HTMLElement),
           },
-          name,
-          " ",
-          this.values[i],
+          [name, " ", this.values[i]],
         ),
       ),
     );
-    this.buttons.querySelectorAll("button").forEach((button, i) => {
-      button.setAttribute("aria-pressed", String(this.chosen.has(i)));
-    });
     this.build();
   }
 
@@ -243,7 +235,7 @@ export class PlotView implements View {
         index !== null && index !== undefined && at > 0 ? plot.data[at]?.[index] : this.last[i];
       const text =
         value === null || value === undefined ? "" : `${Number(value.toPrecision(4))} ${this.unit}`;
-      if (element.textContent !== text) element.textContent = text;
+      setText(element, text);
     });
   }
 }

@@ -29,7 +29,7 @@ export function spotOf(canvas: HTMLCanvasElement, x: number, y: number): Spot | 
  * @param read  words for what is at a spot.
  */
 export class Probe {
-  readonly output = h("output", { class: "probe mono" });
+  readonly output = h("output.probe.mono");
   private spot?: Spot;
 
   constructor(

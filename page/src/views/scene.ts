@@ -12,7 +12,7 @@ import {
   type Object3D,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { Coord, parseHeader, type Header, type Message } from "../mtp";
+import { Coord, sentHeader, type Header, type Message } from "../mtp";
 import type { Arrival } from "../server";
 import { h } from "../shell/h";
 import { colour, onTheme } from "../shell/theme";
@@ -53,7 +53,7 @@ export class Scene {
       "aria-label",
       "Frames and positions in space; drag to turn, wheel to come closer, arrow keys to shift",
     );
-    this.element = h("div", { class: "scene-view" }, canvas);
+    this.element = h("div.scene-view", canvas);
     this.root.add(this.grid);
     const sun = new DirectionalLight(0xffffff, 2);
     sun.position.set(-3, 2, 5);
@@ -89,7 +89,7 @@ export class Scene {
 
   show(name: string, message: Message, sent: Header): void {
     let layer = this.layers.get(name);
-    if (!layer || !layer.fits(message.header)) {
+    if (layer?.type !== message.header.type) {
       layer?.remove();
       layer = layerOf(message.header);
       if (!layer) return;
@@ -232,7 +232,7 @@ export function addStream(
   const source = surroundings.open(port);
   let sent: Header | undefined;
   source.setWidth(cloudWidth);
-  source.on("header", (line) => (sent = parseHeader(line.trim(), 0, Infinity)));
+  source.on("header", (line) => (sent = sentHeader(line)));
   source.on("problem", (text) => text && problem(text));
   source.on("message", async ({ message }: Arrival) => {
     scene.show(port, message, sent ?? message.header);

@@ -20,7 +20,7 @@ function isSpatial({ type }: Output): boolean {
 /** Several streams in one scene: {kind: "scene", ports?}, ports joined by spaces. */
 export const scenePanel: PanelKind = (args, host) => {
   host.setTitle("Scene");
-  const element = h("div", { class: "stream-panel" });
+  const element = h("div.stream-panel");
   let close = () => {};
   let isClosed = false;
   const open = async () => {
@@ -34,7 +34,7 @@ export const scenePanel: PanelKind = (args, host) => {
       for (const end of shown.values()) end();
       scene.close();
     };
-    const list = h("div", { class: "scene-ports" });
+    const list = h("div.scene-ports");
     const input = h("input", {
       "aria-label": "Stream to show in the scene",
       placeholder: "add MODULE.PORT",
@@ -42,7 +42,7 @@ export const scenePanel: PanelKind = (args, host) => {
     });
     const names = h("datalist", { id: `outputs-${++lists}` });
     input.setAttribute("list", names.id);
-    const form = h("form", {}, input, names);
+    const form = h("form", [input, names]);
     void outputsOf(host.server).then((outputs) =>
       fill(
         names,
@@ -83,9 +83,7 @@ export const scenePanel: PanelKind = (args, host) => {
     element.append(list, scene.element);
   };
   open().catch((error: unknown) => {
-    element.append(
-      h("p", { class: "problem" }, "This browser does not draw in three dimensions (WebGL)."),
-    );
+    element.append(h("p.problem", "This browser does not draw in three dimensions (WebGL)."));
     console.error(error);
   });
   return {

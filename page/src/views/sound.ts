@@ -2,7 +2,8 @@
 // Sound as levels, as a spectrum over time, and to be heard.
 import { numbersOf, sampleRate, type Header } from "../mtp";
 import type { Arrival } from "../server";
-import { h } from "../shell/h";
+import { h, setText } from "../shell/h";
+import { Listener } from "./listener";
 import { Sight } from "./room";
 import { channelsOf, level, spectrum } from "./spectrum";
 import { turbo } from "./turbo";
@@ -10,48 +11,21 @@ import type { View, ViewKind } from "./view";
 
 const frames = 512; // sample frames of one spectrum
 const floor = -70; // [dB], shown as nothing
-const ahead = 0.08; // [s] of sound that are waiting to be heard, against gaps
-
-/** Plays pieces of sound one after the other. */
-class Listener {
-  private readonly context = new AudioContext();
-  private next = 0;
-
-  play(channels: readonly Float32Array<ArrayBuffer>[], rate: number): void {
-    const count = channels[0]?.length ?? 0;
-    if (count === 0) return;
-    const buffer = this.context.createBuffer(channels.length, count, rate);
-    channels.forEach((samples, i) => buffer.copyToChannel(samples, i));
-    const now = this.context.currentTime;
-    if (this.next > now + 0.5) return; // a piece too far ahead would make all later ones late
-    if (this.next < now) this.next = now + ahead;
-    const source = this.context.createBufferSource();
-    source.buffer = buffer;
-    source.connect(this.context.destination);
-    source.start(this.next);
-    this.next += buffer.duration;
-  }
-
-  close(): void {
-    void this.context.close();
-  }
-}
 
 export class SoundView implements View {
   readonly element: HTMLElement;
   readonly runsUnseen = true;
   readonly tools: readonly HTMLElement[];
   private readonly listen = h("button", { "aria-pressed": "false" }, "Listen");
-  private readonly levels = h("div", { class: "levels" });
-  private readonly picture = h("canvas", {
-    class: "waterfall",
+  private readonly levels = h("div.levels");
+  private readonly picture = h("canvas.waterfall", {
     width: 600,
     height: frames / 2,
     role: "img",
     "aria-label": "Spectrum over the last seconds, low frequencies at the bottom",
   });
   private readonly context = this.picture.getContext("2d", { alpha: false })!;
-  private readonly highest = h("span", { class: "mono" });
+  private readonly highest = h("span.mono");
   private readonly sight: Sight;
   private readonly samples = new Float32Array(frames);
   private fresh = 0;
@@ -62,19 +36,15 @@ export class SoundView implements View {
   constructor() {
     this.listen.onclick = () => this.setListening(!this.listener);
     this.tools = [this.listen];
-    this.element = h(
-      "div",
-      { class: "sound-view" },
+    this.element = h("div.sound-view", [
       this.levels,
       this.picture,
-      h(
-        "div",
-        { class: "sound-scale muted" },
+      h("div.sound-scale.muted", [
         "from 0 Hz, at the bottom, to ",
         this.highest,
         `; ${floor} dB blue, 0 dB red`,
-      ),
-    );
+      ]),
+    ]);
     this.sight = new Sight(this.element);
   }
 
@@ -86,7 +56,7 @@ export class SoundView implements View {
     if (!this.sight.isSeen) return;
     this.showLevels(channels);
     const words = `${rate / 2} Hz`;
-    if (this.highest.textContent !== words) this.highest.textContent = words;
+    setText(this.highest, words);
     if (channels[0]) this.add(channels[0]);
   }
 
@@ -113,12 +83,10 @@ export class SoundView implements View {
           high: -6,
           "aria-label": `Level of channel ${i}`,
         }),
-        words: h("span", { class: "mono" }),
+        words: h("span.mono"),
       }));
       this.levels.replaceChildren(
-        ...this.meters.map(({ meter, words }, i) =>
-          h("div", {}, `channel ${i} `, meter, " ", words),
-        ),
+        ...this.meters.map(({ meter, words }, i) => h("div", [`channel ${i} `, meter, " ", words])),
       );
     }
     channels.forEach((samples, i) => {

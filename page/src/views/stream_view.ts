@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A stream with its header, shown as what it is.
-import { MtpError, parseHeader, type Header } from "../mtp";
+import { sentHeader, type Header } from "../mtp";
 import type { Arrival } from "../server";
 import { h } from "../shell/h";
 import { HeaderStrip } from "./header_strip";
@@ -24,23 +24,19 @@ const snapshotPeriod = 500; // [ms]
 export class StreamView {
   readonly element: HTMLElement;
   private readonly strip = new HeaderStrip();
-  private readonly body = h(
-    "div",
-    { class: "stream-body" },
-    h("p", { class: "waiting" }, "Waiting for the first message…"),
-  );
-  private readonly problem = h("p", { class: "problem", role: "status", hidden: true });
+  private readonly body = h("div.stream-body", h("p.waiting", "Waiting for the first message…"));
+  private readonly problem = h("p.problem", { role: "status", hidden: true });
   private readonly choice = h("select", { "aria-label": "Shown as", hidden: true });
   private readonly pause = h("button", { "aria-pressed": "false" }, "Pause");
-  private readonly viewTools = h("span", { class: "view-tools" });
+  private readonly viewTools = h("span.view-tools");
   private readonly slider = h("input", {
     type: "range",
     min: 0,
     step: 1,
     "aria-label": "Scroll back",
   });
-  private readonly ago = h("span", { class: "ago mono" });
-  private readonly scroll = h("div", { class: "scroll-back", hidden: true }, this.slider, this.ago);
+  private readonly ago = h("span.ago.mono");
+  private readonly scroll = h("div.scroll-back", { hidden: true }, [this.slider, this.ago]);
   private readonly sight: Sight;
   private readonly timer: number;
   private readonly past = new Past();
@@ -59,14 +55,7 @@ export class StreamView {
     private readonly host: StreamViewHost,
     private wanted = "",
   ) {
-    this.element = h(
-      "div",
-      { class: "stream-view" },
-      this.problem,
-      this.body,
-      this.scroll,
-      this.strip.element,
-    );
+    this.element = h("div.stream-view", [this.problem, this.body, this.scroll, this.strip.element]);
     this.sight = new Sight(this.element);
     host.tools.append(this.viewTools, this.choice);
     if (!source.isReplay) host.tools.append(this.pause);
@@ -96,11 +85,7 @@ export class StreamView {
 
   private setHeader(line: string): void {
     this.strip.setLine(line);
-    try {
-      this.sent = parseHeader(line.trim(), 0, Infinity);
-    } catch (error) {
-      if (!(error instanceof MtpError)) throw error;
-    }
+    this.sent = sentHeader(line) ?? this.sent;
   }
 
   private async receive(arrival: Arrival): Promise<void> {

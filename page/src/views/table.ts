@@ -2,7 +2,7 @@
 // Any matrix of numbers as a table.
 import { numberText, type Header } from "../mtp";
 import type { Arrival } from "../server";
-import { fill, h } from "../shell/h";
+import { fill, h, setText } from "../shell/h";
 import { Sight } from "./room";
 import type { View, ViewKind } from "./view";
 
@@ -10,9 +10,9 @@ const mostRows = 100;
 const mostColumns = 50;
 
 export class TableView implements View {
-  private readonly table = h("table", { class: "numbers mono" });
-  private readonly more = h("p", { class: "muted" });
-  readonly element = h("div", { class: "table-view", tabindex: 0 }, this.table, this.more);
+  private readonly table = h("table.numbers.mono");
+  private readonly more = h("p.muted");
+  readonly element = h("div.table-view", { tabindex: 0 }, [this.table, this.more]);
   private readonly sight = new Sight(this.element);
   private drawn = 0;
   private timer?: number;
@@ -42,7 +42,7 @@ export class TableView implements View {
       const first = (Math.floor(i / columns) * width + (i % columns)) * components;
       const numbers = Array.from({ length: components }, (_, k) => elements[first + k]!);
       const text = numbers.map((each) => shortText(each, header)).join("  ");
-      if (cell.textContent !== text) cell.textContent = text;
+      setText(cell, text);
     });
   }
 
@@ -51,29 +51,20 @@ export class TableView implements View {
     const { width, height } = header;
     const rows = width === 0 ? 0 : Math.min(height, mostRows);
     const columns = Math.min(width, mostColumns);
-    this.cells = Array.from({ length: rows * columns }, () => h("td", {}));
+    this.cells = Array.from({ length: rows * columns }, () => h("td"));
     fill(
       this.table,
       h(
         "thead",
-        {},
-        h(
-          "tr",
-          {},
-          h("td", {}),
-          Array.from({ length: columns }, (_, i) => h("th", { scope: "col" }, i)),
-        ),
+        h("tr", [h("td"), Array.from({ length: columns }, (_, i) => h("th", { scope: "col" }, i))]),
       ),
       h(
         "tbody",
-        {},
         Array.from({ length: rows }, (_, row) =>
-          h(
-            "tr",
-            {},
+          h("tr", [
             h("th", { scope: "row" }, row),
             this.cells.slice(row * columns, (row + 1) * columns),
-          ),
+          ]),
         ),
       ),
     );

@@ -42,17 +42,17 @@ export function usualRange(
 export class ValuesView implements View {
   readonly element: HTMLElement;
   readonly tools: readonly HTMLElement[];
-  private readonly canvas = h("canvas", { class: "picture values", role: "img" });
+  private readonly canvas = h("canvas.picture.values", { role: "img" });
   private readonly context = this.canvas.getContext("2d", { alpha: false })!;
   private readonly component = h("select", { "aria-label": "Component", hidden: true });
   private readonly fixed = h("button", {
     "aria-pressed": "false",
     title: "Keep the range of the colours",
   });
-  private readonly least = h("span", { class: "mono" });
-  private readonly most = h("span", { class: "mono" });
-  private readonly middle = h("span", { class: "mono" });
-  private readonly holePart = h("span", { class: "hole-part" });
+  private readonly least = h("span.mono");
+  private readonly most = h("span.mono");
+  private readonly middle = h("span.mono");
+  private readonly holePart = h("span.hole-part");
   private readonly probe: Probe;
   private readonly endRoom: () => void;
   private range?: readonly [number, number];
@@ -72,21 +72,17 @@ export class ValuesView implements View {
       if (this.shown) this.show(this.shown.arrival, this.shown.sent);
     };
     this.tools = [this.component, this.fixed];
-    const bar = h("canvas", { class: "legend-bar", width: 256, height: 1, "aria-hidden": "true" });
+    const bar = h("canvas.legend-bar", { width: 256, height: 1, "aria-hidden": "true" });
     drawBar(bar);
-    this.element = h(
-      "div",
-      { class: "image-view" },
+    this.element = h("div.image-view", [
       this.canvas,
-      h(
-        "div",
-        { class: "legend" },
-        h("div", { class: "scale" }, bar, h("div", {}, this.least, this.middle, this.most)),
-        h("span", { class: "hole-swatch", "aria-hidden": "true" }),
+      h("div.legend", [
+        h("div.scale", [bar, h("div", [this.least, this.middle, this.most])]),
+        h("span.hole-swatch", { "aria-hidden": "true" }),
         this.holePart,
-      ),
+      ]),
       this.probe.output,
-    );
+    ]);
     this.endRoom = askForWidth(this.canvas, host.source, () => this.shown?.sent);
   }
 
