@@ -27,7 +27,7 @@ export const modulePanel: PanelKind = (args, host) => {
 class ModuleView {
   private readonly status = h("p.module-status", { role: "status" });
   private readonly summary = h("p.summary");
-  private readonly facts = h("dl.facts");
+  private readonly facts = h("dl.facts.wrap");
   private readonly ports = h("div.ports");
   private readonly parameters = h("div.parameters");
   private readonly log = h("pre.log", {
@@ -197,7 +197,7 @@ class ModuleView {
     return h("div.port", [
       h("span.way", way === "in" ? "in" : "out"),
       open,
-      h("span.port-doc", [types, port.doc].filter(Boolean).join("; ")),
+      h("span.port-doc.muted.small", [types, port.doc].filter(Boolean).join("; ")),
       links.map((link) =>
         h("p.port-link", [
           way === "in" ? `from ${link.from}: ` : `to ${link.to}: `,

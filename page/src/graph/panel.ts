@@ -20,7 +20,7 @@ export const graphPanel: PanelKind = (args, host) => {
   const linksOfEdge = (edge: Edge): GraphLink[] =>
     server.state?.links.filter((link) => edge.links.includes(linkKey(link))) ?? [];
 
-  const menu = h("div.edge-menu", { hidden: true });
+  const menu = h("div.edge-menu.box", { hidden: true });
   /** Two modules that are joined by several links: which one? */
   const choose = (edge: Edge, at: Point): void => {
     const links = linksOfEdge(edge);
@@ -32,7 +32,7 @@ export const graphPanel: PanelKind = (args, host) => {
       const facts = [rateText(link.per_second), latencyText(link.age), ...dropTexts(link)];
       return h("button", { onclick: () => (closeMenu(), openLink(link)) }, [
         h("b", `${link.from} → ${link.to}`),
-        h("span", facts.filter((fact) => fact !== "").join("; ")),
+        h("span.small", facts.filter((fact) => fact !== "").join("; ")),
       ]);
     });
     fill(menu, buttons);
@@ -54,7 +54,7 @@ export const graphPanel: PanelKind = (args, host) => {
   const tables = new Tables({ openModule, openLink });
   const workspaces = h("div.workspaces");
   const views = new Map<string, WorkspaceView>();
-  const element = h("div.graph", [workspaces, drawing.element, tables.element, menu]);
+  const element = h("div.graph.stack", [workspaces, drawing.element, tables.element, menu]);
 
   let chosen = args.show;
   const background = h("input", {

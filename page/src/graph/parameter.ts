@@ -51,11 +51,11 @@ export class ParameterView {
         this.control.value = shortest(this.slider!.value);
       });
     }
-    const unit = is.unit ? h("span.unit", is.unit) : null;
+    const unit = is.unit ? h("span.unit.muted.small", is.unit) : null;
     this.element = h("div.parameter", { "data-parameter": is.name }, [
       h("label", { for: id }, is.name),
-      h("div.control", [this.control, unit, this.slider]),
-      h("p.note", { id: note }, noteText(is)),
+      h("div.control.row", [this.control, unit, this.slider]),
+      h("p.note.muted.small", { id: note }, noteText(is)),
       this.problem,
     ]);
   }

@@ -73,7 +73,7 @@ export class WorkspaceView {
     });
     const bid = this.bids.find((each) => each.mode === mode);
     const now = bid ? bid.salience.toFixed(2) + (bid.ofPerson ? " (a person's)" : "") : "no bid";
-    return h("div", { class: bid?.inFocus ? "bid in-focus" : "bid" }, [
+    return h("div", { class: bid?.inFocus ? "bid small in-focus" : "bid small" }, [
       h("span.bid-name", name),
       svg(
         "svg.bid-chart",

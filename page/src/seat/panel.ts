@@ -38,14 +38,14 @@ class SeatPanel {
   private ears?: Ears;
   private readonly ends: (() => void)[] = [];
 
-  private readonly who = h("p.seat-who", { role: "status" });
+  private readonly who = h("p.seat-who.row", { role: "status" });
   private readonly takeButton = h("button.take", { onclick: () => this.take() }, "Take the seat");
   private readonly leaveButton = h(
     "button",
     { onclick: () => this.seat.leave() },
     "Leave the seat",
   );
-  private readonly tasks = h("div.tasks", { role: "group", "aria-label": "Tasks" });
+  private readonly tasks = h("div.tasks.wrap", { role: "group", "aria-label": "Tasks" });
   private readonly knob = h("div.knob");
   private readonly pad = h(
     "div.pad",
@@ -80,7 +80,7 @@ class SeatPanel {
     { "aria-pressed": "false", onclick: () => this.toggleEars() },
     "Listen",
   );
-  private readonly delay = h("p.seat-latency");
+  private readonly delay = h("p.seat-latency.muted.small");
   readonly element: HTMLElement;
 
   constructor(private readonly host: PanelHost) {
@@ -100,7 +100,7 @@ class SeatPanel {
     host.tools.append(this.view.tools);
 
     const speak = h(
-      "form.speak",
+      "form.speak.row.wrap",
       {
         onsubmit: (event: SubmitEvent) => {
           event.preventDefault();
@@ -114,23 +114,23 @@ class SeatPanel {
       [h("label", { for: "seat-text" }, "Say"), this.text, this.speakButton],
     );
     this.element = h(
-      "div.seat",
+      "div.seat.stack",
       {
         tabindex: 0,
         role: "group",
         "aria-label": "Seat: arrow keys or W A S D turn the head while you have the seat",
       },
       [
-        h("div.seat-bar", [this.who, this.takeButton, this.leaveButton]),
-        h("div.seat-body", [
+        h("div.seat-bar.row.wrap", [this.who, this.takeButton, this.leaveButton]),
+        h("div.seat-body.stack", [
           this.view.element,
-          h("div.seat-controls", [
+          h("div.seat-controls.wrap", [
             this.pad,
             h("div.seat-column", [
               this.tasks,
-              h("div.telepresence", [this.phoneButton, this.xrButton, this.zeroButton]),
+              h("div.telepresence.wrap", [this.phoneButton, this.xrButton, this.zeroButton]),
               speak,
-              h("div.listen", this.listenButton),
+              h("div.listen.wrap", this.listenButton),
               this.delay,
             ]),
           ]),

@@ -104,12 +104,12 @@ function stoppedBar(clear: () => void): {
   confirm.addEventListener("change", () => {
     button.disabled = !confirm.checked;
   });
-  const controls = h("span.stop-controls", [
-    h("label", { for: "stop-confirm" }, [confirm, "nobody is in its way"]),
+  const controls = h("span.stop-controls.row.wrap", [
+    h("label.row", { for: "stop-confirm" }, [confirm, "nobody is in its way"]),
     button,
   ]);
   const note = h("span.stop-note", "Only who may drive can clear this stop.");
-  const bar = h("div.stopped-bar", { role: "alert", hidden: true }, [
+  const bar = h("div.stopped-bar.row.wrap", { role: "alert", hidden: true }, [
     h("strong", "STOPPED"),
     h("span", "The robot is stopped: no task has the focus."),
     controls,

@@ -212,38 +212,43 @@ export class Board {
   }
 
   private render(): void {
-    const columns = this.layout.map((column) => {
-      const places = column.places.map((place) => this.frameOf(place).element);
-      const apply = () =>
-        column.places.forEach(({ share }, i) =>
-          places[i]!.style.setProperty("--share", `${share}`),
-        );
-      apply();
-      const parts = places.flatMap((element, i) => {
-        const [first, second] = [column.places[i - 1], column.places[i]];
-        if (!first || !second) return [element];
-        const neighbours = { first, second, apply, done: () => this.host.changed() };
-        return [
-          splitter("horizontal", "Heights of the panels above and below", neighbours),
-          element,
-        ];
-      });
-      return h("div.column", parts);
-    });
-    const apply = () =>
-      this.layout.forEach(({ share }, i) => columns[i]!.style.setProperty("--share", `${share}`));
-    apply();
-    const parts = columns.flatMap((element, i) => {
-      const [first, second] = [this.layout[i - 1], this.layout[i]];
-      if (!first || !second) return [element];
-      const neighbours = { first, second, apply, done: () => this.host.changed() };
-      return [splitter("vertical", "Widths of the columns left and right", neighbours), element];
-    });
+    const columns = this.layout.map(({ places }) =>
+      h(
+        "div.column.stack",
+        this.split(
+          places,
+          places.map((place) => this.frameOf(place).element),
+          "horizontal",
+        ),
+      ),
+    );
+    const parts = this.split(this.layout, columns, "vertical");
     if (parts.length === 0) {
-      parts.push(h("p.empty", "No panel is open. Press “Open…” to choose one."));
+      parts.push(h("p.empty.muted", "No panel is open. Press “Open…” to choose one."));
     }
     this.element.replaceChildren(...parts);
     const isLarge = this.element.querySelector(".enlarged") !== null;
     this.element.classList.toggle("has-enlarged", isLarge);
+  }
+
+  /** Elements that share room as `those` do, and what moves their limits between them. */
+  private split(
+    those: readonly { share: number }[],
+    elements: readonly HTMLElement[],
+    orientation: "vertical" | "horizontal",
+  ): HTMLElement[] {
+    const apply = () =>
+      those.forEach(({ share }, i) => elements[i]!.style.setProperty("--share", `${share}`));
+    apply();
+    const label = {
+      horizontal: "Heights of the panels above and below",
+      vertical: "Widths of the columns left and right",
+    }[orientation];
+    return elements.flatMap((element, i) => {
+      const [first, second] = [those[i - 1], those[i]];
+      if (!first || !second) return [element];
+      const neighbours = { first, second, apply, done: () => this.host.changed() };
+      return [splitter(orientation, label, neighbours), element];
+    });
   }
 }

@@ -48,6 +48,8 @@ export class Frame {
       h("button.icon", { title: "Close", onclick: () => actions.close() }, "✕"),
       menu,
     ]);
+    const body = h("div.panel-body.stack");
+    this.element = h("section", { class: `panel stack box kind-${place.args.kind}` }, [bar, body]);
     this.setTitle(place.args.kind);
     const kind = panelKinds[place.args.kind];
     this.panel = kind?.(place.args, {
@@ -55,10 +57,9 @@ export class Frame {
       setTitle: (t) => this.setTitle(t),
       tools: this.tools,
     }) ?? {
-      element: h("p.empty", `There is no panel “${place.args.kind}”.`),
+      element: h("p.empty.muted", `There is no panel “${place.args.kind}”.`),
     };
-    const body = h("div.panel-body", this.panel.element);
-    this.element = h("section", { class: `panel kind-${place.args.kind}` }, [bar, body]);
+    body.append(this.panel.element);
   }
 
   focus(): void {
@@ -73,19 +74,16 @@ export class Frame {
 
   private setTitle(title: string): void {
     this.title.textContent = title;
-    this.element?.setAttribute("aria-label", title);
+    this.element.setAttribute("aria-label", title);
     this.menuButton.setAttribute("aria-label", `${title}: move, resize`);
-    queueMicrotask(() => {
-      this.element.setAttribute("aria-label", title);
-      this.menuButton.nextElementSibling?.setAttribute("aria-label", `Close ${title}`);
-    });
+    this.menuButton.nextElementSibling?.setAttribute("aria-label", `Close ${title}`);
   }
 
   private menu(): HTMLElement {
     const item = (label: string, act: () => void) =>
       h("button", { role: "menuitem", onclick: () => (this.toggle(menu, false), act()) }, label);
     const menu: HTMLElement = h(
-      "div.menu",
+      "div.menu.stack.box",
       {
         role: "menu",
         hidden: true,

@@ -77,12 +77,12 @@ export function opener(
     (buttons[at + step] ?? search).focus();
   });
   const dialog = h(
-    "dialog.opener",
+    "dialog.opener.box",
     {
       "aria-label": "Open a panel",
       onclick: (event) => event.target === dialog && dialog.close(),
     },
-    h("div.opener-body", [search, list]),
+    h("div.opener-body.stack", [search, list]),
   );
   dialog.addEventListener("toggle", () => {
     if (!dialog.open) return;

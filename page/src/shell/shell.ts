@@ -23,7 +23,7 @@ const sentenceLife = 10_000;
 export class Shell {
   readonly element: HTMLElement;
   /** Room in the header for what is always visible: the stop button. */
-  readonly headerSlot = h("div.header-slot");
+  readonly headerSlot = h("div.header-slot.row");
   private readonly graphName = h("h1", "Hypercolumn");
   private readonly connection = h("span.connection", { role: "status" });
   private readonly focus = h("span.focus");
@@ -31,8 +31,8 @@ export class Shell {
     hidden: true,
     onclick: () => this.openPanel({ kind: "recordings" }),
   });
-  private readonly trouble = h("div.trouble", { role: "alert", hidden: true });
-  private readonly status = h("div.status-line", {
+  private readonly trouble = h("div.trouble.row.wrap", { role: "alert", hidden: true });
+  private readonly status = h("div.status-line.muted", {
     role: "status",
     "aria-live": "polite",
   });
@@ -50,9 +50,9 @@ export class Shell {
       changed: () => this.store(),
     });
     const dialog = opener(server, (args) => this.openPanel(args), outputs);
-    this.element = h("div.shell", [
+    this.element = h("div.shell.stack", [
       h("button.skip", { onclick: () => this.board.element.focus() }, "Go to the panels"),
-      h("header.bar", [
+      h("header.bar.row.wrap", [
         this.graphName,
         this.connection,
         this.focus,

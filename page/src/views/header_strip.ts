@@ -27,14 +27,14 @@ export class HeaderStrip {
     element.append(h("span.name", name), " ", value);
     return { name, element, value };
   });
-  private readonly summary = h("span.summary");
+  private readonly summary = h("span.summary.wrap");
   readonly element = h(
-    "div.header-strip",
+    "div.header-strip.muted",
     { tabindex: 0, role: "group", "aria-label": "Header and figures" },
     [
       this.summary,
       h(
-        "div.fields.mono",
+        "div.fields.wrap.mono",
         this.fields.map(({ element }) => element),
       ),
     ],

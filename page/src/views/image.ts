@@ -32,7 +32,7 @@ export class ImageView implements View {
       const [r, g, b] = this.colourAt(across * this.canvas.width, down * this.canvas.height);
       return `${x.toFixed(0)}, ${y.toFixed(0)} px  ${sent.components === 1 ? r : `${r} ${g} ${b}`}`;
     });
-    this.element = h("div.image-view", [this.canvas, this.probe.output]);
+    this.element = h("div.image-view.stack", [this.canvas, this.probe.output]);
     this.endRoom = askForWidth(this.canvas, host.source, () => this.shown?.sent);
   }
 

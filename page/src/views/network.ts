@@ -17,7 +17,7 @@ interface Point {
 export class NetworkView implements View {
   private readonly drawing = svg("svg", { viewBox: "-110 -110 220 220", role: "img" });
   private readonly words = h("p.muted");
-  readonly element = h("div.network-view", [this.words, this.drawing]);
+  readonly element = h("div.network-view.stack", [this.words, this.drawing]);
   private drawn = 0;
   private timer?: number;
 

@@ -26,7 +26,7 @@ export async function liveSurroundings(server: Server): Promise<Surroundings> {
 export const streamPanel: PanelKind = (args, host) => {
   const port = args.port ?? "";
   host.setTitle(port);
-  const element = h("div.stream-panel");
+  const element = h("div.stream-panel.stack");
   let view: StreamView | undefined;
   let isClosed = false;
   void liveSurroundings(host.server).then((surroundings) => {

@@ -3,7 +3,7 @@
 import uPlot from "uplot";
 import { numbersOf, type Header } from "../mtp";
 import type { Arrival } from "../server";
-import { h, setText } from "../shell/h";
+import { fill, h, setText } from "../shell/h";
 import { colour, onTheme } from "../shell/theme";
 import { Sight } from "./room";
 import { Series } from "./series";
@@ -72,7 +72,7 @@ export class PlotView implements View {
     h("option", { value: 120 }, "2 min"),
     h("option", { value: 600 }, "10 min"),
   ]);
-  private readonly buttons = h("div.series-buttons");
+  private readonly buttons = h("div.series-buttons.wrap");
   private readonly room = h("div.plot-room");
   private readonly slider = h("input", {
     type: "range",
@@ -99,7 +99,7 @@ export class PlotView implements View {
   private unit = "";
 
   constructor() {
-    this.element = h("div.plot-view", [this.buttons, this.room, this.slider]);
+    this.element = h("div.stack", [this.buttons, this.room, this.slider]);
     this.tools = [this.span];
     this.sight = new Sight(this.element);
     this.observer = new ResizeObserver(() => this.resize());
@@ -145,19 +145,17 @@ export class PlotView implements View {
     this.series = new Series(this.names.length);
     this.chosen = new Set(this.names.slice(0, 3).keys());
     this.values = this.names.map(() => h("span.mono"));
-    this.buttons.replaceChildren(
-      ...this.names.map((name, i) =>
-        h(
-          "button.series-button",
-          {
-            "aria-pressed": String(this.chosen.has(i)),
-            "data-series": (i % colours) + 1,
-            onclick: (event) => this.choose(i, event.currentTarget as HTMLElement),
-          },
-          [name, " ", this.values[i]],
-        ),
-      ),
-    );
+    const buttons = this.names.map((name, i) => {
+      const pressed = String(this.chosen.has(i));
+      const button = h(
+        "button.series-button",
+        { "aria-pressed": pressed, onclick: () => this.choose(i, button) },
+        [name, " ", this.values[i]],
+      );
+      button.style.setProperty("--series", `var(--series-${(i % colours) + 1})`);
+      return button;
+    });
+    fill(this.buttons, buttons);
     this.build();
   }
 

@@ -20,7 +20,7 @@ function isSpatial({ type }: Output): boolean {
 /** Several streams in one scene: {kind: "scene", ports?}, ports joined by spaces. */
 export const scenePanel: PanelKind = (args, host) => {
   host.setTitle("Scene");
-  const element = h("div.stream-panel");
+  const element = h("div.stream-panel.stack");
   let close = () => {};
   let isClosed = false;
   const open = async () => {
@@ -34,7 +34,7 @@ export const scenePanel: PanelKind = (args, host) => {
       for (const end of shown.values()) end();
       scene.close();
     };
-    const list = h("div.scene-ports");
+    const list = h("div.scene-ports.wrap");
     const input = h("input", {
       "aria-label": "Stream to show in the scene",
       placeholder: "add MODULE.PORT",

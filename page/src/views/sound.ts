@@ -36,10 +36,10 @@ export class SoundView implements View {
   constructor() {
     this.listen.onclick = () => this.setListening(!this.listener);
     this.tools = [this.listen];
-    this.element = h("div.sound-view", [
+    this.element = h("div.sound-view.stack", [
       this.levels,
       this.picture,
-      h("div.sound-scale.muted", [
+      h("div.small.muted", [
         "from 0 Hz, at the bottom, to ",
         this.highest,
         `; ${floor} dB blue, 0 dB red`,

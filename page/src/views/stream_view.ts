@@ -24,7 +24,10 @@ const snapshotPeriod = 500; // [ms]
 export class StreamView {
   readonly element: HTMLElement;
   private readonly strip = new HeaderStrip();
-  private readonly body = h("div.stream-body", h("p.waiting", "Waiting for the first message…"));
+  private readonly body = h(
+    "div.stream-body.stack",
+    h("p.waiting.muted", "Waiting for the first message…"),
+  );
   private readonly problem = h("p.problem", { role: "status", hidden: true });
   private readonly choice = h("select", { "aria-label": "Shown as", hidden: true });
   private readonly pause = h("button", { "aria-pressed": "false" }, "Pause");
@@ -36,7 +39,7 @@ export class StreamView {
     "aria-label": "Scroll back",
   });
   private readonly ago = h("span.ago.mono");
-  private readonly scroll = h("div.scroll-back", { hidden: true }, [this.slider, this.ago]);
+  private readonly scroll = h("div.scroll-back.row", { hidden: true }, [this.slider, this.ago]);
   private readonly sight: Sight;
   private readonly timer: number;
   private readonly past = new Past();
@@ -55,7 +58,12 @@ export class StreamView {
     private readonly host: StreamViewHost,
     private wanted = "",
   ) {
-    this.element = h("div.stream-view", [this.problem, this.body, this.scroll, this.strip.element]);
+    this.element = h("div.stream-view.stack", [
+      this.problem,
+      this.body,
+      this.scroll,
+      this.strip.element,
+    ]);
     this.sight = new Sight(this.element);
     host.tools.append(this.viewTools, this.choice);
     if (!source.isReplay) host.tools.append(this.pause);

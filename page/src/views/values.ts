@@ -74,9 +74,9 @@ export class ValuesView implements View {
     this.tools = [this.component, this.fixed];
     const bar = h("canvas.legend-bar", { width: 256, height: 1, "aria-hidden": "true" });
     drawBar(bar);
-    this.element = h("div.image-view", [
+    this.element = h("div.image-view.stack", [
       this.canvas,
-      h("div.legend", [
+      h("div.legend.row.small", [
         h("div.scale", [bar, h("div", [this.least, this.middle, this.most])]),
         h("span.hole-swatch", { "aria-hidden": "true" }),
         this.holePart,
