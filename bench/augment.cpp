@@ -27,8 +27,7 @@ namespace {
 
 using hc::graphics::Body, hc::graphics::Overlay, hc::graphics::Renderer;
 
-using bench::end_if_failed, bench::Eye, bench::kBaseline, bench::kCamera, bench::median,
-    bench::milliseconds;
+using bench::Eye, bench::kBaseline, bench::kCamera, bench::median, bench::milliseconds;
 
 const double kScale = kCamera.fx * kBaseline;
 
@@ -57,7 +56,7 @@ View look(Renderer& renderer, hc::room::World& world, int number) {
   view.eyes = bench::look(renderer, world, {2.38, 0.2, 0.65}, gaze);
   static const auto kMatcher = hc::vision::semi_global_matcher({.disparities = 64});
   hc::vision::Disparities found;
-  end_if_failed(kMatcher->match(view.eyes[0].image, view.eyes[1].image, found));
+  bench::must(kMatcher->match(view.eyes[0].image, view.eyes[1].image, found));
   hc::vision::depth_of(found.disparity, {.focal = kCamera.fx, .baseline = kBaseline}, view.found);
   return view;
 }
@@ -69,7 +68,7 @@ void augment(Overlay& overlay, const Body& body, const View& view, std::size_t e
   const Overlay::View seen{
       kCamera, view.eyes.at(eye).T_world_eye, view.light, kScale,
       [&](const cv::Rect& part, cv::Mat& near) { nearness_of(depth, kScale, part, near); }};
-  end_if_failed(overlay.draw({&body, 1}, seen, image, mask));
+  bench::must(overlay.draw({&body, 1}, seen, image, mask));
 }
 
 /// What is drawn of a body in an image of its own.
@@ -92,7 +91,7 @@ struct Truth {
 Truth truth_of(Renderer& renderer, const Body& body, const View& view, std::size_t eye) {
   const Eye& at = view.eyes.at(eye);
   cv::Mat rgb, depth;
-  end_if_failed(renderer.draw(body.items(), kCamera, at.T_world_eye, view.light, rgb, &depth));
+  bench::must(renderer.draw(body.items(), kCamera, at.T_world_eye, view.light, rgb, &depth));
   Truth truth;
   truth.body = depth > 0;
   truth.seen = truth.body & (depth < at.truth);

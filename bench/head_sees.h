@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the benchmarks of sight share: what the eyes of the simulated head see, and times.
+// What the benchmarks of sight share: what the eyes of the simulated head see.
 
-#include <cerrno>
-
-#include <algorithm>
 #include <array>
-#include <chrono>
-#include <cstdio>
-#include <cstdlib>
-#include <functional>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
-#include <utility>
-#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -22,21 +15,15 @@
 #include <room/world.h>
 #include <opencv2/core.hpp>
 
+#include "measure.h"
+
 namespace bench {
 
 inline constexpr double kBaseline = 0.1;           // of the simulated head [m]
 inline const hc::graphics::PinholeCamera kCamera;  // either eye's
 
-inline void end_if_failed(const hc::Status& status) {
-  if (status) return;
-  std::fprintf(stderr, "%s: %s\n", program_invocation_short_name, status.error().text().c_str());
-  std::exit(1);
-}
-
 inline std::unique_ptr<hc::graphics::Renderer> make_renderer() {
-  auto renderer = hc::graphics::Renderer::make();
-  if (!renderer) end_if_failed(renderer.error());
-  return std::move(*renderer);
+  return must(hc::graphics::Renderer::make());
 }
 
 /// What an eye sees, and how it is.
@@ -74,24 +61,10 @@ inline std::array<Eye, 2> look(hc::graphics::Renderer& renderer, hc::room::World
   for (const std::size_t i : {0U, 1U}) {
     Eye& eye = eyes.at(i);
     eye.T_world_eye = eye_of(gaze, i == 1);
-    end_if_failed(
-        renderer.draw(items, kCamera, eye.T_world_eye, world.light(), eye.image, &eye.truth));
+    must(renderer.draw(items, kCamera, eye.T_world_eye, world.light(), eye.image, &eye.truth));
     hc::room::Sensor(gaze.seeds.at(i)).apply(eye.image, 0, 2, gaze.image);
   }
   return eyes;
-}
-
-inline double milliseconds(const std::function<void()>& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
-      .count();
-}
-
-inline double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace bench

@@ -9,7 +9,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -22,30 +21,18 @@
 
 #include <hc/link/link.h>
 
+#include "measure.h"
+
 namespace {
 
 namespace fs = std::filesystem;
+using bench::fail, bench::median, bench::must;
 using Clock = std::chrono::steady_clock;
 using Microseconds = std::chrono::duration<double, std::micro>;
 
 constexpr std::int32_t kAddress = 21;
 constexpr std::int32_t kElements = 42;  // with a header of 53 bytes and a line feed 96
 constexpr std::int64_t kRoundTrips = 20'000, kMany = 2'000'000;
-
-[[noreturn]] void fail(const std::string& what) {
-  std::fprintf(stderr, "routed: %s\n", what.c_str());
-  std::_Exit(1);
-}
-
-template <typename T>
-T must(hc::Result<T> result) {
-  if (!result) fail(result.error().text());
-  return std::move(*result);
-}
-
-void must(const hc::Status& status) {
-  if (!status) fail(status.error().text());
-}
 
 std::unique_ptr<hc::Sink> sink(const std::string& uri) {
   return must(hc::open_sink(must(hc::parse_uri(uri))));
@@ -120,12 +107,6 @@ hc::Message message() {
   hc::Draft draft = hc::Draft::make(header);
   std::memset(draft.elements().data(), 7, draft.elements().size());
   return std::move(draft).finish();
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
 }
 
 // What the other processes do, by the first argument.

@@ -23,9 +23,12 @@
 
 #include <hc/link/link.h>
 
+#include "measure.h"
+
 namespace {
 
 namespace fs = std::filesystem;
+using bench::fail, bench::must;
 using Clock = std::chrono::steady_clock;
 using std::chrono::nanoseconds;
 using std::chrono::seconds;
@@ -55,14 +58,8 @@ std::int64_t number(Clock::time_point time) {
   return time.time_since_epoch().count();
 }
 
-[[noreturn]] void fail(const std::string& what) {
-  std::fprintf(stderr, "stopped_reader: %s\n", what.c_str());
-  std::_Exit(1);
-}
-
 Report publish(const Plan& plan) {
-  auto sink = hc::open_sink(*hc::parse_uri(plan.name + "?readers=2"));
-  if (!sink) fail(sink.error().text());
+  auto sink = must(hc::open_sink(*hc::parse_uri(plan.name + "?readers=2")));
   hc::Header header;
   header.info = {hc::MatrixType::IntensityImage, 1, hc::Scalar::U8, hc::Encoding::Binary};
   header.width = plan.bytes;
@@ -70,15 +67,15 @@ Report publish(const Plan& plan) {
   const nanoseconds period(std::nano::den / plan.rate);
   for (auto next = Clock::now(); next < plan.end(); next += period, ++header.seq) {
     std::this_thread::sleep_until(next);
-    auto draft = (*sink)->loan(header);
+    auto draft = sink->loan(header);
     std::memset(draft.elements().data(), static_cast<int>(header.seq), draft.elements().size());
     draft.header.time = number(Clock::now());
-    if (auto sent = (*sink)->send(std::move(draft).finish()); !sent) fail(sent.error().text());
+    must(sink->send(std::move(draft).finish()));
   }
-  if (auto closed = (*sink)->close(); !closed) fail(closed.error().text());
+  must(sink->close());
   Report report;
-  report.sent = (*sink)->traffic().messages;
-  report.lost = (*sink)->traffic().dropped_memory;
+  report.sent = sink->traffic().messages;
+  report.lost = sink->traffic().dropped_memory;
   return report;
 }
 
@@ -100,8 +97,7 @@ std::array<double, 4> summary(std::vector<std::vector<double>> seconds_of_values
 }
 
 Report read(const Plan& plan, const std::string& keep) {
-  auto source = hc::open_source(*hc::parse_uri(plan.name + "?wait=10&keep=" + keep));
-  if (!source) fail(source.error().text());
+  auto source = must(hc::open_source(*hc::parse_uri(plan.name + "?wait=10&keep=" + keep)));
   const auto count = static_cast<std::size_t>(plan.half.count());
   std::vector<std::vector<double>> latencies(2 * count);  // of each second
   Report report;
@@ -109,9 +105,7 @@ Report read(const Plan& plan, const std::string& keep) {
   auto last = Clock::now();
   Clock::duration longest{};
   while (true) {
-    auto got = hc::receive(**source, message);
-    if (!got) fail(got.error().text());
-    if (!*got) break;
+    if (!must(hc::receive(*source, message))) break;
     auto now = Clock::now();
     auto age = static_cast<double>(number(now) - message.header.time) / 1000;
     if (now - last > longest) {
@@ -125,8 +119,8 @@ Report read(const Plan& plan, const std::string& keep) {
   }
   auto middle = latencies.begin() + static_cast<std::ptrdiff_t>(count);
   report.latencies = {summary({latencies.begin(), middle}), summary({middle, latencies.end()})};
-  report.received = (*source)->traffic().messages;
-  report.dropped_newer = (*source)->traffic().dropped_newer;
+  report.received = source->traffic().messages;
+  report.dropped_newer = source->traffic().dropped_newer;
   return report;
 }
 

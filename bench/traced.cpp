@@ -3,7 +3,6 @@
 // process, while its output `trace` is linked and while it is not; the ratio of both.
 //
 //     build/bench/traced [ROUNDS]    default 5
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -13,20 +12,14 @@
 
 #include <hc/module/module.h>
 
+#include "measure.h"
+
 namespace {
 
+using bench::must;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kMessages = 200'000;
-
-template <typename T>
-T must(hc::Result<T> result) {
-  if (!result) {
-    std::fprintf(stderr, "traced: %s\n", result.error().text().c_str());
-    std::_Exit(1);
-  }
-  return std::move(*result);
-}
 
 /// Takes all that comes.
 std::thread drain(const std::string& uri) {
@@ -80,6 +73,5 @@ int main(int argc, char** argv) {
     std::printf("not traced %8.0f messages/s   traced %8.0f   ratio of times %.2f\n",
                 kMessages / off, kMessages / on, ratios.back());
   }
-  std::ranges::sort(ratios);
-  if (!ratios.empty()) std::printf("median ratio %.2f\n", ratios[ratios.size() / 2]);
+  if (!ratios.empty()) std::printf("median ratio %.2f\n", bench::median(ratios));
 }

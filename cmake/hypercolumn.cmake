@@ -276,13 +276,19 @@ function(hc_fuzz_replay)
   target_link_libraries(fuzz_replay PRIVATE hc_flags ${libs})
 endfunction()
 
-# hc_bench(header LIBS hc::mtp): bench/header.cpp with Google Benchmark.
+# hc_bench(mtp LIBS hc::mtp): build/bench/mtp of mtp.cpp, unless OUTPUT and SOURCE say otherwise.
 function(hc_bench name)
-  cmake_parse_arguments(arg "" "" "LIBS" ${ARGN})
-  add_executable(bench_${name} ${name}.cpp)
-  target_link_libraries(bench_${name} PRIVATE hc_flags ${arg_LIBS} benchmark::benchmark_main)
+  cmake_parse_arguments(arg "" "OUTPUT;SOURCE" "LIBS" ${ARGN})
+  if(NOT arg_OUTPUT)
+    set(arg_OUTPUT ${name})
+  endif()
+  if(NOT arg_SOURCE)
+    set(arg_SOURCE ${name}.cpp)
+  endif()
+  add_executable(bench_${name} ${arg_SOURCE})
+  target_link_libraries(bench_${name} PRIVATE hc_flags ${arg_LIBS})
   set_target_properties(bench_${name} PROPERTIES
-    RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bench OUTPUT_NAME ${name})
+    RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bench OUTPUT_NAME ${arg_OUTPUT})
 endfunction()
 
 # The package that other projects find: find_package(hypercolumn), hypercolumn::hc or one layer.

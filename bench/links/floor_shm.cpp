@@ -99,11 +99,6 @@ class Publisher final : public bench::Publisher {
     if (memory_.ring->sleeping_readers.count.load() != 0) wake_all(published);
   }
 
-  void resend() override {
-    loan();
-    publish();
-  }
-
  private:
   void await_slot() {
     bench::Spin spin;

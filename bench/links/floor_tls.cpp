@@ -2,13 +2,7 @@
 // A floor: bytes of known size over TLS 1.3 on loopback, by OpenSSL alone, with what it chooses:
 // cipher, records of 16 KiB, a copy of each. One SSL_write a message and reader, and reads into a
 // buffer as large as one image. Blocking, no framing. The key is FOLDER/key.pem.
-#include <netinet/in.h>
-#include <netinet/tcp.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstring>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -16,10 +10,10 @@
 #include <openssl/ssl.h>
 
 #include "harness.h"
+#include "sockets.h"
 
 namespace {
 
-using bench::require;
 using bench::Setup;
 
 struct Free {
@@ -38,17 +32,7 @@ std::unique_ptr<SSL_CTX, Free> make_context(const Setup& setup) {
   return context;
 }
 
-sockaddr_in place_of(const Setup& setup) {
-  sockaddr_in place{};
-  place.sin_family = AF_INET;
-  place.sin_port = htons(static_cast<std::uint16_t>(setup.port));
-  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  return place;
-}
-
 Session secure(SSL_CTX* context, int socket, int (*shake_hands)(SSL*)) {
-  int yes = 1;
-  ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
   Session session(SSL_new(context));
   SSL_set_fd(session.get(), socket);
   if (shake_hands(session.get()) != 1) bench::fail("handshake");
@@ -58,19 +42,14 @@ Session secure(SSL_CTX* context, int socket, int (*shake_hands)(SSL*)) {
 class Publisher final : public bench::Publisher {
  public:
   explicit Publisher(const Setup& setup)
-      : context_(make_context(setup)), readers_(setup.readers), bytes_(setup.bytes) {
-    const sockaddr_in place = place_of(setup);
-    listening_ = require(::socket(AF_INET, SOCK_STREAM, 0), "socket");
-    int yes = 1;
-    ::setsockopt(listening_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    require(::bind(listening_, reinterpret_cast<const sockaddr*>(&place), sizeof place), "bind");
-    require(::listen(listening_, readers_), "listen");
-  }
+      : context_(make_context(setup)),
+        readers_(setup.readers),
+        listening_(bench::listen(setup)),
+        bytes_(setup.bytes) {}
 
   void await_readers() override {
     while (static_cast<int>(peers_.size()) < readers_)
-      peers_.push_back(secure(
-          context_.get(), require(::accept(listening_, nullptr, nullptr), "accept"), SSL_accept));
+      peers_.push_back(secure(context_.get(), bench::accept(listening_), SSL_accept));
   }
 
   std::span<std::byte> loan() override { return bytes_; }
@@ -81,11 +60,9 @@ class Publisher final : public bench::Publisher {
         bench::fail("SSL_write");
   }
 
-  void resend() override { publish(); }
-
  private:
   std::unique_ptr<SSL_CTX, Free> context_;
-  int readers_, listening_ = -1;
+  int readers_, listening_;
   std::vector<Session> peers_;
   std::vector<std::byte> bytes_;
 };
@@ -93,15 +70,7 @@ class Publisher final : public bench::Publisher {
 class Subscriber final : public bench::Subscriber {
  public:
   explicit Subscriber(const Setup& setup) : context_(make_context(setup)), bytes_(setup.bytes) {
-    const sockaddr_in place = place_of(setup);
-    int socket = -1;
-    for (int tries = 0;; ++tries) {
-      socket = require(::socket(AF_INET, SOCK_STREAM, 0), "socket");
-      if (::connect(socket, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0) break;
-      if (tries == 1000) bench::fail("connect");
-      ::close(socket);
-      ::usleep(10'000);
-    }
+    const int socket = bench::connect(setup);
     // The other side may be shaking hands as a client too.
     client_ =
         std::thread([this, socket] { session_ = secure(context_.get(), socket, SSL_connect); });

@@ -10,7 +10,10 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
+#include <sstream>
 #include <thread>
+#include <variant>
 #include <vector>
 
 #include "pattern.h"
@@ -42,37 +45,19 @@ void pause() {
 
 Setup parse(int argc, char** argv) {
   Setup setup;
+  const std::map<std::string, std::variant<std::string*, int*, double*, std::size_t*>> fields = {
+      {"role", &setup.role},     {"mode", &setup.mode},       {"link", &setup.link},
+      {"folder", &setup.folder}, {"sink", &setup.sink},       {"source", &setup.source},
+      {"port", &setup.port},     {"readers", &setup.readers}, {"reader", &setup.reader},
+      {"rounds", &setup.rounds}, {"seconds", &setup.seconds}, {"bytes", &setup.bytes}};
   for (int i = 1; i < argc; ++i) {
     std::string argument = argv[i], key = argument.substr(0, argument.find('='));
     if (key.size() == argument.size()) fail("arguments are KEY=VALUE: " + argument);
-    std::string value = argument.substr(key.size() + 1);
-    if (key == "role") {
-      setup.role = value;
-    } else if (key == "mode") {
-      setup.mode = value;
-    } else if (key == "link") {
-      setup.link = value;
-    } else if (key == "folder") {
-      setup.folder = value;
-    } else if (key == "sink") {
-      setup.sink = value;
-    } else if (key == "source") {
-      setup.source = value;
-    } else if (key == "port") {
-      setup.port = std::stoi(value);
-    } else if (key == "readers") {
-      setup.readers = std::stoi(value);
-    } else if (key == "reader") {
-      setup.reader = std::stoi(value);
-    } else if (key == "rounds") {
-      setup.rounds = std::stoi(value);
-    } else if (key == "seconds") {
-      setup.seconds = std::stod(value);
-    } else if (key == "bytes") {
-      setup.bytes = std::stoul(value);
-    } else {
-      fail("no such argument: " + key);
-    }
+    const auto field = fields.find(key);
+    if (field == fields.end()) fail("no such argument: " + key);
+    std::istringstream value(argument.substr(key.size() + 1));
+    std::visit([&](auto* to) { value >> *to; }, field->second);
+    if (!value) fail("no such value: " + argument);
   }
   return setup;
 }

@@ -38,6 +38,9 @@ struct Setup {
 /// The end where messages go in. Made before any Subscriber of its link is waited for.
 class Publisher {
  public:
+  Publisher() = default;
+  Publisher(const Publisher&) = delete;
+  Publisher& operator=(const Publisher&) = delete;
   virtual ~Publisher() = default;
   /// Returns when all Setup::readers are there, as far as the peer can tell.
   virtual void await_readers() {}
@@ -46,12 +49,18 @@ class Publisher {
   /// Sends what loan() gave; waits while queues are full, so that nothing is lost.
   virtual void publish() = 0;
   /// Sends a message of Setup::bytes whose bytes were not rewritten.
-  virtual void resend() = 0;
+  virtual void resend() {
+    loan();
+    publish();
+  }
 };
 
 /// The end where messages come out.
 class Subscriber {
  public:
+  Subscriber() = default;
+  Subscriber(const Subscriber&) = delete;
+  Subscriber& operator=(const Subscriber&) = delete;
   virtual ~Subscriber() = default;
   /// Returns when the publisher is there, as far as the peer can tell.
   virtual void await_writer() {}

@@ -2,21 +2,15 @@
 """What the link benchmark prints and writes of its results: table, ratios, CSV, plot."""
 
 import csv
-import datetime
-import os
 import statistics
 import subprocess
 
 from cases import CASES, MEASURES
+from generated import machine
 
 KINDS = {"module": "modules in a graph", "ours": "ours", "peer": "peers", "bare": "floors"}
 PROGRAM_OF = {case.name: case.program for case in CASES}
 KEY_OF = {measure.name: measure.key for measure in MEASURES}
-
-
-def machine():
-    cpu = [line for line in open("/proc/cpuinfo") if line.startswith("model name")][0]
-    return "%s, %d cores, %s" % (cpu.split(":")[1].strip(), os.cpu_count(), datetime.date.today())
 
 
 def numbers_of(results, case, measure, key=None):
@@ -28,12 +22,10 @@ def numbers_of(results, case, measure, key=None):
 
 
 def shown(number):
+    if number >= 1e6:
+        return "%.2f M" % (number / 1e6)
     if number >= 10_000:
-        return (
-            "%d,%03d" % (number // 1000, number % 1000)
-            if number < 1e6
-            else "%.2f M" % (number / 1e6)
-        )
+        return "%d,%03d" % (number // 1000, number % 1000)
     return "%.0f" % number if number >= 1000 else "%.3g" % number
 
 
@@ -58,12 +50,8 @@ def table(results, cases, measures, is_markdown):
         if is_markdown:
             print("| " + " | ".join(cells) + " |")
         else:
-            print(
-                "".join(
-                    text.rjust(w) if i else text.ljust(w)
-                    for i, (text, w) in enumerate(zip(cells, widths))
-                )
-            )
+            first, *others = zip(cells, widths)
+            print(first[0].ljust(first[1]) + "".join(text.rjust(w) for text, w in others))
 
     row([""] + [measure.title for measure in measures])
     if is_markdown:
@@ -138,29 +126,18 @@ def ratios(results, is_markdown):
         got = statistics.median(a / b for a, b in pairs)
         is_latency = measure.startswith("latency")
         good = got <= asked if is_latency else got >= asked
-        sign = "≤" if is_latency else "≥"
-        lines.append(
-            (
-                measure,
-                our,
-                reference if other == measure else other,
-                "%s %.3g" % (sign, asked),
-                "%.3g" % got,
-                "yes" if good else "NO",
-            )
-        )
+        asked = "%s %.3g" % ("≤" if is_latency else "≥", asked)
+        beside = reference if other == measure else other
+        lines.append((measure, our, beside, asked, "%.3g" % got, "yes" if good else "NO"))
     if not lines:
         return
     head = ("measure", "ours", "reference", "asked", "got", "met")
     print()
     if is_markdown:
         print("| " + " | ".join(head) + " |\n|" + "---|" * len(head))
+    form = "| %s | %s | %s | %s | %s | %s |" if is_markdown else "%-14s %-12s %-16s %8s %8s  %s"
     for line in lines if is_markdown else [head] + lines:
-        print(
-            "| " + " | ".join(line) + " |"
-            if is_markdown
-            else "%-14s %-12s %-16s %8s %8s  %s" % line
-        )
+        print(form % line)
 
 
 def write_csv(results, path):

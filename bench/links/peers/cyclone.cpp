@@ -70,11 +70,6 @@ class Publisher final : public bench::Publisher {
 
   void publish() override { good(dds_write(writer_, sample_), "dds_write"); }
 
-  void resend() override {
-    loan();
-    publish();
-  }
-
  private:
   Setup setup_;
   dds_entity_t writer_;

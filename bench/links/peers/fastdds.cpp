@@ -140,11 +140,6 @@ class Publisher final : public bench::Publisher {
     if (!writer_->write(sample_)) bench::fail("Fast DDS writes not");
   }
 
-  void resend() override {
-    loan();
-    publish();
-  }
-
  private:
   Setup setup_;
   Node node_;

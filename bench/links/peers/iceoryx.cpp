@@ -60,11 +60,6 @@ class Publisher final : public bench::Publisher {
 
   void publish() override { publisher_.publish(chunk_); }
 
-  void resend() override {
-    loan();
-    publish();
-  }
-
  private:
   std::size_t bytes_;
   void* chunk_ = nullptr;
@@ -83,8 +78,6 @@ class Subscriber final : public bench::Subscriber {
       });
     }
   }
-  Subscriber(const Subscriber&) = delete;
-  Subscriber& operator=(const Subscriber&) = delete;
   ~Subscriber() override {
     if (wait_set_) wait_set_->detachState(subscriber_, iox::popo::SubscriberState::HAS_DATA);
   }

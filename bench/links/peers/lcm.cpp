@@ -21,8 +21,6 @@ lcm_t* create() {
 class Publisher final : public bench::Publisher {
  public:
   explicit Publisher(const Setup& setup) : lcm_(create()), link_(setup.link), bytes_(setup.bytes) {}
-  Publisher(const Publisher&) = delete;
-  Publisher& operator=(const Publisher&) = delete;
   ~Publisher() override { lcm_destroy(lcm_); }
 
   std::span<std::byte> loan() override { return bytes_; }
@@ -31,8 +29,6 @@ class Publisher final : public bench::Publisher {
     auto size = static_cast<unsigned>(bytes_.size());
     bench::require(lcm_publish(lcm_, link_.c_str(), bytes_.data(), size), "lcm_publish");
   }
-
-  void resend() override { publish(); }
 
  private:
   lcm_t* lcm_;
@@ -51,8 +47,6 @@ class Subscriber final : public bench::Subscriber {
         },
         &message_);
   }
-  Subscriber(const Subscriber&) = delete;
-  Subscriber& operator=(const Subscriber&) = delete;
   ~Subscriber() override { lcm_destroy(lcm_); }
 
   std::span<const std::byte> receive() override {

@@ -53,8 +53,6 @@ class Publisher final : public bench::Publisher {
       good(nng_listen(sockets_.back(), place_of(setup, i).c_str(), nullptr, 0), "nng_listen");
     }
   }
-  Publisher(const Publisher&) = delete;
-  Publisher& operator=(const Publisher&) = delete;
   ~Publisher() override {
     for (auto socket : sockets_) nng_close(socket);
   }
@@ -96,8 +94,6 @@ class Subscriber final : public bench::Subscriber {
     nng_socket_set_ms(socket_, NNG_OPT_RECONNMINT, 10);
     good(nng_dial(socket_, place.c_str(), nullptr, NNG_FLAG_NONBLOCK), "nng_dial");
   }
-  Subscriber(const Subscriber&) = delete;
-  Subscriber& operator=(const Subscriber&) = delete;
   ~Subscriber() override { nng_close(socket_); }
 
   std::span<const std::byte> receive() override {

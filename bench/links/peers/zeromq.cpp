@@ -44,8 +44,6 @@ class Publisher final : public bench::Publisher {
         socket_(socket_of(setup, setup.readers == 1 ? ZMQ_PUSH : ZMQ_XPUB)) {
     bench::require(zmq_bind(socket_, place_of(setup).c_str()), "zmq_bind");
   }
-  Publisher(const Publisher&) = delete;
-  Publisher& operator=(const Publisher&) = delete;
   ~Publisher() override { zmq_close(socket_); }
 
   void await_readers() override {
@@ -85,8 +83,6 @@ class Subscriber final : public bench::Subscriber {
     zmq_msg_init(&message_);
     bench::require(zmq_connect(socket_, place_of(setup).c_str()), "zmq_connect");
   }
-  Subscriber(const Subscriber&) = delete;
-  Subscriber& operator=(const Subscriber&) = delete;
   ~Subscriber() override {
     zmq_msg_close(&message_);
     zmq_close(socket_);
