@@ -5,15 +5,7 @@ import sys
 from typing import Any, Callable, List, Optional, Sequence, TypeVar, Union
 
 from hypercolumn import _hypercolumn
-from hypercolumn._hypercolumn import (
-    Frames,
-    Input,
-    Kind,
-    Output,
-    Parameter,
-    ParameterOptions,
-    Timeout,
-)
+from hypercolumn._hypercolumn import Frames, Input, Kind, Output, Parameter, Timeout
 from hypercolumn.errors import Error
 
 Handler = TypeVar("Handler", bound=Callable[..., Any])
@@ -55,12 +47,7 @@ class Module(_hypercolumn.Module):
         of the newest messages count while the module is busy, so that no link to it in a graph
         makes its writer wait, unless the link says otherwise.
         """
-        port = self._input(name, kind, doc)
-        if actor:
-            self._actor(port)
-        if keep:
-            self._keep(port, keep)
-        return port
+        return self._input(name, kind, doc, actor, keep)
 
     def output(self, name: str, kind: Kind, doc: str) -> Output:
         """Declares an output, of one kind."""
@@ -86,8 +73,9 @@ class Module(_hypercolumn.Module):
         integer also a `step`, a string `choices`. A `positional` one may be given without its name.
         A `fixed` one is read at the start alone: the module is restarted to change it.
         """
-        options = ParameterOptions(min, max, step, list(choices), positional, fixed)
-        return self._parameter(name, default, unit, doc, options)
+        return self._parameter(
+            name, default, unit, doc, min, max, step, list(choices), positional, fixed
+        )
 
     def on(self, inputs: Union[Input, Together]) -> Callable[[Handler], Handler]:
         """Has a function called with each message of an input, or with those that belong together:

@@ -121,8 +121,12 @@ std::function<void()> action(Program& program, const py::object& function) {
 }
 
 PyInput add_input(Program& program, const std::string& name, const Kind& kind,
-                  const std::string& doc) {
-  return {name, program.module().input(name, hc::AnyKind{kind.types}, doc)};
+                  const std::string& doc, bool is_actor, std::uint32_t keep) {
+  auto& module = program.module();
+  PyInput port{name, module.input(name, hc::AnyKind{kind.types}, doc)};
+  if (is_actor) module.actor(port.input);
+  if (keep > 0) module.keep(port.input, keep);
+  return port;
 }
 
 py::object add_output(const py::object& self, const std::string& name, const Kind& kind,
@@ -134,7 +138,15 @@ py::object add_output(const py::object& self, const std::string& name, const Kin
 
 PyParameter add_parameter(Program& program, const std::string& name, const py::object& initial,
                           const std::string& unit, const std::string& doc,
-                          const hc::ParameterOptions& options) {
+                          std::optional<double> min, std::optional<double> max, std::int64_t step,
+                          std::vector<std::string> choices, bool positional, bool fixed) {
+  hc::ParameterOptions options;
+  if (min) options.min = *min;
+  if (max) options.max = *max;
+  options.step = step;
+  options.choices = std::move(choices);
+  options.positional = positional;
+  options.fixed = fixed;
   auto& module = program.module();
   if (py::isinstance<py::bool_>(initial))
     module.parameter(name, initial.cast<bool>(), unit, doc, options);
@@ -145,19 +157,6 @@ PyParameter add_parameter(Program& program, const std::string& name, const py::o
   else
     module.parameter(name, initial.cast<std::string>(), unit, doc, options);
   return {&program, module.parameters().back()};
-}
-
-hc::ParameterOptions make_options(std::optional<double> min, std::optional<double> max,
-                                  std::int64_t step, std::vector<std::string> choices,
-                                  bool positional, bool fixed) {
-  hc::ParameterOptions options;
-  if (min) options.min = *min;
-  if (max) options.max = *max;
-  options.step = step;
-  options.choices = std::move(choices);
-  options.positional = positional;
-  options.fixed = fixed;
-  return options;
 }
 
 void every(Program& program, const py::object& period, const py::object& function) {
@@ -240,7 +239,6 @@ void add_ports(py::module_& extension) {
       .def("restart", &PyTimeout::restart, py::arg("seconds") = py::none(),
            "Has it fire when its time, or another one, has passed from now on.")
       .def("stop", &PyTimeout::stop, "Has it not fire.");
-  py::class_<hc::ParameterOptions>(extension, "ParameterOptions").def(py::init(&make_options));
   py::class_<Frames>(extension, "Frames",
                      "The frames of the module's graph: where its eyes, its head and all else are.")
       .def(py::init<Program&>(), py::keep_alive<1, 2>())
@@ -264,9 +262,6 @@ void add_modules(py::module_& extension) {
       .def("_input", add_input)
       .def("_output", add_output)
       .def("_parameter", add_parameter, py::keep_alive<0, 1>())
-      .def("_actor", [](Self& self, const PyInput& input) { self.module().actor(input.input); })
-      .def("_keep", [](Self& self, const PyInput& input,
-                       std::uint32_t count) { self.module().keep(input.input, count); })
       .def("_on", on)
       .def("_on_together", on_together<>)
       .def("_every", every)

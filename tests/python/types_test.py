@@ -69,7 +69,7 @@ class Types(Package):
             each = getattr(_hypercolumn, name)
             for member in dir(each) if inspect.isclass(each) else ():
                 if not member.startswith(PRIVATE):
-                    self.assertRegex(stub, r"def %s\(" % member)
+                    self.assertRegex(stub, r"(?m)(def %s\(|^    %s: )" % (member, member))
 
     def test_every_word_is_described(self):
         for name in hc.__all__:
