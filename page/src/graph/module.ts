@@ -18,10 +18,8 @@ const logLines = 200;
 
 /** A module's ports, parameters and log: {kind: "module", name}. */
 export const modulePanel: PanelKind = (args, host) => {
-  const name = args.name ?? "";
-  host.setTitle(name || "module");
-  const view = new ModuleView(host, name);
-  return { element: view.element, close: () => view.close() };
+  host.setTitle(args.name || "module");
+  return new ModuleView(host, args.name ?? "");
 };
 
 class ModuleView {
@@ -35,7 +33,7 @@ class ModuleView {
     role: "log",
     "aria-label": "Log of the module",
   });
-  private readonly restart: HTMLButtonElement;
+  private readonly restart = h("button", { onclick: () => void this.askRestart() }, "Restart");
   readonly element: HTMLElement;
   private description?: Description;
   private parameterViews?: Map<string, ParameterView>;
@@ -47,7 +45,6 @@ class ModuleView {
     private readonly host: PanelHost,
     private readonly name: string,
   ) {
-    this.restart = h("button", { onclick: () => void this.askRestart() }, "Restart");
     host.tools.append(this.restart);
     this.element = h("div.module", [
       this.status,
@@ -69,11 +66,9 @@ class ModuleView {
       server.onSession((session) => {
         this.restart.disabled = !mayOperate(session);
       }),
-    );
-    for (const line of server.log) this.addLine(line);
-    this.ends.push(
       server.onConnection(({ status }) => status === "open" && void this.askDescription()),
     );
+    for (const line of server.log) this.addLine(line);
   }
 
   private async askDescription(): Promise<void> {

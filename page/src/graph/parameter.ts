@@ -29,27 +29,13 @@ export class ParameterView {
     const common = { id, "aria-describedby": note, disabled: isLocked };
     this.control = this.makeControl(common);
     this.control.addEventListener("change", () => void this.send(this.text()));
-    const { min, max } = is;
+    const { min = -Infinity, max = Infinity } = is;
     const number = is.type === "number" || is.type === "integer";
-    if (
-      number &&
-      !isLocked &&
-      min !== undefined &&
-      max !== undefined &&
-      max - min <= widestSlider
-    ) {
-      const step = is.step ?? (is.type === "integer" ? 1 : "any");
-      this.slider = h("input", {
-        type: "range",
-        min,
-        max,
-        step,
-        "aria-label": `${is.name}, slider`,
-      });
-      this.slider.addEventListener("change", () => void this.send(this.slider!.value));
-      this.slider.addEventListener("input", () => {
-        this.control.value = shortest(this.slider!.value);
-      });
+    if (number && !isLocked && max - min <= widestSlider) {
+      const slider = this.numberInput("range", { "aria-label": `${is.name}, slider` });
+      slider.addEventListener("change", () => void this.send(slider.value));
+      slider.addEventListener("input", () => (this.control.value = shortest(slider.value)));
+      this.slider = slider;
     }
     const unit = is.unit ? h("span.unit.muted.small", is.unit) : null;
     this.element = h("div.parameter", { "data-parameter": is.name }, [
@@ -79,8 +65,12 @@ export class ParameterView {
     }
     if (is.type === "bool") return h("input", { ...common, type: "checkbox" });
     if (is.type === "string") return h("input", { ...common, type: "text", spellcheck: "false" });
-    const step = is.step ?? (is.type === "integer" ? 1 : "any");
-    return h("input", { ...common, type: "number", min: is.min, max: is.max, step });
+    return this.numberInput("number", common);
+  }
+
+  private numberInput(type: "number" | "range", others: Record<string, unknown>): HTMLInputElement {
+    const { min, max, step = this.is.type === "integer" ? 1 : "any" } = this.is;
+    return h("input", { ...others, type, min, max, step });
   }
 
   private text(): string {

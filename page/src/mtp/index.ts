@@ -5,7 +5,6 @@ export { elementsOf } from "./elements";
 export * from "./error";
 export * from "./header";
 export * from "./info";
-export * from "./json";
 export * from "./message";
 export * from "./number";
 export * from "./reader";

@@ -24,8 +24,7 @@ declare global {
 /** The supervisor's seat: {kind: "seat"}. */
 export const seatPanel: PanelKind = (_args, host) => {
   host.setTitle("Seat");
-  const panel = new SeatPanel(host);
-  return { element: panel.element, close: () => panel.close() };
+  return new SeatPanel(host);
 };
 
 class SeatPanel {

@@ -12,48 +12,22 @@ import type { View, ViewKind } from "./view";
 const mostColumns = 24;
 const colours = 6;
 
-const axes = {
+const axes: Partial<Record<Header["type"], readonly string[]>> = {
   position: ["x", "y", "z", "vx", "vy", "vz", "ax", "ay", "az"],
-  rotation: [
-    "roll",
-    "pitch",
-    "yaw",
-    "roll rate",
-    "pitch rate",
-    "yaw rate",
-    "roll acceleration",
-    "pitch acceleration",
-    "yaw acceleration",
-  ],
+  rotation: ["", " rate", " acceleration"].flatMap((what) =>
+    ["roll", "pitch", "yaw"].map((axis) => axis + what),
+  ),
 };
 
 /** Names of the numbers of a message, up to mostColumns. */
-export function columnNames(header: Header): string[] {
-  const { type, width, height, components } = header;
-  const names: string[] = [];
-  for (let row = 0; row < height; ++row) {
-    for (let column = 0; column < width; ++column) {
-      for (let i = 0; i < components; ++i) {
-        if (names.length === mostColumns) return names;
-        const place =
-          width * height === 1
-            ? ""
-            : height === 1
-              ? `${column}`
-              : width === 1
-                ? `${row}`
-                : `${row},${column}`;
-        const axis =
-          type === "position" || type === "rotation"
-            ? axes[type][i]!
-            : components > 1
-              ? `[${i}]`
-              : "";
-        names.push(`${place} ${axis}`.trim() || "value");
-      }
-    }
-  }
-  return names;
+function columnNames({ type, width, height, components }: Header): string[] {
+  return Array.from({ length: Math.min(mostColumns, width * height * components) }, (_, at) => {
+    const element = Math.floor(at / components);
+    const places = [height > 1 && Math.floor(element / width), width > 1 && element % width];
+    const place = places.filter((each) => each !== false).join(",");
+    const axis = axes[type]?.[at % components] ?? (components > 1 ? `[${at % components}]` : "");
+    return `${place} ${axis}`.trim() || "value";
+  });
 }
 
 function unitOf(header: Header): string {
@@ -83,10 +57,7 @@ export class PlotView implements View {
     "aria-label": "Scroll back",
     oninput: () => this.draw(),
   });
-  private readonly sight: Sight;
-  private readonly observer: ResizeObserver;
-  private readonly endTheme: () => void;
-  private readonly timer: number;
+  private readonly ends: readonly (() => void)[];
   private series?: Series;
   private names: string[] = [];
   private shape = "";
@@ -101,13 +72,18 @@ export class PlotView implements View {
   constructor() {
     this.element = h("div.stack", [this.buttons, this.room, this.slider]);
     this.tools = [this.span];
-    this.sight = new Sight(this.element);
-    this.observer = new ResizeObserver(() => this.resize());
-    this.observer.observe(this.room);
-    this.endTheme = onTheme(() => this.build());
-    this.timer = window.setInterval(() => {
-      if (this.isNew && !this.isPaused && this.sight.isSeen) this.draw();
+    const sight = new Sight(this.element);
+    const observer = new ResizeObserver(() => this.resize());
+    observer.observe(this.room);
+    const timer = setInterval(() => {
+      if (this.isNew && !this.isPaused && sight.isSeen) this.draw();
     }, 66);
+    this.ends = [
+      () => clearInterval(timer),
+      () => sight.close(),
+      () => observer.disconnect(),
+      onTheme(() => this.build()),
+    ];
   }
 
   show(arrival: Arrival, sent: Header): void {
@@ -132,10 +108,7 @@ export class PlotView implements View {
   }
 
   close(): void {
-    clearInterval(this.timer);
-    this.sight.close();
-    this.observer.disconnect();
-    this.endTheme();
+    for (const end of this.ends) end();
     this.plot?.destroy();
   }
 

@@ -37,9 +37,8 @@ export class Scene {
   private readonly labels: Object3D[] = [];
   private readonly layers = new Map<string, Layer>();
   private readonly sources: Source[] = [];
-  private readonly observer: ResizeObserver;
   private readonly sight: Sight;
-  private readonly endTheme: () => void;
+  private readonly ends: readonly (() => void)[];
   private readonly grid = floor();
   private isWaiting = false;
   private isClosed = false;
@@ -65,13 +64,14 @@ export class Scene {
     this.look();
     this.addFrames(framesOf(surroundings.session?.frames ?? ""));
     this.sight = new Sight(this.element);
-    this.observer = new ResizeObserver(() => this.resize());
-    this.observer.observe(this.element);
-    this.endTheme = onTheme(() => {
+    const observer = new ResizeObserver(() => this.resize());
+    observer.observe(this.element);
+    const endTheme = onTheme(() => {
       this.scene.background = new Color(colour("surface"));
       this.grid.material.color = new Color(colour("line"));
       this.draw();
     });
+    this.ends = [() => observer.disconnect(), () => this.sight.close(), endTheme];
   }
 
   /** Looks over the head's shoulder, as at the beginning. */
@@ -111,9 +111,7 @@ export class Scene {
     this.isClosed = true;
     for (const source of this.sources) source.close();
     for (const layer of this.layers.values()) layer.remove();
-    this.observer.disconnect();
-    this.sight.close();
-    this.endTheme();
+    for (const end of this.ends) end();
     this.controls.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
