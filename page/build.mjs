@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bundles the page: node build.mjs OUT. OUT gets index.html, page.js, page.css and the chunks that
-// page.js loads later, and keeps nothing else. Fails where the first load is above the limit.
+// page.js loads later, and no other such files; and assets.cpp, behind modules/web/assets.h, which
+// takes them in, compressed. Fails where the first load is above the limit.
 import {
   appendFileSync,
   copyFileSync,
@@ -8,6 +9,7 @@ import {
   readFileSync,
   readdirSync,
   rmSync,
+  writeFileSync,
 } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -15,6 +17,8 @@ import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
 
 const firstLoadLimit = 500_000; // bytes, compressed
+const types = { html: "text/html", js: "text/javascript", css: "text/css" };
+const isAsset = (name) => name.split(".").pop() in types;
 const here = dirname(fileURLToPath(import.meta.url));
 if (!process.argv[2]) {
   console.error("usage: node build.mjs OUT");
@@ -23,7 +27,7 @@ if (!process.argv[2]) {
 const out = resolve(process.argv[2]);
 mkdirSync(out, { recursive: true });
 for (const name of readdirSync(out)) {
-  if (/\.(html|js|css)$/.test(name)) rmSync(join(out, name));
+  if (isAsset(name)) rmSync(join(out, name));
 }
 
 const result = await build({
@@ -77,12 +81,39 @@ function firstLoad() {
 
 const first = firstLoad();
 let total = 0;
-for (const name of readdirSync(out).sort()) {
-  if (!/\.(html|js|css)$/.test(name)) continue;
-  const bytes = gzipSync(readFileSync(join(out, name)), { level: 9 }).length;
-  if (first.has(name)) total += bytes;
-  console.log(`${String(bytes).padStart(8)} B ${name}${first.has(name) ? "" : " (later)"}`);
+let data = "";
+let entries = "";
+const names = readdirSync(out).filter(isAsset).sort();
+names.forEach((name, i) => {
+  const bytes = gzipSync(readFileSync(join(out, name)), { level: 9 });
+  if (first.has(name)) total += bytes.length;
+  const size = String(bytes.length).padStart(8);
+  console.log(`${size} B ${name}${first.has(name) ? "" : " (later)"}`);
+  const file = join(out, name + ".gz");
+  writeFileSync(file, bytes);
+  data += `asm(".section .rodata\\n"
+    ".global hc_page_${i}, hc_page_${i}_end\\n"
+    "hc_page_${i}: .incbin \\"${file}\\"\\n"
+    "hc_page_${i}_end: .byte 0\\n"
+    ".text\\n");
+extern "C" const char hc_page_${i}[], hc_page_${i}_end[];
+`;
+  const type = types[name.split(".").pop()] + "; charset=utf-8";
+  entries += `      {"${name}", "${type}", {hc_page_${i}, hc_page_${i}_end}},\n`;
+});
+writeFileSync(
+  join(out, "assets.cpp"),
+  `// Written by page/build.mjs.
+#include "assets.h"
+
+${data}
+const std::vector<Asset>& page_assets() {
+  static const std::vector<Asset> kAll = {
+${entries}  };
+  return kAll;
 }
+`,
+);
 console.log(`${String(total).padStart(8)} B first load, compressed`);
 if (total > firstLoadLimit) {
   console.error(`the first load is above ${firstLoadLimit} B`);

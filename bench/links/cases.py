@@ -54,14 +54,25 @@ def _ours(name, sink, source, about, **more):
     return Case(name, "ours", "ours", about, ("sink=" + sink, "source=" + source), **more)
 
 
+def _shm(name, wait, about, cannot={}):
+    sink = "shm:{link}?readers={readers}&memory=6M"
+    return _ours(name, sink, "shm:{link}?wait=10" + wait, about, cannot=cannot)
+
+
+def _listening(name, place, key="", about=""):
+    sink = "%s-listen:%s?readers={readers}%s" % (name, place, key)
+    return _ours(
+        name, sink, "%s:%s?wait=10%s" % (name, place, key), "the publisher listens" + about
+    )
+
+
 _TURNS = {name: "modules measure round trips" for name in ("messages", "images", "fan_out")}
 
 
-def _module(name, about, spin, ports=1, rate=0.0, **more):
+def _module(name, about, spin, ports=1, rate=0.0, cannot={}):
     """Two modules under `hc run`; the links as `hc run` makes them, but for `spin`."""
     arguments = ("spin=%d" % spin, "ports=%d" % ports, "rate=%g" % rate)
-    cannot = {**_TURNS, **more.pop("cannot", {})}
-    return Case(name, "module", "module", about, arguments, cannot=cannot, **more)
+    return Case(name, "module", "module", about, arguments, cannot={**_TURNS, **cannot})
 
 
 def _peer(name, program, mode, about, **more):
@@ -78,6 +89,11 @@ def _cyclone(more=""):
 <Peers><Peer Address="127.0.0.1"/></Peers></Discovery>
 <Internal><SocketReceiveBufferSize min="4MB"/></Internal>%s</Domain></CycloneDDS>"""
     return {"CYCLONEDDS_URI": text % more}
+
+
+def _ddsperf(name, mode, about):
+    cannot = {"fan_out": "it counts all readers together"}
+    return Case(name, "peer", "ddsperf", about, (mode,), environment=_cyclone(), cannot=cannot)
 
 
 _KEY = "&key={folder}/key.pem&peer={folder}/key.pem"
@@ -108,43 +124,12 @@ CASES = [
         "floor_tls",
         "TLS 1.3 on loopback, by OpenSSL alone, one SSL_write, SSL_read; the cipher is that of tls",
     ),
-    _ours(
-        "shm_polled",
-        "shm:{link}?readers={readers}&memory=6M",
-        "shm:{link}?wait=10&spin=1000000",
-        "the reader looks for a second before it sleeps",
-        cannot=_POLLS,
-    ),
-    _ours(
-        "shm_waiting",
-        "shm:{link}?readers={readers}&memory=6M",
-        "shm:{link}?wait=10&spin=0",
-        "the reader sleeps at once",
-    ),
-    _ours(
-        "shm",
-        "shm:{link}?readers={readers}&memory=6M",
-        "shm:{link}?wait=10",
-        "as it is unless one says otherwise: the reader looks for 20 µs, then sleeps",
-    ),
-    _ours(
-        "unix",
-        "unix-listen:@hc_bench_{link}?readers={readers}",
-        "unix:@hc_bench_{link}?wait=10",
-        "the publisher listens",
-    ),
-    _ours(
-        "tcp",
-        "tcp-listen:127.0.0.1:{port}?readers={readers}",
-        "tcp:127.0.0.1:{port}?wait=10",
-        "the publisher listens",
-    ),
-    _ours(
-        "tls",
-        "tls-listen:127.0.0.1:{port}?readers={readers}" + _KEY,
-        "tls:127.0.0.1:{port}?wait=10" + _KEY,
-        "the publisher listens; TLS 1.3",
-    ),
+    _shm("shm_polled", "&spin=1000000", "the reader looks for a second before it sleeps", _POLLS),
+    _shm("shm_waiting", "&spin=0", "the reader sleeps at once"),
+    _shm("shm", "", "as it is unless one says otherwise: the reader looks for 20 µs, then sleeps"),
+    _listening("unix", "@hc_bench_{link}"),
+    _listening("tcp", "127.0.0.1:{port}"),
+    _listening("tls", "127.0.0.1:{port}", _KEY, "; TLS 1.3"),
     _ours(
         "dds",
         "dds:bench/{link}?domain=90&readers={readers}",
@@ -192,27 +177,12 @@ CASES = [
         "reliable, KEEP_ALL, UDP on loopback, WaitSet",
         environment=_cyclone(),
     ),
-    *(
-        Case(
-            name,
-            "peer",
-            "ddsperf",
-            about,
-            (mode,),
-            environment=_cyclone(),
-            cannot={
-                "fan_out": "it counts all readers together",
-            },
-        )
-        for name, mode, about in (
-            (
-                "ddsperf",
-                "listener",
-                "Cyclone's own program: reliable, KEEP_ALL, batches, UDP on loopback",
-            ),
-            ("ddsperf_waitset", "waitset", "the same, taken by another thread than receives"),
-        )
+    _ddsperf(
+        "ddsperf",
+        "listener",
+        "Cyclone's own program: reliable, KEEP_ALL, batches, UDP on loopback",
     ),
+    _ddsperf("ddsperf_waitset", "waitset", "the same, taken by another thread than receives"),
     _peer(
         "fastdds_datasharing",
         "fastdds",
