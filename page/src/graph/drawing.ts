@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drawing of a graph: laid out once for a structure, and its texts and colours kept up to date.
 import type { GraphLink, GraphModule, GraphState } from "../server";
-import { h, setText, svg } from "../shell";
+import { arrowHead, h, setText, svg } from "../shell";
 import { DropRates } from "./drops";
 import { Failures } from "./failures";
 import { layoutOf, pathThrough, type Box, type Layout, type Point } from "./layout";
@@ -47,22 +47,12 @@ export class Drawing {
     "svg.graph-drawing",
     { tabindex: 0, role: "group", "aria-label": "Drawing of the graph" },
     [
-      svg(
-        "defs",
-        svg(
-          "marker",
-          {
-            id: "arrow",
-            viewBox: "0 0 8 8",
-            refX: 7,
-            refY: 4,
-            markerWidth: 9,
-            markerHeight: 9,
-            markerUnits: "userSpaceOnUse",
-          },
-          svg("path.arrow", { d: "M0 0L8 4L0 8z" }),
-        ),
-      ),
+      arrowHead("arrow", 8, {
+        refX: 7,
+        markerWidth: 9,
+        markerHeight: 9,
+        markerUnits: "userSpaceOnUse",
+      }),
       this.scene,
     ],
   );

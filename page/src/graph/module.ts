@@ -6,7 +6,7 @@ import {
   type GraphState,
   type LogLine,
 } from "../server";
-import { fill, h, setText, type PanelHost, type PanelKind } from "../shell";
+import { button, fill, h, setText, type PanelHost, type PanelKind } from "../shell";
 import { describe, typeText, type Description, type PortDescription } from "./describe";
 import { Failures } from "./failures";
 import { ParameterView } from "./parameter";
@@ -33,7 +33,7 @@ class ModuleView {
     role: "log",
     "aria-label": "Log of the module",
   });
-  private readonly restart = h("button", { onclick: () => void this.askRestart() }, "Restart");
+  private readonly restart = button("Restart", () => void this.askRestart());
   readonly element: HTMLElement;
   private description?: Description;
   private parameterViews?: Map<string, ParameterView>;
@@ -180,15 +180,9 @@ class ModuleView {
     const all = this.host.server.state?.links ?? [];
     const links = all.filter((link) => (way === "in" ? link.to : link.from) === full);
     const types = port.types.map(typeText).join(", or ");
-    const open = h(
-      "button",
-      {
-        title: `Show ${full}`,
-        disabled: way === "in" && links.length === 0,
-        onclick: () => this.host.openPanel({ kind: "stream", port: full }),
-      },
-      port.name,
-    );
+    const show = () => this.host.openPanel({ kind: "stream", port: full });
+    const disabled = way === "in" && links.length === 0;
+    const open = button(port.name, show, { title: `Show ${full}`, disabled });
     return h("div.port", [
       h("span.way", way === "in" ? "in" : "out"),
       open,

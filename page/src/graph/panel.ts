@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { GraphLink } from "../server";
-import { fill, h, type PanelKind } from "../shell";
+import { button, fill, h, type PanelKind } from "../shell";
 import { Drawing } from "./drawing";
 import type { Point } from "./layout";
 import { linkKey, type Edge } from "./structure";
@@ -76,7 +76,7 @@ export const graphPanel: PanelKind = (args, host) => {
     },
   });
   const zoom = (label: string, text: string, action: () => void): HTMLElement =>
-    h("button", { "aria-label": label, title: label, onclick: action }, text);
+    button(text, action, { "aria-label": label, title: label });
   const drawingTools = [
     h("label.tool", [background, "focus and poses"]),
     zoom("Smaller", "−", () => drawing.viewport.zoom(0.8)),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The supervisor's seat: what the robot sees, and all by which a person moves it.
 import { mayDrive, modesInFocus, type DriveOutput, type GraphState } from "../server";
-import { fill, h, setText, type PanelHost, type PanelKind } from "../shell";
+import { button, fill, h, setText, type PanelHost, type PanelKind } from "../shell";
 import { Ears } from "./ears";
 import { earsOf } from "./eyes";
 import { GazeHistory, headOutput } from "./gaze";
@@ -38,12 +38,8 @@ class SeatPanel {
   private readonly ends: (() => void)[] = [];
 
   private readonly who = h("p.seat-who.row", { role: "status" });
-  private readonly takeButton = h("button.take", { onclick: () => this.take() }, "Take the seat");
-  private readonly leaveButton = h(
-    "button",
-    { onclick: () => this.seat.leave() },
-    "Leave the seat",
-  );
+  private readonly takeButton = button("Take the seat", () => this.take(), { class: "take" });
+  private readonly leaveButton = button("Leave the seat", () => this.seat.leave());
   private readonly tasks = h("div.tasks.wrap", { role: "group", "aria-label": "Tasks" });
   private readonly knob = h("div.knob");
   private readonly pad = h(
@@ -51,34 +47,22 @@ class SeatPanel {
     { "aria-hidden": "true", title: "Drag to turn the head" },
     this.knob,
   );
-  private readonly phoneButton = h(
-    "button",
-    { "aria-pressed": "false", onclick: () => void this.togglePhone() },
-    "Turn with this phone",
-  );
-  private readonly xrButton = h(
-    "button",
-    { hidden: true, onclick: () => void this.toggleXr() },
-    "Enter the headset",
-  );
-  private readonly zeroButton = h(
-    "button",
-    {
-      onclick: () => {
-        this.phone.zero();
-        this.xr?.zero();
-        if (this.phone.isOn || this.xr) this.seat.orient();
-      },
-    },
-    "This is straight ahead",
-  );
+  private readonly phoneButton = button("Turn with this phone", () => void this.togglePhone(), {
+    "aria-pressed": "false",
+  });
+  private readonly xrButton = button("Enter the headset", () => void this.toggleXr(), {
+    hidden: true,
+  });
+  private readonly zeroButton = button("This is straight ahead", () => {
+    this.phone.zero();
+    this.xr?.zero();
+    if (this.phone.isOn || this.xr) this.seat.orient();
+  });
   private readonly text = h("input", { type: "text", id: "seat-text", maxlength: 500 });
   private readonly speakButton = h("button", { type: "submit" }, "Say it");
-  private readonly listenButton = h(
-    "button",
-    { "aria-pressed": "false", onclick: () => this.toggleEars() },
-    "Listen",
-  );
+  private readonly listenButton = button("Listen", () => this.toggleEars(), {
+    "aria-pressed": "false",
+  });
   private readonly delay = h("p.seat-latency.muted.small");
   readonly element: HTMLElement;
 
@@ -305,35 +289,27 @@ class SeatPanel {
     const focused = this.tasks.contains(document.activeElement)
       ? (document.activeElement as HTMLElement).dataset.task
       : undefined;
+    const draw = (name: string, number: number, text: string, title: string): HTMLElement => {
+      const chosen = this.seat.task === number;
+      return button(
+        text,
+        () => (chosen || number === 0 ? this.seat.release() : this.seat.choose(number)),
+        {
+          "data-task": name,
+          class: inFocus.includes(number) ? "task-button in-focus" : "task-button",
+          "aria-pressed": String(chosen && (can || number !== 0)),
+          disabled: !can,
+          title,
+        },
+      );
+    };
+    const none = "Gives the head back, and keeps the seat";
     fill(
       this.tasks,
-      names.length > 0 &&
-        h(
-          "button.task-button",
-          {
-            "data-task": "",
-            "aria-pressed": String(can && this.seat.task === 0),
-            disabled: !can,
-            title: "Gives the head back, and keeps the seat",
-            onclick: () => this.seat.release(),
-          },
-          "Let the robot decide",
-        ),
-      names.map(([name, number]) => {
-        const chosen = this.seat.task === number;
-        return h(
-          "button",
-          {
-            "data-task": name,
-            class: inFocus.includes(number) ? "task-button in-focus" : "task-button",
-            "aria-pressed": String(chosen),
-            disabled: !can,
-            title: chosen ? `Release ${name}` : `Choose ${name}`,
-            onclick: () => (chosen ? this.seat.release() : this.seat.choose(number)),
-          },
-          name,
-        );
-      }),
+      names.length > 0 && draw("", 0, "Let the robot decide", none),
+      names.map(([name, number]) =>
+        draw(name, number, name, `${this.seat.task === number ? "Release" : "Choose"} ${name}`),
+      ),
     );
     if (focused) {
       this.tasks.querySelector<HTMLElement>(`[data-task="${CSS.escape(focused)}"]`)?.focus();

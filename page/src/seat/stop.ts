@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stop: always visible, one press, for viewers too. It is cleared by two other controls.
 import { CommandError, mayDrive, type Session } from "../server";
-import { h, setText, type Shell } from "../shell";
+import { button, h, setText, type Shell } from "../shell";
 import { Stopping } from "./stopping";
 
 /** Two presses of Escape within this time stop the robot [ms]. */
@@ -51,11 +51,10 @@ export function addStop(shell: Shell): void {
     look();
   }, period);
 
-  const button = h(
-    "button.stop",
-    { title: "Stop the robot (Escape twice)", onclick: stop },
-    "Stop",
-  );
+  const stopButton = button("Stop", stop, {
+    class: "stop",
+    title: "Stop the robot (Escape twice)",
+  });
   const { bar, showBar } = stoppedBar(() => {
     stopping.press(false, performance.now());
     void order(false);
@@ -66,7 +65,7 @@ export function addStop(shell: Shell): void {
     why,
     h("p", "The stop is being repeated. If the robot moves, switch it off at the robot."),
   ]);
-  shell.headerSlot.append(button);
+  shell.headerSlot.append(stopButton);
   shell.element.append(bar, alarm);
 
   const show = (): void => {
@@ -87,8 +86,8 @@ export function addStop(shell: Shell): void {
   server.onSession((session: Session) => {
     stopping.heard(session.stopped);
     const stopped = session.stopped === true;
-    button.textContent = stopped ? "STOPPED" : "Stop";
-    button.setAttribute("aria-pressed", String(stopped));
+    stopButton.textContent = stopped ? "STOPPED" : "Stop";
+    stopButton.setAttribute("aria-pressed", String(stopped));
     showBar(stopped, mayDrive(session));
     show();
   });
@@ -100,13 +99,11 @@ function stoppedBar(clear: () => void): {
   showBar: (stopped: boolean, mayClear: boolean) => void;
 } {
   const confirm = h("input", { type: "checkbox", id: "stop-confirm" });
-  const button = h("button.stop-clear", { disabled: true, onclick: clear }, "Let it move");
-  confirm.addEventListener("change", () => {
-    button.disabled = !confirm.checked;
-  });
+  const clearButton = button("Let it move", clear, { class: "stop-clear", disabled: true });
+  confirm.onchange = () => (clearButton.disabled = !confirm.checked);
   const controls = h("span.stop-controls.row.wrap", [
     h("label.row", { for: "stop-confirm" }, [confirm, "nobody is in its way"]),
-    button,
+    clearButton,
   ]);
   const note = h("span.stop-note", "Only who may drive can clear this stop.");
   const bar = h("div.stopped-bar.row.wrap", { role: "alert", hidden: true }, [
@@ -119,7 +116,7 @@ function stoppedBar(clear: () => void): {
     if (bar.hidden === stopped) {
       bar.hidden = !stopped;
       confirm.checked = false;
-      button.disabled = true;
+      clearButton.disabled = true;
     }
     controls.hidden = !mayClear;
     note.hidden = mayClear;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Place } from "./layout";
-import { h } from "./h";
+import { button, h } from "./h";
 import { panelKinds, type Panel, type PanelHost } from "./panel";
 
 export type Direction = "left" | "right" | "up" | "down";
@@ -30,22 +30,18 @@ export class Frame {
     private readonly actions: FrameActions,
   ) {
     const menu = this.menu();
-    this.menuButton = h(
-      "button.icon",
-      {
-        "aria-haspopup": "true",
-        "aria-expanded": "false",
-        title: "Move, resize; with Alt and an arrow key: move",
-        onclick: () => this.toggle(menu),
-        onkeydown: (event) => this.key(event),
-      },
-      "⋮",
-    );
+    this.menuButton = button("⋮", () => this.toggle(menu), {
+      class: "icon",
+      "aria-haspopup": "true",
+      "aria-expanded": "false",
+      title: "Move, resize; with Alt and an arrow key: move",
+      onkeydown: (event) => this.key(event),
+    });
     const bar = h("header.panel-bar", { onpointerdown: (event) => this.grab(event) }, [
       this.title,
       this.tools,
       this.menuButton,
-      h("button.icon", { title: "Close", onclick: () => actions.close() }, "✕"),
+      button("✕", () => actions.close(), { class: "icon", title: "Close" }),
       menu,
     ]);
     const body = h("div.panel-body.stack");
@@ -81,7 +77,7 @@ export class Frame {
 
   private menu(): HTMLElement {
     const item = (label: string, act: () => void) =>
-      h("button", { role: "menuitem", onclick: () => (this.toggle(menu, false), act()) }, label);
+      button(label, () => (this.toggle(menu, false), act()), { role: "menuitem" });
     const menu: HTMLElement = h(
       "div.menu.stack.box",
       {

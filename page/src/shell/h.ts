@@ -33,6 +33,22 @@ export function svg<K extends keyof SVGElementTagNameMap>(
   return complete(element, classes, parts);
 }
 
+export function button(
+  text: Children,
+  onclick: (event: MouseEvent) => void,
+  attributes: Attributes = {},
+): HTMLButtonElement {
+  return h("button", { ...attributes, onclick }, text);
+}
+
+/** The head of an arrow, as a marker of so many pixels; `refX`: where its line ends. */
+export function arrowHead(id: string, size: number, attributes: Attributes): SVGDefsElement {
+  const middle = size / 2;
+  const box = { id, viewBox: `0 0 ${size} ${size}`, refY: middle, ...attributes };
+  const shape = svg("path.arrow", { d: `M0 0L${size} ${middle}L0 ${size}z` });
+  return svg("defs", svg("marker", box, shape));
+}
+
 /** Replaces what an element holds. */
 export function fill(element: Element, ...children: readonly Children[]): void {
   const shown = children

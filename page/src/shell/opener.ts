@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { GraphState, Server } from "../server";
-import { fill, h } from "./h";
+import { button, fill, h } from "./h";
 import type { PanelArgs } from "./panel";
 
 export interface Choice {
@@ -40,7 +40,7 @@ export function opener(
   const item = ({ label, detail, args }: Choice) =>
     h(
       "li",
-      h("button", { onclick: () => choose(args) }, [h("span", label), h("span.muted", detail)]),
+      button([h("span", label), h("span.muted", detail)], () => choose(args)),
     );
   const show = () => {
     const typed = search.value.trim();

@@ -7,7 +7,7 @@ import {
   type Session,
 } from "../server";
 import { Board } from "./board";
-import { fill, h } from "./h";
+import { button, fill, h } from "./h";
 import { layoutOf, layoutText, type Layout } from "./layout";
 import { opener, type Outputs } from "./opener";
 import { panelKinds, type PanelArgs } from "./panel";
@@ -51,14 +51,14 @@ export class Shell {
     });
     const dialog = opener(server, (args) => this.openPanel(args), outputs);
     this.element = h("div.shell.stack", [
-      h("button.skip", { onclick: () => this.board.element.focus() }, "Go to the panels"),
+      button("Go to the panels", () => this.board.element.focus(), { class: "skip" }),
       h("header.bar.row.wrap", [
         this.graphName,
         this.connection,
         this.focus,
         this.recording,
         h("div.spring"),
-        h("button", { onclick: () => dialog.showModal() }, "Open…"),
+        button("Open…", () => dialog.showModal()),
         themeButton(),
         this.headerSlot,
       ]),
@@ -117,8 +117,7 @@ export class Shell {
     fill(
       this.trouble,
       h("span", connection.why),
-      connection.retry !== null &&
-        h("button", { onclick: () => this.server.reconnect() }, "Try now"),
+      connection.retry !== null && button("Try now", () => this.server.reconnect()),
     );
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dense and sparse graphs, drawn with their nodes on a circle.
 import type { Arrival } from "../server";
-import { fill, h, svg } from "../shell/h";
+import { arrowHead, fill, h, svg } from "../shell/h";
 import { networkOf, type Edge } from "./edges";
 import type { View, ViewKind } from "./view";
 
@@ -49,22 +49,12 @@ export class NetworkView implements View {
     };
     fill(
       this.drawing,
-      svg(
-        "defs",
-        svg(
-          "marker",
-          {
-            id: "network-arrow-head",
-            viewBox: "0 0 6 6",
-            refX: 6,
-            refY: 3,
-            markerWidth: 5,
-            markerHeight: 5,
-            orient: "auto",
-          },
-          svg("path.network-arrow", { d: "M0 0 L6 3 L0 6 Z" }),
-        ),
-      ),
+      arrowHead("network-arrow-head", 6, {
+        refX: 6,
+        markerWidth: 5,
+        markerHeight: 5,
+        orient: "auto",
+      }),
       ...lines.map((edge) => edgeLine(edge, at(edge.from), at(edge.to), size, sizeOf(edge) / most)),
       ...Array.from({ length: shown }, (_, node) => {
         const { x, y } = at(node);

@@ -3,7 +3,7 @@
 import uPlot from "uplot";
 import { numbersOf, type Header } from "../mtp";
 import type { Arrival } from "../server";
-import { fill, h, setText } from "../shell/h";
+import { button, fill, h, setText } from "../shell/h";
 import { colour, onTheme } from "../shell/theme";
 import { Sight } from "./room";
 import { Series } from "./series";
@@ -120,13 +120,12 @@ export class PlotView implements View {
     this.values = this.names.map(() => h("span.mono"));
     const buttons = this.names.map((name, i) => {
       const pressed = String(this.chosen.has(i));
-      const button = h(
-        "button.series-button",
-        { "aria-pressed": pressed, onclick: () => this.choose(i, button) },
-        [name, " ", this.values[i]],
-      );
-      button.style.setProperty("--series", `var(--series-${(i % colours) + 1})`);
-      return button;
+      const one = button([name, " ", this.values[i]], () => this.choose(i, one), {
+        class: "series-button",
+        "aria-pressed": pressed,
+      });
+      one.style.setProperty("--series", `var(--series-${(i % colours) + 1})`);
+      return one;
     });
     fill(this.buttons, buttons);
     this.build();

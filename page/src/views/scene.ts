@@ -14,7 +14,7 @@ import {
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Coord, sentHeader, type Header, type Message } from "../mtp";
 import type { Arrival } from "../server";
-import { h } from "../shell/h";
+import { button, h } from "../shell/h";
 import { colour, onTheme } from "../shell/theme";
 import { eyeBody, floor, headBody, labelOf } from "./bodies";
 import { framesOf, type Frame } from "./frames";
@@ -189,13 +189,14 @@ export class Scene {
 
 /** Buttons of a scene. */
 export function sceneTools(scene: Scene): HTMLElement[] {
-  const names = h("button", { "aria-pressed": "true", title: "Names of the frames" }, "Names");
-  names.onclick = () => {
-    const shown = names.getAttribute("aria-pressed") !== "true";
+  let shown = true;
+  const toggle = () => {
+    shown = !shown;
     names.setAttribute("aria-pressed", String(shown));
     scene.showNames(shown);
   };
-  return [names, h("button", { onclick: () => scene.look() }, "Reset view")];
+  const names = button("Names", toggle, { "aria-pressed": "true", title: "Names of the frames" });
+  return [names, button("Reset view", () => scene.look())];
 }
 
 /** One stream in the scene. */

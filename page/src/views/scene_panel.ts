@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { outputsOf, type Output } from "../outputs";
 import type { GraphState } from "../server";
-import { fill, h, type PanelKind } from "../shell";
+import { button, fill, h, type PanelKind } from "../shell";
 import { liveSurroundings } from "./panels";
 
 /** Ports that a new scene shows: the clouds of modules that find depth. */
@@ -53,7 +53,7 @@ export const scenePanel: PanelKind = (args, host) => {
       const ports = [...shown.keys()];
       host.setArgs({ ...args, ports: ports.join(" ") });
       const buttons = ports.map((port) =>
-        h("button", { "aria-label": `Take ${port} out`, onclick: () => remove(port) }, `${port} ✕`),
+        button(`${port} ✕`, () => remove(port), { "aria-label": `Take ${port} out` }),
       );
       fill(list, ...buttons, form);
     };
