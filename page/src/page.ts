@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import { graphPanel, modulePanel } from "./graph";
-import { outputsOf } from "./outputs";
 import { recordingsPanel, replayPanel } from "./recordings";
 import { addStop, seatPanel } from "./seat";
 import { Server } from "./server";
-import { defaultLayout, panelKinds, Shell, standardPanels } from "./shell";
+import { panelKinds, Shell, standardPanels } from "./shell";
 import { scenePanel, streamPanel } from "./views";
 
 Object.assign(panelKinds, {
@@ -17,16 +16,12 @@ Object.assign(panelKinds, {
   stream: streamPanel,
 });
 standardPanels.push(
-  {
-    label: "Recordings",
-    detail: "record, download, replay",
-    args: { kind: "recordings" },
-  },
+  { label: "Recordings", detail: "record, download, replay", args: { kind: "recordings" } },
   { label: "Scene", detail: "frames, head and points in space", args: { kind: "scene" } },
   { label: "Graph", detail: "modules and links, live", args: { kind: "graph" } },
   { label: "Seat", detail: "steer, speak, choose a task", args: { kind: "seat" } },
 );
 
-const shell = new Shell(new Server(), defaultLayout, outputsOf);
+const shell = new Shell(new Server());
 addStop(shell);
 document.body.append(shell.element);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-export { defaultLayout } from "./default_layout";
 export * from "./h";
 export * from "./layout";
 export { standardPanels } from "./opener";

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import { outputsOf } from "../outputs";
 import type { GraphState, Server } from "../server";
 import { button, fill, h } from "./h";
 import type { PanelArgs } from "./panel";
@@ -12,11 +13,6 @@ export interface Choice {
 /** Panels that are there for any graph; src/page.ts fills it. */
 export const standardPanels: Choice[] = [];
 
-/** Names the outputs that there are, as MODULE.PORT, with what each sends. */
-export type Outputs = (
-  server: Server,
-) => Promise<readonly { readonly port: string; readonly type: string }[]>;
-
 function modulesOf(state: GraphState | undefined): Choice[] {
   return (state?.modules ?? []).map(({ name, program }) => ({
     label: name,
@@ -26,11 +22,7 @@ function modulesOf(state: GraphState | undefined): Choice[] {
 }
 
 /** The dialog that opens panels. */
-export function opener(
-  server: Server,
-  open: (args: PanelArgs) => void,
-  outputs: Outputs,
-): HTMLDialogElement {
+export function opener(server: Server, open: (args: PanelArgs) => void): HTMLDialogElement {
   let streams: Choice[] = [];
   const list = h("ul.choices");
   const choose = (args: PanelArgs) => {
@@ -87,7 +79,7 @@ export function opener(
   dialog.addEventListener("toggle", () => {
     if (!dialog.open) return;
     show();
-    void outputs(server).then((all) => {
+    void outputsOf(server).then((all) => {
       streams = all.map(({ port, type }) => ({
         label: port,
         detail: type || "stream",

@@ -7,19 +7,17 @@ import {
   type Session,
 } from "../server";
 import { Board } from "./board";
+import { defaultLayout } from "./default_layout";
 import { button, fill, h } from "./h";
-import { layoutOf, layoutText, type Layout } from "./layout";
-import { opener, type Outputs } from "./opener";
+import { layoutOf, layoutText } from "./layout";
+import { opener } from "./opener";
 import { panelKinds, type PanelArgs } from "./panel";
 import { themeButton } from "./theme";
 
-/** Chooses the panels of a page whose URL names none; undefined: not yet. */
-export type DefaultLayout = (state: GraphState, session: Session, width: number) => Layout;
-
-/** The page: header, panels, status line. */
 /** How long a sentence is in the status line [ms]. */
 const sentenceLife = 10_000;
 
+/** The page: header, panels, status line. */
 export class Shell {
   readonly element: HTMLElement;
   /** Room in the header for what is always visible: the stop button. */
@@ -39,17 +37,13 @@ export class Shell {
   private silence = 0; // the timer that clears it
   private readonly board: Board;
 
-  constructor(
-    readonly server: Server,
-    private readonly defaultLayout: DefaultLayout,
-    outputs: Outputs,
-  ) {
+  constructor(readonly server: Server) {
     this.board = new Board({
       server,
       say: (sentence) => this.say(sentence),
       changed: () => this.store(),
     });
-    const dialog = opener(server, (args) => this.openPanel(args), outputs);
+    const dialog = opener(server, (args) => this.openPanel(args));
     this.element = h("div.shell.stack", [
       button("Go to the panels", () => this.board.element.focus(), { class: "skip" }),
       h("header.bar.row.wrap", [
@@ -97,7 +91,7 @@ export class Shell {
       if (!state || !session) return;
       for (const end of ends) end();
       if (location.hash.length > 1) return;
-      this.board.show(this.defaultLayout(state, session, innerWidth));
+      this.board.show(defaultLayout(state, session, innerWidth));
       this.store();
     };
     const ends: (() => void)[] = [];
