@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # What the extension holds, for type checkers.
 
-from types import TracebackType
 from typing import (
     Any,
     Callable,
@@ -13,7 +12,6 @@ from typing import (
     Optional,
     Sequence,
     Tuple,
-    Type,
     TypeVar,
     Union,
 )
@@ -25,12 +23,7 @@ _Array = numpy.ndarray[Any, Any]
 _Frame = Union[str, int]
 
 class _Context:  # what a with ends
-    def __exit__(
-        self,
-        kind: Optional[Type[BaseException]],
-        error: Optional[BaseException],
-        trace: Optional[TracebackType],
-    ) -> None: ...
+    def __exit__(self, *error: object) -> None: ...
 
 class Message:
     array: Final[_Array]

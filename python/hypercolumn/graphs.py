@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Graphs that run on this host: attached to, or started."""
 
+import contextlib
 import json
 import math
 import os
@@ -9,8 +10,8 @@ import shutil
 import subprocess
 import tempfile
 import time
-from types import SimpleNamespace, TracebackType
-from typing import Any, Callable, Dict, Iterator, List, Optional, Type, Union
+from types import SimpleNamespace
+from typing import Any, Callable, Dict, Iterator, List, Optional, Union
 
 from hypercolumn import _hypercolumn
 from hypercolumn._hypercolumn import Message, RunningGraph, Stream
@@ -209,7 +210,8 @@ def _command() -> str:
     return found
 
 
-class start:
+@contextlib.contextmanager
+def start(file: "Union[str, os.PathLike[str]]", *options: str, wait: float = 60) -> Iterator[Graph]:
     """Runs a graph for as long as a `with`, such as in a test:
 
         with hc.start("graphs/depth.toml", "--set", "depth.disparities=96") as graph:
@@ -218,61 +220,43 @@ class start:
     `options` are those of `hc run`. The graph is up when it is entered: each module runs, or has
     ended. A graph that cannot run raises what `hc run` has said.
     """
-
-    def __init__(
-        self, file: "Union[str, os.PathLike[str]]", *options: str, wait: float = 60
-    ) -> None:
-        self._words = [_command(), "run", os.fspath(file), *options]
-        self._wait = wait
-
-    def __enter__(self) -> Graph:
-        self._log = tempfile.TemporaryFile()
-        self._process = subprocess.Popen(
-            self._words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=self._log
+    words = [_command(), "run", os.fspath(file), *options]
+    with tempfile.TemporaryFile() as log:
+        process = subprocess.Popen(
+            words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=log
         )
         try:
-            return self._wait_for_graph()
-        except BaseException:
-            self._end()
-            raise
+            graph = _wait_for_graph(process, wait)
+            if graph is None:
+                log.seek(0)
+                said = log.read().decode(errors="replace").strip()
+                if process.poll() is None:
+                    said = "not up after %g s: %s" % (wait, said)
+                raise Error("Invalid: %s: %s" % (" ".join(words[1:3]), said), "Invalid")
+            yield graph
+        finally:
+            if process.poll() is None:
+                process.terminate()
+            try:
+                process.wait(15)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
 
-    def __exit__(
-        self,
-        kind: Optional[Type[BaseException]],
-        error: Optional[BaseException],
-        trace: Optional[TracebackType],
-    ) -> None:
-        self._end()
 
-    def _wait_for_graph(self) -> Graph:
-        end = time.monotonic() + self._wait
-        while time.monotonic() < end:
-            if self._process.poll() is not None:
-                break
-            for graph in running():
-                if graph.process == self._process.pid and self._is_up(graph):
-                    return graph
-            time.sleep(0.02)
-        self._log.seek(0)
-        said = self._log.read().decode(errors="replace").strip()
-        if self._process.poll() is None:
-            said = "not up after %g s: %s" % (self._wait, said)
-        raise Error("Invalid: %s: %s" % (" ".join(self._words[1:3]), said), "Invalid")
+def _wait_for_graph(process: "subprocess.Popen[bytes]", wait: float) -> Optional[Graph]:
+    end = time.monotonic() + wait
+    while time.monotonic() < end and process.poll() is None:
+        for graph in running():
+            if graph.process == process.pid and _is_up(graph):
+                return graph
+        time.sleep(0.02)
+    return None
 
-    @staticmethod
-    def _is_up(graph: Graph) -> bool:
-        try:
-            states = [each.status for each in graph.modules.values()]
-        except Error:  # it has ended
-            return False
-        return all(each in ("running", "ended") for each in states)
 
-    def _end(self) -> None:
-        if self._process.poll() is None:
-            self._process.terminate()
-        try:
-            self._process.wait(15)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
-        self._log.close()
+def _is_up(graph: Graph) -> bool:
+    try:
+        states = [each.status for each in graph.modules.values()]
+    except Error:  # it has ended
+        return False
+    return all(each in ("running", "ended") for each in states)

@@ -76,24 +76,19 @@ T number_of(PyObject* object) {
   } else {
     const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(object));
     if (!index) throw py::error_already_set();
-    bool fits = true;
-    T value{};
-    if constexpr (std::is_signed_v<T>) {
-      const long long wide = PyLong_AsLongLong(index.ptr());
-      fits = std::in_range<T>(wide);
-      value = static_cast<T>(wide);
-    } else {
-      const unsigned long long wide = PyLong_AsUnsignedLongLong(index.ptr());
-      fits = std::in_range<T>(wide);
-      value = static_cast<T>(wide);
-    }
-    if (PyErr_Occurred() != nullptr || !fits) {
+    const auto wide = [&] {
+      if constexpr (std::is_signed_v<T>)
+        return PyLong_AsLongLong(index.ptr());
+      else
+        return PyLong_AsUnsignedLongLong(index.ptr());
+    }();
+    if (PyErr_Occurred() != nullptr || !std::in_range<T>(wide)) {
       PyErr_Clear();
       raise({hc::Code::Malformed, "R28: " + py::str(index).cast<std::string>() +
                                       " does not fit into " +
                                       std::string(hc::name(hc::scalar_for<T>()))});
     }
-    return value;
+    return static_cast<T>(wide);
   }
 }
 
