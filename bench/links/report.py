@@ -6,7 +6,7 @@ import statistics
 import subprocess
 
 from cases import CASES, MEASURES
-from generated import machine
+from common import machine
 
 KINDS = {"module": "modules in a graph", "ours": "ours", "peer": "peers", "bare": "floors"}
 PROGRAM_OF = {case.name: case.program for case in CASES}

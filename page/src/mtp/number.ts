@@ -46,39 +46,12 @@ function single(text: string): number {
   const double = Number(text);
   const rounded = Math.fround(double);
   if (rounded === double || Number.isNaN(double)) return rounded;
-  const [below, above] = neighbours(double, rounded);
-  const middle = (below.at + above.at) / 2;
-  if (middle !== double) return rounded;
-  // The f64 lies just between two f32, so it does not say on which side the text itself is.
-  const side = compare(text, double);
-  return side === 0 ? rounded : side < 0 ? below.value : above.value;
-}
-
-interface Neighbour {
-  readonly value: number;
-  /** Where it counts as lying: infinity as the number that would follow the greatest f32. */
-  readonly at: number;
-}
-
-/** The f32 at either side of `double`, of which `rounded` is one. */
-function neighbours(double: number, rounded: number): [Neighbour, Neighbour] {
-  const here = { value: rounded, at: placeOf(rounded) };
-  const other = next(rounded, rounded < double ? 1 : -1);
-  const there = { value: other, at: placeOf(other) };
-  return rounded < double ? [here, there] : [there, here];
-}
-
-function placeOf(value: number): number {
-  return Number.isFinite(value) ? value : Math.sign(value) * 2 ** 128;
-}
-
-/** The next f32 up (1) or down (-1). */
-function next(value: number, direction: 1 | -1): number {
-  if (value === 0) return direction * 2 ** -149;
-  const view = new DataView(new ArrayBuffer(4));
-  view.setFloat32(0, value);
-  view.setInt32(0, view.getInt32(0) + (value > 0 === direction > 0 ? 1 : -1));
-  return view.getFloat32(0);
+  // Infinity counts as the number that would follow the greatest f32.
+  const near = Number.isFinite(rounded) ? rounded : Math.sign(double) * 2 ** 128;
+  const far = 2 * double - near;
+  // Where the f64 lies just between two f32, it does not say on which side the text itself is.
+  const side = Math.fround(far) === far || Math.abs(far) === 2 ** 128 ? compare(text, double) : 0;
+  return side === 0 ? rounded : Math.fround(Math[side > 0 ? "max" : "min"](near, far));
 }
 
 /** Sign of (decimal number − double), exactly. */

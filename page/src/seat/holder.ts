@@ -10,8 +10,8 @@ export type SeatState =
   | { readonly is: "free" }
   | { readonly is: "waiting" }
   | { readonly is: "held" }
-  /** `why`: in a sentence; `taken`: by another driver. */
-  | { readonly is: "lost"; readonly why: string; readonly taken: boolean };
+  /** `why`: in a sentence. */
+  | { readonly is: "lost"; readonly why: string };
 
 const period = 33; // of the stick [ms]
 const bidPeriod = 100; // [ms]
@@ -119,7 +119,7 @@ export class Seat {
         return;
       }
       if (status.status === "connecting") return this.states.set({ is: "waiting" });
-      this.forget({ is: "lost", why: status.why, taken: status.taken });
+      this.forget({ is: "lost", why: status.why });
     });
   }
 
@@ -130,7 +130,7 @@ export class Seat {
     if (this.steering) this.sendStick();
     if (this.task) this.sendBid(this.task, 0);
     this.drive.close();
-    this.forget(why ? { is: "lost", why, taken: false } : { is: "free" });
+    this.forget(why ? { is: "lost", why } : { is: "free" });
   }
 
   /** Bids for a task in the person's name, until it is released. */

@@ -16,8 +16,7 @@ export const driveSource: Record<DriveOutput, number> = {
 export type DriveStatus =
   | { readonly status: "connecting" }
   | { readonly status: "driving" }
-  /** `taken`: somebody else drives. */
-  | { readonly status: "closed"; readonly taken: boolean; readonly why: string };
+  | { readonly status: "closed"; readonly why: string };
 
 const beat = writeMessage({
   header: headerOf({ type: "table", components: 1, scalar: "u8", encoding: "text" }, 0, 0),
@@ -45,11 +44,9 @@ export class Drive {
       text: (text) => this.refusals.emit(text),
       lost: (code, reason, retry) => {
         if (retry !== null) return this.statuses.set({ status: "connecting" });
-        const taken = code === 4409;
-        const why = taken
-          ? "Somebody else drives."
-          : `The server has closed it: ${reason || String(code)}.`;
-        this.statuses.set({ status: "closed", taken, why });
+        const isTaken = code === 4409;
+        const closed = `The server has closed it: ${reason || String(code)}.`;
+        this.statuses.set({ status: "closed", why: isTaken ? "Somebody else drives." : closed });
         this.close();
       },
     });

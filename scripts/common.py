@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the scripts share that write documents and figures."""
+"""What the scripts share that write documents and measure."""
 
 import datetime
 import difflib
@@ -16,6 +16,12 @@ def machine():
     name = re.search(r"model name\s*: (.*)", pathlib.Path("/proc/cpuinfo").read_text())
     name = " ".join(name[1].split()) if name else "this machine"
     return "%s, %d cores, %s" % (name, os.cpu_count(), datetime.date.today())
+
+
+def hc_run(build, graph, settings=(), *options):
+    """The command that runs a graph, of graphs/ where its path is not whole."""
+    sets = [word for setting in settings for word in ("--set", setting)]
+    return [build / "bin/hc", "run", ROOT / "graphs" / graph, *options, *sets]
 
 
 def update(document, wanted, script, comparable=str):
