@@ -33,13 +33,11 @@ function nodeWidth(name: string): number {
   return Math.max(112, 34 + name.length * 7.6);
 }
 
-/** What a line goes through between its modules, and where its label has room. */
-interface Route {
-  readonly through: readonly Point[];
+/** What a line goes through, and where its label has room. */
+interface Line {
+  readonly points: readonly Point[];
   readonly label: Point;
 }
-
-type Line = { readonly points: readonly Point[]; readonly label: Point };
 
 /** Members of a group that are drawn in one box. */
 interface Piece {
@@ -57,12 +55,12 @@ export function layoutOf(structure: Structure): Layout {
     return { x, y, width, height };
   };
   const nodes = new Map(structure.nodes.map(({ name }) => [name, box(name)]));
-  const routes = new Map<string, Route>();
+  const between = new Map<string, Line>();
   for (const edge of structure.edges) {
     const found = graph.edge(edge.from, edge.to) as (Point & { points: Point[] }) | undefined;
-    if (found) routes.set(edge.key, { through: found.points.slice(1, -1), label: found });
+    if (found) between.set(edge.key, { points: found.points.slice(1, -1), label: found });
   }
-  const edges = attach(structure, nodes, routes);
+  const edges = attach(structure, nodes, between);
   const { width = 0, height = 0 } = graph.graph() as { width?: number; height?: number };
   const groups = pieces.map(({ key, group }) => ({ group, box: box(key) }));
   return { width, height, nodes, groups, edges };
@@ -71,14 +69,8 @@ export function layoutOf(structure: Structure): Layout {
 /** What dagre makes of it, with a box around each piece. */
 function place(structure: Structure, pieces: readonly Piece[]): InstanceType<typeof Graph> {
   const graph = new Graph({ compound: true });
-  graph.setGraph({
-    rankdir: "LR",
-    nodesep: 18,
-    edgesep: 12,
-    ranksep: 40,
-    marginx: 12,
-    marginy: 12,
-  });
+  const margins = { marginx: 12, marginy: 12 };
+  graph.setGraph({ rankdir: "LR", nodesep: 18, edgesep: 12, ranksep: 40, ...margins });
   for (const { name } of structure.nodes) {
     graph.setNode(name, { width: nodeWidth(name), height: nodeHeight });
   }
@@ -130,9 +122,9 @@ function piecesOf(structure: Structure, graph: InstanceType<typeof Graph>): Piec
 function attach(
   structure: Structure,
   nodes: ReadonlyMap<string, Box>,
-  routes: ReadonlyMap<string, Route>,
+  between: ReadonlyMap<string, Line>,
 ): Map<string, Line> {
-  const route = (edge: Edge): readonly Point[] => routes.get(edge.key)?.through ?? [];
+  const route = (edge: Edge): readonly Point[] => between.get(edge.key)?.points ?? [];
   const spread = (edges: readonly Edge[], edge: Edge, box: Box, toward: (edge: Edge) => number) => {
     const order = edges.filter((each) => !each.background).sort((a, b) => toward(a) - toward(b));
     const place = edge.background ? 0.5 : (order.indexOf(edge) + 1) / (order.length + 1);
@@ -154,7 +146,7 @@ function attach(
     };
     const points = [start, ...route(edge), end];
     const middle = { x: (start.x + end.x) / 2, y: (start.y + end.y) / 2 };
-    lines.set(edge.key, { points, label: routes.get(edge.key)?.label ?? middle });
+    lines.set(edge.key, { points, label: between.get(edge.key)?.label ?? middle });
   }
   return lines;
 }
