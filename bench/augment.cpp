@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -116,47 +117,39 @@ void compare_masks(Renderer& renderer, Overlay& overlay, const std::string& fold
       "|---|---|---:|---:|---:|\n",
       kRooms);
   const Body cube = cube_behind_the_bench(renderer, 0.3);
-  struct Sums {
-    double sum = 0, worst = 1, switched = 0;
+  struct Case {
+    std::string depth, side;
+    std::size_t eye;
+    double sum = 0, worst = 1, switched = 0, right = 0;
+    cv::Mat last = {};
   };
-  std::array<std::array<Sums, 2>, 2> sums;  // by is_found, eye
+  std::array<Case, 4> cases = {
+      {{"true", "left", 0}, {"true", "right", 1}, {"matched", "left", 0}, {"matched", "right", 1}}};
   for (int number = kFirst; number < kFirst + kRooms; ++number) {
     hc::room::World world(renderer, static_cast<std::uint64_t>(number), "HELLO");
-    std::array<std::array<cv::Mat, 2>, 2> before;
-    std::array<std::array<double, 2>, 2> right = {};
     for (int frame = 0; frame < kFrames; ++frame) {
       const View view = look(renderer, world, frame);
-      for (const std::size_t is_found : {0U, 1U})
-        for (const std::size_t eye : {0U, 1U}) {
-          const std::string name = std::string(is_found != 0 ? "matched" : "true") +
-                                   (eye == 0 ? "_left_" : "_right_") + std::to_string(number);
-          const cv::Mat mask =
-              mask_of(overlay, cube, view, eye, is_found != 0 ? view.found : view.eyes[0].truth,
-                      folder.empty() || frame > 0 ? "" : folder + "/" + name + ".png");
-          const Truth truth = truth_of(renderer, cube, view, eye);
-          right.at(is_found).at(eye) += share((mask == truth.seen) & truth.body, truth.body);
-          cv::Mat& last = before.at(is_found).at(eye);
-          if (!last.empty())
-            sums.at(is_found).at(eye).switched +=
-                share((mask != last) & truth.body, truth.body) / (kFrames - 1) / kRooms;
-          last = mask;
-        }
-    }
-    for (const std::size_t is_found : {0U, 1U})
-      for (const std::size_t eye : {0U, 1U}) {
-        const double mean = right.at(is_found).at(eye) / kFrames;
-        Sums& each = sums.at(is_found).at(eye);
-        each.sum += mean / kRooms;
-        each.worst = std::min(each.worst, mean);
+      for (Case& each : cases) {
+        const std::string name = each.depth + "_" + each.side + "_" + std::to_string(number);
+        const cv::Mat mask = mask_of(
+            overlay, cube, view, each.eye, each.depth == "true" ? view.eyes[0].truth : view.found,
+            folder.empty() || frame > 0 ? "" : folder + "/" + name + ".png");
+        const Truth truth = truth_of(renderer, cube, view, each.eye);
+        each.right += share((mask == truth.seen) & truth.body, truth.body) / kFrames;
+        if (frame > 0)
+          each.switched +=
+              share((mask != each.last) & truth.body, truth.body) / (kFrames - 1) / kRooms;
+        each.last = mask;
       }
-  }
-  for (const std::size_t is_found : {0U, 1U})
-    for (const std::size_t eye : {0U, 1U}) {
-      const Sums& each = sums.at(is_found).at(eye);
-      std::printf("| %s | %s | %.1f %% | %.1f %% | %.2f %% |\n", is_found != 0 ? "matched" : "true",
-                  eye == 0 ? "left" : "right", 100 * each.sum, 100 * each.worst,
-                  100 * each.switched);
     }
+    for (Case& each : cases) {
+      each.sum += each.right / kRooms;
+      each.worst = std::min(each.worst, std::exchange(each.right, 0));
+    }
+  }
+  for (const Case& each : cases)
+    std::printf("| %s | %s | %.1f %% | %.1f %% | %.2f %% |\n", each.depth.c_str(),
+                each.side.c_str(), 100 * each.sum, 100 * each.worst, 100 * each.switched);
 }
 
 void measure_speed(Renderer& renderer, Overlay& overlay, int rounds) {

@@ -37,23 +37,23 @@ std::int64_t next_time(std::int64_t& state) {
   return kBegin + state;
 }
 
-void frames_lookup_by_name(benchmark::State& state) {
+template <typename Name>
+void look_up(benchmark::State& state, Name to, Name from) {
   auto tree = example();
   std::int64_t at = 0;
   for ([[maybe_unused]] auto _ : state) {
-    auto found = tree.lookup("world", "left_eye", next_time(at));
+    auto found = tree.lookup(to, from, next_time(at));
     benchmark::DoNotOptimize(found);
   }
+}
+
+void frames_lookup_by_name(benchmark::State& state) {
+  look_up<const char*>(state, "world", "left_eye");
 }
 BENCHMARK(frames_lookup_by_name);
 
 void frames_lookup_by_number(benchmark::State& state) {
-  auto tree = example();
-  std::int64_t at = 0;
-  for ([[maybe_unused]] auto _ : state) {
-    auto found = tree.lookup(1, 4, next_time(at));
-    benchmark::DoNotOptimize(found);
-  }
+  look_up(state, 1, 4);
 }
 BENCHMARK(frames_lookup_by_number);
 

@@ -27,8 +27,6 @@ function moduleNamed(name: string, other: Partial<GraphModule> = {}): GraphModul
     workspace: "",
     in_focus: true,
     in_workspace: false,
-    last_line: "",
-    last_line_age: null,
     parameters: {},
     ...other,
   };
@@ -38,7 +36,6 @@ function linkOf(from: string, to: string, other: Partial<GraphLink> = {}): Graph
   return {
     from,
     to,
-    transport: "shm",
     status: "",
     keep: "all",
     rate: 0,
@@ -54,7 +51,6 @@ function linkOf(from: string, to: string, other: Partial<GraphLink> = {}): Graph
     ignored: 0,
     in_workspace: false,
     age: null,
-    gap: null,
     ...other,
   };
 }
@@ -70,7 +66,6 @@ function stateOf(modules: GraphModule[], links: GraphLink[], uptime = 0): GraphS
     modules,
     links,
     modes: {},
-    addresses: {},
   };
 }
 

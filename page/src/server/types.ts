@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the server says of the graph and the session: JSON of G45 (spec/graph.md) and W6
-// (spec/page.md).
+// What the server says of the graph and the session, as far as the page reads it: JSON of G45
+// (spec/graph.md) and W6 (spec/page.md).
 
 export type ModuleStatus =
   "starting" | "running" | "stalled" | "waiting" | "stopping" | "ended" | "given up";
@@ -28,16 +28,12 @@ export interface GraphModule {
   readonly workspace: string;
   readonly in_focus: boolean;
   readonly in_workspace: boolean;
-  readonly last_line: string;
-  /** [s] */
-  readonly last_line_age: number | null;
   readonly parameters: Readonly<Record<string, string>>;
 }
 
 export interface GraphLink {
   readonly from: string;
   readonly to: string;
-  readonly transport: string;
   /** Empty, or why nothing can go over it. */
   readonly status: string;
   readonly keep: string | number;
@@ -54,7 +50,6 @@ export interface GraphLink {
   readonly ignored: number;
   readonly in_workspace: boolean;
   readonly age: Percentiles | null;
-  readonly gap: Percentiles | null;
 }
 
 export interface Focus {
@@ -81,7 +76,6 @@ export interface GraphState {
   readonly modules: readonly GraphModule[];
   readonly links: readonly GraphLink[];
   readonly modes: Readonly<Record<string, number>>;
-  readonly addresses: Readonly<Record<string, number>>;
 }
 
 /** The modes in focus, in the order of the workspaces' names. */
