@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drawing of a graph: laid out once for a structure, and its texts and colours kept up to date.
 import type { GraphLink, GraphModule, GraphState } from "../server";
-import { arrowHead, h, setText, svg } from "../shell";
+import { arrowHead, fill, h, setText, svg } from "../shell";
 import { DropRates } from "./drops";
 import { Failures } from "./failures";
-import { layoutOf, pathThrough, type Box, type Layout, type Point } from "./layout";
+import { layoutOf, pathThrough, type Box, type Layout, type Line, type Point } from "./layout";
 import { linkKey, portOf, structureOf, type Edge, type Structure } from "./structure";
 import { Viewport } from "./viewport";
 import { bytesText, dropTexts, durationText, latencyText, percentText, rateText } from "./words";
@@ -15,28 +15,13 @@ export interface DrawingEvents {
   openEdge(edge: Edge, at: Point): void;
 }
 
-interface NodeElements {
-  readonly group: SVGGElement;
-  readonly title: SVGTitleElement;
-  readonly detail: SVGTextElement;
-  readonly mode: SVGTextElement;
-  readonly load: SVGRectElement;
-  readonly box: Box;
-}
-
-interface EdgeElements {
-  readonly group: SVGGElement;
-  readonly title: SVGTitleElement;
-  readonly rate: SVGTSpanElement;
-  readonly dropped: SVGTSpanElement;
-  readonly latency: SVGTextElement;
-  readonly edge: Edge;
-}
-
 /** As setText(), of an attribute. */
 function setAttribute(element: Element, name: string, value: string): void {
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }
+
+type NodeElements = ReturnType<typeof drawNode>;
+type EdgeElements = ReturnType<typeof drawEdge>;
 
 export class Drawing {
   private readonly groups = svg("g");
@@ -58,8 +43,8 @@ export class Drawing {
   );
   readonly element = h("div.graph-window", this.svg);
   readonly viewport = new Viewport(this.svg, this.scene);
-  private readonly nodeElements = new Map<string, NodeElements>();
-  private readonly edgeElements = new Map<string, EdgeElements>();
+  private nodeElements = new Map<string, NodeElements>();
+  private edgeElements: readonly EdgeElements[] = [];
   private readonly drops = new DropRates();
   private readonly failures = new Failures();
   private structure?: Structure;
@@ -87,7 +72,7 @@ export class Drawing {
     this.failures.take(state);
     for (const module of state.modules) this.updateNode(module, state);
     const links = new Map(state.links.map((link) => [linkKey(link), link]));
-    for (const elements of this.edgeElements.values()) {
+    for (const elements of this.edgeElements) {
       const those = elements.edge.links.flatMap((key) => links.get(key) ?? []);
       if (those.length > 0) this.updateEdge(elements, those);
     }
@@ -97,83 +82,27 @@ export class Drawing {
     const layout = layoutOf(structure);
     const focused = this.nodeElements.get(this.current)?.group === document.activeElement;
     this.groups.replaceChildren(...layout.groups.map(drawGroup));
-    this.edgeElements.clear();
-    this.edges.replaceChildren(...structure.edges.map((edge) => this.drawEdge(edge, layout)));
-    this.nodeElements.clear();
-    this.nodes.replaceChildren(
-      ...structure.nodes.map(({ name }) => this.drawNode(name, layout.nodes.get(name)!)),
+    this.edgeElements = structure.edges.map((edge) =>
+      drawEdge(edge, layout.edges.get(edge.key)!, (at) => this.events.openEdge(edge, at)),
+    );
+    fill(
+      this.edges,
+      this.edgeElements.map(({ group }) => group),
+    );
+    this.nodeElements = new Map(
+      structure.nodes.map(({ name }) => {
+        const open = () => this.events.openModule(name);
+        return [name, drawNode(name, layout.nodes.get(name)!, open, () => this.moveTo(name))];
+      }),
+    );
+    fill(
+      this.nodes,
+      [...this.nodeElements.values()].map(({ group }) => group),
     );
     if (!this.nodeElements.has(this.current)) this.current = structure.nodes[0]?.name ?? "";
     this.nodeElements.get(this.current)?.group.setAttribute("tabindex", "0");
     if (focused) this.nodeElements.get(this.current)?.group.focus();
     this.viewport.setSize(layout.width, layout.height);
-  }
-
-  private drawNode(name: string, box: Box): SVGGElement {
-    const title = svg("title");
-    const left = -box.width / 2;
-    const top = -box.height / 2;
-    const detail = svg("text.node-detail", { x: left + 10, y: top + 37 });
-    const mode = svg("text.node-mode", {
-      x: -left - 8,
-      y: top - 3,
-      "text-anchor": "end",
-    });
-    const load = svg("rect.node-load", { x: left + 2, y: -top - 5, height: 3, width: 0 });
-    const group = svg(
-      "g.node",
-      {
-        role: "button",
-        tabindex: -1,
-        "data-module": name,
-        transform: `translate(${box.x} ${box.y})`,
-        onclick: () => this.events.openModule(name),
-        onfocus: () => this.moveTo(name),
-      },
-      [
-        title,
-        svg("rect.node-box", {
-          x: left,
-          y: top,
-          width: box.width,
-          height: box.height,
-          rx: 6,
-        }),
-        svg("text.node-name", { x: left + 10, y: top + 20 }, name),
-        detail,
-        mode,
-        load,
-      ],
-    );
-    this.nodeElements.set(name, { group, title, detail, mode, load, box });
-    return group;
-  }
-
-  private drawEdge(edge: Edge, layout: Layout): SVGGElement {
-    const { points, label } = layout.edges.get(edge.key)!;
-    const d = pathThrough(points);
-    const title = svg("title");
-    const rate = svg("tspan.edge-rate");
-    const dropped = svg("tspan.edge-dropped");
-    const latency = svg("text.edge-latency", { x: label.x, y: label.y + 12 });
-    const group = svg(
-      "g",
-      {
-        class: edge.background ? "edge background" : "edge",
-        "data-edge": edge.key,
-        onclick: (event: MouseEvent) =>
-          this.events.openEdge(edge, { x: event.clientX, y: event.clientY }),
-      },
-      [
-        title,
-        svg("path.edge-line", { d, "marker-end": "url(#arrow)" }),
-        svg("path.edge-hit", { d }),
-        svg("text.edge-label", { x: label.x, y: label.y - 2 }, [rate, dropped]),
-        latency,
-      ],
-    );
-    this.edgeElements.set(edge.key, { group, title, rate, dropped, latency, edge });
-    return group;
   }
 
   private updateNode(module: GraphModule, state: GraphState): void {
@@ -257,6 +186,69 @@ export class Drawing {
     const nearest = all.reduce((a, b) => (distance(b) < distance(a) ? b : a));
     return distance(nearest) < Infinity ? nearest : undefined;
   }
+}
+
+function drawNode(name: string, box: Box, open: () => void, reached: () => void) {
+  const title = svg("title");
+  const left = -box.width / 2;
+  const top = -box.height / 2;
+  const detail = svg("text.node-detail", { x: left + 10, y: top + 37 });
+  const mode = svg("text.node-mode", {
+    x: -left - 8,
+    y: top - 3,
+    "text-anchor": "end",
+  });
+  const load = svg("rect.node-load", { x: left + 2, y: -top - 5, height: 3, width: 0 });
+  const group = svg(
+    "g.node",
+    {
+      role: "button",
+      tabindex: -1,
+      "data-module": name,
+      transform: `translate(${box.x} ${box.y})`,
+      onclick: open,
+      onfocus: reached,
+    },
+    [
+      title,
+      svg("rect.node-box", {
+        x: left,
+        y: top,
+        width: box.width,
+        height: box.height,
+        rx: 6,
+      }),
+      svg("text.node-name", { x: left + 10, y: top + 20 }, name),
+      detail,
+      mode,
+      load,
+    ],
+  );
+  return { group, title, detail, mode, load, box };
+}
+
+function drawEdge(edge: Edge, { points, label }: Line, open: (at: Point) => void) {
+  const d = pathThrough(points);
+  const title = svg("title");
+  const rate = svg("tspan.edge-rate");
+  const dropped = svg("tspan.edge-dropped");
+  const latency = svg("text.edge-latency", { x: label.x, y: label.y + 12 });
+  const group = svg(
+    "g",
+    {
+      class: edge.background ? "edge background" : "edge",
+      "data-edge": edge.key,
+      onclick: (event: MouseEvent) => open({ x: event.clientX, y: event.clientY }),
+    },
+    [
+      title,
+      svg("path.edge-line", { d, "marker-end": "url(#arrow)" }),
+      svg("path.edge-hit", { d }),
+      svg("text.edge-label", { x: label.x, y: label.y - 2 }, [rate, dropped]),
+      latency,
+    ],
+  );
+  return { group, title, rate, dropped, latency, edge };
 }
 
 function drawGroup({ group, box }: Layout["groups"][number]): SVGGElement {

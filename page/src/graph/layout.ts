@@ -34,7 +34,7 @@ function nodeWidth(name: string): number {
 }
 
 /** What a line goes through, and where its label has room. */
-interface Line {
+export interface Line {
   readonly points: readonly Point[];
   readonly label: Point;
 }

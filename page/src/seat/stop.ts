@@ -94,10 +94,7 @@ export function addStop(shell: Shell): void {
 }
 
 /** The bar while the robot is stopped, and how to show it. @param clear  lets the robot move. */
-function stoppedBar(clear: () => void): {
-  bar: HTMLElement;
-  showBar: (stopped: boolean, mayClear: boolean) => void;
-} {
+function stoppedBar(clear: () => void) {
   const confirm = h("input", { type: "checkbox", id: "stop-confirm" });
   const clearButton = button("Let it move", clear, { class: "stop-clear", disabled: true });
   confirm.onchange = () => (clearButton.disabled = !confirm.checked);

@@ -12,14 +12,6 @@ import type { XrView } from "./xr";
 const widest = 1280;
 const waiting = "Waiting for the first image…";
 
-/** A pixel of an eye's sensor, in an image of a time [ns]. */
-export interface SeenPixel {
-  readonly x: number;
-  readonly y: number;
-  readonly coord: number;
-  readonly time: bigint;
-}
-
 export class SeatView {
   readonly canvas = h("canvas.seat-image", {
     role: "img",
@@ -86,8 +78,9 @@ export class SeatView {
     return Number(own) || 600;
   }
 
-  /** The pixel under a point of the window; undefined where it is none of a camera's image. */
-  pixelAt(clientX: number, clientY: number): SeenPixel | undefined {
+  /** The pixel of an eye's sensor under a point of the window, and the time of that image [ns];
+   *  undefined where it is none of a camera's image. */
+  pixelAt(clientX: number, clientY: number) {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const pictures = this.pictures();
     const image = pictures.left ?? pictures.right;

@@ -17,6 +17,9 @@ interface Target {
   readonly side: Direction;
 }
 
+/** Where the half of a panel on each side is within it. */
+const halves = { left: "0 50% 0 0", right: "0 0 0 50%", up: "0 0 50%", down: "50% 0 0" };
+
 export class Board {
   readonly element = h("main.board", { id: "main", tabindex: -1 });
   private layout: Layout = [];
@@ -143,7 +146,7 @@ export class Board {
       target = this.targetAt(event.clientX, event.clientY);
       if (target) this.frames.get(target.place)!.element.append(mark);
       else mark.remove();
-      mark.dataset.side = target?.side ?? "";
+      if (target) mark.style.inset = halves[target.side];
     };
     const end = (event: Event) => {
       removeEventListener("pointermove", move);
