@@ -71,21 +71,15 @@ try {
     print(next / period, samples.at(-1));
   }
 
+  const ofEach = (value) =>
+    Object.fromEntries(Object.keys(columns).map((key) => [key, value(key)]));
   const mean = (rows) =>
-    Object.fromEntries(
-      Object.keys(columns).map((key) => [
-        key,
-        rows.reduce((sum, each) => sum + each[key], 0) / rows.length,
-      ]),
-    );
-  const [first, last] = [samples.slice(starting, starting + window), samples.slice(-window)].map(
-    mean,
-  );
+    ofEach((key) => rows.reduce((sum, each) => sum + each[key], 0) / rows.length);
+  const first = mean(samples.slice(starting, starting + window));
+  const last = mean(samples.slice(-window));
   print(`first ${window}`, first);
   print(`last ${window}`, last);
-  const drift = Object.fromEntries(
-    Object.keys(columns).map((key) => [key, 100 * (last[key] / first[key] - 1)]),
-  );
+  const drift = ofEach((key) => 100 * (last[key] / first[key] - 1));
   print("drift [%]", drift, (value) => (value > 0 ? "+" : "") + value.toFixed(1));
 } finally {
   await browser.close();

@@ -1,19 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Scalar } from "./info";
+import { arrays, type Scalar } from "./info";
 import type { Elements } from "./message";
-
-const arrays = {
-  u8: Uint8Array,
-  i8: Int8Array,
-  u16: Uint16Array,
-  i16: Int16Array,
-  u32: Uint32Array,
-  i32: Int32Array,
-  u64: BigUint64Array,
-  i64: BigInt64Array,
-  f32: Float32Array,
-  f64: Float64Array,
-} as const;
 
 /** So many scalars, all 0. */
 export function zeros(scalar: Scalar, count: number): Elements {

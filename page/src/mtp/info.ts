@@ -17,21 +17,25 @@ export const matrixTypes = [
 ] as const;
 export type MatrixType = (typeof matrixTypes)[number];
 
-/** The size of each scalar, in the order of their numbers [byte]. */
-export const scalarBytes = {
-  u8: 1,
-  i8: 1,
-  u16: 2,
-  i16: 2,
-  u32: 4,
-  i32: 4,
-  u64: 8,
-  i64: 8,
-  f32: 4,
-  f64: 8,
+/** What holds many of each scalar, in the order of their numbers. */
+export const arrays = {
+  u8: Uint8Array,
+  i8: Int8Array,
+  u16: Uint16Array,
+  i16: Int16Array,
+  u32: Uint32Array,
+  i32: Int32Array,
+  u64: BigUint64Array,
+  i64: BigInt64Array,
+  f32: Float32Array,
+  f64: Float64Array,
 } as const;
-export type Scalar = keyof typeof scalarBytes;
-export const scalars = Object.keys(scalarBytes) as Scalar[];
+export type Scalar = keyof typeof arrays;
+export const scalars = Object.keys(arrays) as Scalar[];
+/** [byte] */
+export const scalarBytes = Object.fromEntries(
+  scalars.map((scalar) => [scalar, arrays[scalar].BYTES_PER_ELEMENT]),
+) as Record<Scalar, number>;
 
 export const encodings = ["text", "binary", "zstd", "jpeg"] as const;
 export type Encoding = (typeof encodings)[number];

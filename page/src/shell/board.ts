@@ -144,9 +144,9 @@ export class Board {
       if (Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) < 8) return;
       element.classList.add("dragged");
       target = this.targetAt(event.clientX, event.clientY);
-      if (target) this.frames.get(target.place)!.element.append(mark);
-      else mark.remove();
-      if (target) mark.style.inset = halves[target.side];
+      if (!target) return mark.remove();
+      this.frames.get(target.place)!.element.append(mark);
+      mark.style.inset = halves[target.side];
     };
     const end = (event: Event) => {
       removeEventListener("pointermove", move);
