@@ -187,7 +187,7 @@ export class PlotView implements View {
     const span = Number(this.span.value);
     const first = Math.min(series.lastTime, series.firstTime + span);
     const to = first + (Number(this.slider.value) / 1000) * (series.lastTime - first);
-    const data = series.window(to - span, to, [...this.chosen], 2000);
+    const data = series.window(to - span, to, [...this.chosen]);
     plot.setData(data as uPlot.AlignedData, false);
     plot.batch(() => {
       plot.setScale("x", { min: to - span, max: to });

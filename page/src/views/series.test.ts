@@ -6,20 +6,13 @@ import { Series } from "./series";
 test("a window holds the times in it, and one more at each side", () => {
   const series = new Series(2);
   for (let i = 0; i < 10; ++i) series.push(100 + i, [i, -i]);
-  assert.deepEqual(series.window(103, 105, [1], 100), [
-    [102, 103, 104, 105],
-    [-2, -3, -4, -5],
-  ]);
-});
-
-test("thinned, the extremes stay", () => {
-  const series = new Series(1);
-  for (let i = 0; i < 5000; ++i)
-    series.push(1000 + i / 100, [i === 1234 ? 9 : i === 4321 ? -7 : 0]);
-  const [times, values] = series.window(0, 2000, [0], 200);
-  assert.ok(times!.length <= 200);
-  assert.equal(Math.max(...values!), 9);
-  assert.equal(Math.min(...values!), -7);
+  assert.deepEqual(
+    series.window(103, 105, [1]).map((column) => [...column]),
+    [
+      [102, 103, 104, 105],
+      [-2, -3, -4, -5],
+    ],
+  );
 });
 
 test("memory is bounded, and the newest stay", () => {
@@ -27,10 +20,13 @@ test("memory is bounded, and the newest stay", () => {
   for (let i = 0; i < 20_000; ++i) series.push(i / 100, [i]);
   assert.ok(series.length <= 4096);
   assert.equal(series.lastTime, 199.99);
-  assert.deepEqual(series.window(199.99, 300, [0], 10), [
-    [199.98, 199.99],
-    [19_998, 19_999],
-  ]);
+  assert.deepEqual(
+    series.window(199.99, 300, [0]).map((column) => [...column]),
+    [
+      [199.98, 199.99],
+      [19_998, 19_999],
+    ],
+  );
 });
 
 test("what is older than ten minutes goes", () => {

@@ -44,37 +44,12 @@ export class Series {
     this.count += 1;
   }
 
-  /**
-   * The times from `from` to `to` [s] and the numbers of a column at them, thinned to about `most`
-   * times: of each stretch the least and the greatest number.
-   */
-  window(from: number, to: number, columns: readonly number[], most: number): number[][] {
+  /** The times from `from` to `to` [s], and one more at each side, and columns at them. */
+  window(from: number, to: number, columns: readonly number[]): Float64Array[] {
     const first = Math.max(0, this.indexOf(from) - 1);
     const last = Math.min(this.count, this.indexOf(to) + 1);
-    const step = Math.max(1, Math.ceil((2 * (last - first)) / most));
-    const times: number[] = [];
-    const rows: number[][] = columns.map(() => []);
-    for (let start = first; start < last; start += step) {
-      const end = Math.min(last, start + step);
-      times.push(this.times[start]!);
-      if (step > 1) times.push(this.times[end - 1]!);
-      columns.forEach((which, i) => {
-        const column = this.columns[which]!;
-        if (step === 1) {
-          rows[i]!.push(column[start]!);
-          return;
-        }
-        let least = start;
-        let greatest = start;
-        for (let at = start; at < end; ++at) {
-          if (column[at]! < column[least]!) least = at;
-          if (column[at]! > column[greatest]!) greatest = at;
-        }
-        const [a, b] = least < greatest ? [least, greatest] : [greatest, least];
-        rows[i]!.push(column[a]!, column[b]!);
-      });
-    }
-    return [times, ...rows];
+    const shown = [this.times, ...columns.map((which) => this.columns[which]!)];
+    return shown.map((column) => column.slice(first, last));
   }
 
   /** Index of the first time that is not before `time`. */
