@@ -33,6 +33,7 @@ export function svg<K extends keyof SVGElementTagNameMap>(
   return complete(element, classes, parts);
 }
 
+/** A button that does something when it is pressed. */
 export function button(
   text: Children,
   onclick: (event: MouseEvent) => void,
@@ -65,18 +66,15 @@ export function setText(element: Element, text: string): void {
 function complete<E extends Element>(element: E, classes: readonly string[], parts: Parts): E {
   if (classes.length > 0) element.setAttribute("class", classes.join(" "));
   const [first, ...others] = parts;
-  if (!isAttributes(first)) {
-    fill(element, ...(parts as Children[]));
-    return element;
-  }
-  for (const [name, value] of Object.entries(first)) {
+  const [attributes, children] = isAttributes(first) ? [first, others] : [{}, parts];
+  for (const [name, value] of Object.entries(attributes)) {
     if (typeof value === "function") {
       element.addEventListener(name.slice(2), value as EventListener);
     } else if (value !== false && value !== null && value !== undefined) {
       element.setAttribute(name, value === true ? "" : String(value));
     }
   }
-  fill(element, ...(others as Children[]));
+  fill(element, ...(children as Children[]));
   return element;
 }
 
