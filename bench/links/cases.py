@@ -178,9 +178,7 @@ CASES = [
         environment=_cyclone(),
     ),
     _ddsperf(
-        "ddsperf",
-        "listener",
-        "Cyclone's own program: reliable, KEEP_ALL, batches, UDP on loopback",
+        "ddsperf", "listener", "Cyclone's own program: reliable, KEEP_ALL, batches, UDP on loopback"
     ),
     _ddsperf("ddsperf_waitset", "waitset", "the same, taken by another thread than receives"),
     _peer(

@@ -193,11 +193,7 @@ function drawNode(name: string, box: Box, open: () => void, reached: () => void)
   const left = -box.width / 2;
   const top = -box.height / 2;
   const detail = svg("text.node-detail", { x: left + 10, y: top + 37 });
-  const mode = svg("text.node-mode", {
-    x: -left - 8,
-    y: top - 3,
-    "text-anchor": "end",
-  });
+  const mode = svg("text.node-mode", { x: -left - 8, y: top - 3, "text-anchor": "end" });
   const load = svg("rect.node-load", { x: left + 2, y: -top - 5, height: 3, width: 0 });
   const group = svg(
     "g.node",
@@ -211,13 +207,7 @@ function drawNode(name: string, box: Box, open: () => void, reached: () => void)
     },
     [
       title,
-      svg("rect.node-box", {
-        x: left,
-        y: top,
-        width: box.width,
-        height: box.height,
-        rx: 6,
-      }),
+      svg("rect.node-box", { x: left, y: top, width: box.width, height: box.height, rx: 6 }),
       svg("text.node-name", { x: left + 10, y: top + 20 }, name),
       detail,
       mode,

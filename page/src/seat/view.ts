@@ -13,10 +13,7 @@ const widest = 1280;
 const waiting = "Waiting for the first image…";
 
 export class SeatView {
-  readonly canvas = h("canvas.seat-image", {
-    role: "img",
-    "aria-label": "What the robot sees",
-  });
+  readonly canvas = h("canvas.seat-image", { role: "img", "aria-label": "What the robot sees" });
   private readonly problem = h("p.seat-problem", { role: "status" });
   private readonly way: HTMLSelectElement;
   private readonly source: HTMLSelectElement;

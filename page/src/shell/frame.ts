@@ -52,9 +52,7 @@ export class Frame {
       ...host,
       setTitle: (t) => this.setTitle(t),
       tools: this.tools,
-    }) ?? {
-      element: h("p.empty.muted", `There is no panel “${place.args.kind}”.`),
-    };
+    }) ?? { element: h("p.empty.muted", `There is no panel “${place.args.kind}”.`) };
     body.append(this.panel.element);
   }
 

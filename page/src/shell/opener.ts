@@ -70,10 +70,7 @@ export function opener(server: Server, open: (args: PanelArgs) => void): HTMLDia
   });
   const dialog = h(
     "dialog.opener.box",
-    {
-      "aria-label": "Open a panel",
-      onclick: (event) => event.target === dialog && dialog.close(),
-    },
+    { "aria-label": "Open a panel", onclick: (event) => event.target === dialog && dialog.close() },
     h("div.opener-body.stack", [search, list]),
   );
   dialog.addEventListener("toggle", () => {

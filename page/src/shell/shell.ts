@@ -30,10 +30,7 @@ export class Shell {
     onclick: () => this.openPanel({ kind: "recordings" }),
   });
   private readonly trouble = h("div.trouble.row.wrap", { role: "alert", hidden: true });
-  private readonly status = h("div.status-line.muted", {
-    role: "status",
-    "aria-live": "polite",
-  });
+  private readonly status = h("div.status-line.muted", { role: "status", "aria-live": "polite" });
   private silence = 0; // the timer that clears it
   private readonly board: Board;
 

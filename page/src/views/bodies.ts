@@ -52,14 +52,10 @@ export function eyeBody(): Object3D {
     [x, y, z],
     [-x, y, z],
   ];
-  const lines = corners.flatMap((corner, i) => [
-    0,
-    0,
-    0,
-    ...corner,
-    ...corner,
-    ...corners[(i + 1) % 4]!,
-  ]);
+  const lines = corners.flatMap((corner, i) => {
+    const side = [...corner, ...corners[(i + 1) % 4]!];
+    return [0, 0, 0, ...corner, ...side];
+  });
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(Float32Array.from(lines), 3));
   const pyramid = new LineSegments(geometry, new LineBasicMaterial({ color: 0x6aa0d8 }));

@@ -26,7 +26,13 @@ export interface Layer {
   /** The type of its messages. */
   readonly type: Header["type"];
   show(message: Message): void;
-  remove(): void;
+  /** What takes memory of the GPU. */
+  readonly owned: readonly { dispose(): void }[];
+}
+
+export function removeLayer({ object, owned }: Layer): void {
+  object.removeFromParent();
+  for (const each of owned) each.dispose();
 }
 
 /** What shows messages of a header; undefined: nothing does. */
@@ -43,6 +49,7 @@ class CloudLayer implements Layer {
   private readonly material = new PointsMaterial({ size: 0.012, vertexColors: true });
   readonly object = new Points(this.geometry, this.material);
   readonly type = "vector_field";
+  readonly owned = [this.geometry, this.material];
 
   show(message: Message): void {
     const { components } = message.header;
@@ -60,12 +67,6 @@ class CloudLayer implements Layer {
     colours.needsUpdate = true;
     this.geometry.setDrawRange(0, used);
     this.object.frustumCulled = false;
-  }
-
-  remove(): void {
-    this.object.removeFromParent();
-    this.geometry.dispose();
-    this.material.dispose();
   }
 }
 
@@ -99,6 +100,7 @@ class PositionsLayer implements Layer {
   private readonly material = new MeshLambertMaterial({ color: colour("series-2") });
   private readonly trail = new BufferGeometry();
   private readonly trailMaterial = new LineBasicMaterial({ color: colour("series-2") });
+  readonly owned = [this.ball, this.material, this.trail, this.trailMaterial];
   private readonly way: number[] = [];
   private readonly balls: Mesh[] = [];
 
@@ -127,20 +129,15 @@ class PositionsLayer implements Layer {
     if (this.way.length > 3 * trailLength) this.way.splice(0, 3);
     this.trail.setAttribute("position", new BufferAttribute(Float32Array.from(this.way), 3));
   }
-
-  remove(): void {
-    this.object.removeFromParent();
-    for (const each of [this.ball, this.material, this.trail, this.trailMaterial]) each.dispose();
-  }
 }
 
 /** A rotation or a pose as three axes. */
 class PoseLayer implements Layer {
   readonly object = new Group();
-  private readonly axes = new AxesHelper(0.3);
+  readonly owned = [new AxesHelper(0.3)];
 
   constructor(readonly type: "rotation" | "transformation") {
-    this.object.add(this.axes);
+    this.object.add(...this.owned);
   }
 
   show(message: Message): void {
@@ -148,11 +145,6 @@ class PoseLayer implements Layer {
     if (numbers.length === 0) return;
     if (this.type === "transformation") setMatrix(this.object, message);
     else this.object.rotation.set(numbers[0]!, numbers[1]!, numbers[2]!, "ZYX");
-  }
-
-  remove(): void {
-    this.object.removeFromParent();
-    this.axes.dispose();
   }
 }
 

@@ -18,7 +18,7 @@ import { button, h } from "../shell/h";
 import { colour, onTheme } from "../shell/theme";
 import { eyeBody, floor, headBody, labelOf } from "./bodies";
 import { framesOf, type Frame } from "./frames";
-import { layerOf, setMatrix, type Layer } from "./layers";
+import { layerOf, removeLayer, setMatrix, type Layer } from "./layers";
 import { Sight } from "./room";
 import type { Source, Surroundings, View, ViewHost } from "./view";
 
@@ -90,7 +90,7 @@ export class Scene {
   show(name: string, message: Message, sent: Header): void {
     let layer = this.layers.get(name);
     if (layer?.type !== message.header.type) {
-      layer?.remove();
+      if (layer) removeLayer(layer);
       layer = layerOf(message.header);
       if (!layer) return;
       this.layers.set(name, layer);
@@ -102,7 +102,8 @@ export class Scene {
   }
 
   remove(name: string): void {
-    this.layers.get(name)?.remove();
+    const layer = this.layers.get(name);
+    if (layer) removeLayer(layer);
     this.layers.delete(name);
     this.draw();
   }
@@ -110,7 +111,7 @@ export class Scene {
   close(): void {
     this.isClosed = true;
     for (const source of this.sources) source.close();
-    for (const layer of this.layers.values()) layer.remove();
+    for (const layer of this.layers.values()) removeLayer(layer);
     for (const end of this.ends) end();
     this.controls.dispose();
     this.renderer.dispose();
