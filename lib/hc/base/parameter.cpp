@@ -6,14 +6,10 @@
 #include <charconv>
 #include <cmath>
 
+#include <hc/base/text.h>
+
 namespace hc {
 namespace {
-
-template <typename T>
-bool read_all(std::string_view text, T& value) {
-  auto [stop, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return status == std::errc() && stop == text.data() + text.size() && !text.empty();
-}
 
 std::string number_text(double value) {
   constexpr double kExact = 1e15;
@@ -74,7 +70,7 @@ Status ParameterState::set(std::string_view given) {
   }
   std::int64_t integer = 0;
   bool whole = std::holds_alternative<std::int64_t>(value);
-  if (whole ? !read_all(given, integer) : !read_all(given, number))
+  if (whole ? !read_number(given, integer) : !read_number(given, number))
     return refuse(whole ? "a whole number" : "a number");
   if (whole) number = static_cast<double>(integer);
   const bool is_within = number >= options.min && number <= options.max;

@@ -2,7 +2,8 @@
 #include <hc/base/uri.h>
 
 #include <algorithm>
-#include <charconv>
+
+#include <hc/base/text.h>
 
 namespace hc {
 namespace {
@@ -22,19 +23,18 @@ Error usage(std::string_view what, std::string_view text) {
 }
 
 Status parse_options(std::string_view text, Uri& uri) {
-  while (true) {
-    auto end = std::min(text.find('&'), text.size());
-    std::string_view pair = text.substr(0, end);
-    auto equals = pair.find('=');
-    if (equals == 0 || equals == std::string_view::npos)
+  for (bool is_more = true; is_more;) {
+    is_more = text.find('&') != std::string_view::npos;
+    const auto pair = take_until(text, '&');
+    auto value = pair;
+    const std::string key(take_until(value, '='));
+    if (key.empty() || key.size() == pair.size())
       return usage("an option of a URI is KEY=VALUE", pair);
-    std::string key{pair.substr(0, equals)};
     for (const auto& option : uri.options)
       if (option.first == key) return usage("option of a URI given twice", key);
-    uri.options.emplace_back(std::move(key), pair.substr(equals + 1));
-    if (end == text.size()) return {};
-    text.remove_prefix(end + 1);
+    uri.options.emplace_back(key, value);
   }
+  return {};
 }
 
 }  // namespace
@@ -96,9 +96,7 @@ Result<std::int64_t> number_option(const Uri& uri, std::string_view key, std::in
     digits.remove_suffix(1);
   }
   std::int64_t value = 0;
-  const char* end = digits.data() + digits.size();
-  auto [stop, status] = std::from_chars(digits.data(), end, value);
-  if (stop != end || status != std::errc() || value < range.least || value > range.most >> shift)
+  if (!read_number(digits, value) || value < range.least || value > range.most >> shift)
     return Error{Code::Invalid, "option " + std::string(key) + " is a whole number from " +
                                     std::to_string(range.least) + " to " +
                                     std::to_string(range.most) +
@@ -123,10 +121,7 @@ Result<HostPort> parse_host_port(std::string_view text) {
     if (result.host.find(':') != std::string::npos)
       return usage("an IPv6 address is written in brackets", text);
   }
-  const char* end = port.data() + port.size();
-  auto [stop, status] = std::from_chars(port.data(), end, result.port);
-  if (port.empty() || status != std::errc() || stop != end)
-    return usage("a port is a number from 0 to 65535", text);
+  if (!read_number(port, result.port)) return usage("a port is a number from 0 to 65535", text);
   return result;
 }
 

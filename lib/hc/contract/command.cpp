@@ -4,18 +4,13 @@
 #include <algorithm>
 #include <array>
 
+#include <hc/base/text.h>
+
 namespace hc {
 namespace {
 
 constexpr std::array<std::string_view, 6> kVerbs = {"set",    "link",  "unlink",
                                                     "finish", "route", "wall_offset"};
-
-/// The part of `text` before `mark`, which is taken off it with the mark.
-std::string_view take_until(std::string_view& text, char mark) {
-  const auto part = text.substr(0, text.find(mark));
-  text.remove_prefix(std::min(text.size(), part.size() + 1));
-  return part;
-}
 
 bool has_end(ModuleCommand::Verb verb) {
   return verb == ModuleCommand::Verb::Link || verb == ModuleCommand::Verb::Unlink;

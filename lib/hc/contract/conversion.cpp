@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/contract/conversion.h>
-#include <hc/mtp/names.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+
+#include <hc/base/text.h>
+#include <hc/mtp/names.h>
 
 namespace hc {
 namespace {
@@ -16,10 +17,7 @@ constexpr int kBestQuality = 100;
 template <typename Number>
 bool read(const Uri& uri, std::string_view key, Number min, Number max, Number& number) {
   const auto text = uri.option(key, "");
-  if (text.empty()) return true;
-  const char* end = text.data() + text.size();
-  const auto [stop, status] = std::from_chars(text.data(), end, number);
-  return status == std::errc() && stop == end && number >= min && number <= max;
+  return text.empty() || (read_number(text, number) && number >= min && number <= max);
 }
 
 Error invalid(std::string what) {

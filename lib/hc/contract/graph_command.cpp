@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include <hc/base/suggestion.h>
+#include <hc/base/text.h>
 #include <hc/mtp/rows.h>
 
 namespace hc {
@@ -37,11 +38,8 @@ constexpr std::array<Form, 9> kForms = {{
 
 std::vector<std::string> split(std::string_view text) {
   std::vector<std::string> words;
-  while (!text.empty()) {
-    auto word = text.substr(0, text.find(' '));
-    text.remove_prefix(std::min(text.size(), word.size() + 1));
-    if (!word.empty()) words.emplace_back(word);
-  }
+  while (!text.empty())
+    if (const auto word = take_until(text, ' '); !word.empty()) words.emplace_back(word);
   return words;
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/contract/mode_names.h>
 
-#include <algorithm>
-#include <charconv>
+#include <hc/base/text.h>
 
 namespace hc {
 
@@ -18,14 +17,11 @@ Result<std::map<std::int32_t, std::string>> parse_mode_names(std::string_view te
   std::map<std::int32_t, std::string> names;
   for (bool is_more = !text.empty(); is_more;) {
     is_more = text.find(',') != std::string_view::npos;
-    const auto word = text.substr(0, text.find(','));
-    text.remove_prefix(std::min(text.size(), word.size() + 1));
-    const auto name = word.substr(0, word.find('='));
-    const char *begin = word.data() + std::min(word.size(), name.size() + 1),
-               *end = word.data() + word.size();
+    const auto word = take_until(text, ',');
+    auto value = word;
+    const auto name = take_until(value, '=');
     std::int32_t number = 0;
-    const auto [after, error] = std::from_chars(begin, end, number);
-    if (name.empty() || error != std::errc() || after != end || number < 1 ||
+    if (name.empty() || !read_number(value, number) || number < 1 ||
         !names.emplace(number, name).second)
       return Error{Code::Invalid, std::string(parameter) + ": \"" + std::string(word) +
                                       "\" is not NAME=NUMBER with a number of its own, as in "

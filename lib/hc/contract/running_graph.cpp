@@ -2,7 +2,8 @@
 #include <hc/contract/running_graph.h>
 
 #include <algorithm>
-#include <charconv>
+
+#include <hc/base/text.h>
 
 namespace hc {
 
@@ -12,14 +13,11 @@ bool is_of_graph_name(char c) {
 }
 
 std::optional<RunningGraph> parse_running_graph(std::string_view text) {
-  const auto dot = text.find('.');
-  if (dot == std::string_view::npos || dot == 0 || dot > kMaxGraphName) return std::nullopt;
   RunningGraph graph;
-  graph.name = text.substr(0, dot);
-  if (!std::ranges::all_of(graph.name, is_of_graph_name)) return std::nullopt;
-  const char *begin = text.data() + dot + 1, *end = text.data() + text.size();
-  const auto [stop, status] = std::from_chars(begin, end, graph.process);
-  if (status != std::errc() || stop != end || graph.process <= 0) return std::nullopt;
+  graph.name = take_until(text, '.');
+  const bool is_named = !graph.name.empty() && graph.name.size() <= kMaxGraphName &&
+                        std::ranges::all_of(graph.name, is_of_graph_name);
+  if (!is_named || !read_number(text, graph.process) || graph.process <= 0) return std::nullopt;
   return graph;
 }
 

@@ -2,7 +2,8 @@
 #include <hc/contract/stops.h>
 
 #include <algorithm>
-#include <charconv>
+
+#include <hc/base/text.h>
 
 namespace hc {
 
@@ -21,15 +22,13 @@ Result<Stops> parse_stops(std::string_view text) {
   Stops stops;
   for (bool is_more = !text.empty(); is_more;) {
     is_more = text.find(',') != std::string_view::npos;
-    const auto word = text.substr(0, text.find(','));
-    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    const auto word = take_until(text, ',');
+    auto value = word;
     std::int32_t source = 0;
-    const auto [after, error] = std::from_chars(word.data(), word.data() + word.size(), source);
-    const std::string_view rest(after, static_cast<std::size_t>(word.data() + word.size() - after));
-    if (error != std::errc() || (rest != "=0" && rest != "=1"))
+    if (!read_number(take_until(value, '='), source) || (value != "0" && value != "1"))
       return Error{Code::Invalid, std::string(kStops) + ": \"" + std::string(word) +
                                       "\" is not SRC=0 or SRC=1, as in 12=1,14=0"};
-    stops[source] = rest == "=1";
+    stops[source] = value == "1";
   }
   return stops;
 }

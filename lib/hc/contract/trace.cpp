@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <optional>
 #include <string_view>
 
+#include <hc/base/text.h>
 #include <hc/mtp/rows.h>
 
 namespace hc {
@@ -14,30 +14,17 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kWhats = {"took", "began", "ended", "sent", "lost"};
 
-std::string_view take_word(std::string_view& row) {
-  const auto word = row.substr(0, row.find(' '));
-  row.remove_prefix(std::min(row.size(), word.size() + 1));
-  return word;
-}
-
-template <typename Number>
-bool take_number(std::string_view& row, Number& number) {
-  const auto word = take_word(row);
-  const char* end = word.data() + word.size();
-  const auto [stop, status] = std::from_chars(word.data(), end, number);
-  return status == std::errc() && stop == end;
-}
-
 std::optional<TraceEvent> parse_event(std::string_view row) {
   TraceEvent event;
-  const auto what = std::find(kWhats.begin(), kWhats.end(), take_word(row));
+  const auto what = std::find(kWhats.begin(), kWhats.end(), take_until(row, ' '));
   if (what == kWhats.end()) return std::nullopt;
   event.what = static_cast<TraceEvent::What>(what - kWhats.begin());
-  event.port = take_word(row);
+  event.port = take_until(row, ' ');
   if (event.port == "-") event.port.clear();
-  const bool is_whole = take_number(row, event.src) && take_number(row, event.seq) &&
-                        take_number(row, event.time) && take_number(row, event.moment);
-  const bool is_numbered = row.empty() || take_number(row, event.number);
+  auto take = [&](auto& number) { return read_number(take_until(row, ' '), number); };
+  const bool is_whole =
+      take(event.src) && take(event.seq) && take(event.time) && take(event.moment);
+  const bool is_numbered = row.empty() || take(event.number);
   return is_whole && is_numbered && row.empty() ? std::optional(event) : std::nullopt;
 }
 

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
 #include <string_view>
 #include <tuple>
 
 #include <hc/base/suggestion.h>
+#include <hc/base/text.h>
 #include <hc/contract/trace.h>
 #include <hc/mtp/names.h>
 
@@ -101,10 +101,8 @@ class Parser {
   Status modes(const std::string& value) {
     const auto wrong = "--modes needs numbers from 1 on, not \"" + value + "\"";
     for (std::string_view rest = value; !rest.empty();) {
-      auto word = std::string(rest.substr(0, rest.find(',')));
-      rest.remove_prefix(std::min(rest.size(), word.size() + 1));
       auto& number = arguments_.focus.modes.emplace_back();
-      if (auto read = read_number(word, number, wrong); !read || number < 1) return invalid(wrong);
+      if (!hc::read_number(take_until(rest, ','), number) || number < 1) return invalid(wrong);
     }
     return {};
   }
@@ -173,9 +171,7 @@ class Parser {
 
   template <typename Number>
   static Status read_number(const std::string& text, Number& number, const std::string& wrong) {
-    const char* end = text.data() + text.size();
-    auto [stop, status] = std::from_chars(text.data(), end, number);
-    return status == std::errc() && stop == end ? Status() : invalid(wrong);
+    return hc::read_number(text, number) ? Status() : invalid(wrong);
   }
 
   /// Words without a name go to the positional parameters, in the order of declaration.
@@ -321,8 +317,8 @@ Result<PortLink> parse_port_link(const Module& module, bool is_input, const std:
 }
 
 Result<std::pair<std::string, Route>> parse_link_route(std::string_view text) {
-  auto link = text.substr(0, text.find(' '));
-  auto route = parse_route(text.substr(std::min(text.size(), link.size() + 1)));
+  const auto link = take_until(text, ' ');
+  auto route = parse_route(text);
   if (!route) return route.error();
   return std::pair(std::string(link), std::move(*route));
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A module's loop: the commands of who runs it, and the reports to them.
+
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <utility>
 
+#include <hc/base/text.h>
 #include <hc/contract/command.h>
 #include <hc/module/loop.h>
 #include <hc/mtp/rows.h>
@@ -130,10 +131,7 @@ Status Module::Loop::carry_out(const std::string& row) {
     }
     case ModuleCommand::Verb::WallOffset: {
       std::int64_t wall_offset = 0;
-      const auto& text = command->target;
-      const auto* end = text.data() + text.size();
-      const auto [stop, status] = std::from_chars(text.data(), end, wall_offset);
-      if (status != std::errc() || stop != end)
+      if (!read_number(command->target, wall_offset))
         return Error{Code::Invalid, "wall_offset needs a number of nanoseconds"};
       internal::distant_wall.set(wall_offset, module_.clock_.monotonic());
       wall_offset_ = module_.clock_.wall() - module_.clock_.monotonic().count();
