@@ -153,7 +153,7 @@ void Stream::serve_alike(const Wanted& wanted, const Seats& seats) {
   if (made) made = scaled(*made, wanted.width);
   const bool is_image = made && is_picture(made->header);
   if (is_image && wanted.form == Form::Jpeg && made->header.info.components != 4)
-    made = hc::compress(*made, hc::Encoding::Jpeg, {.jpeg_quality = kQuality});
+    made = hc::compress(*made, hc::Encoding::Jpeg, kQuality);
   Video* video = nullptr;
   bool is_key = true;
   if (is_image && wanted.form == Form::Vp8) {

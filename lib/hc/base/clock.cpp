@@ -9,39 +9,23 @@ namespace {
 constexpr std::int64_t kFar = 100'000'000;  // [ns]
 constexpr std::int64_t kSlow = 1000;        // the clock's speed changes by one part of it
 
-/// What is left to make up for, `passed` after it was `behind` [ns].
-std::int64_t still_behind(std::int64_t behind, std::int64_t passed) {
-  const std::int64_t made_up = std::max<std::int64_t>(0, passed) / kSlow;
-  return behind > 0 ? std::max<std::int64_t>(0, behind - made_up)
-                    : std::min<std::int64_t>(0, behind + made_up);
-}
-
 }  // namespace
 
 DistantWall distant_wall;
 
 void DistantWall::set(std::int64_t to_wall, MonotonicTime now) {
-  const std::int64_t before = is_set() ? wall(now) - now.count() : to_wall;
-  const std::int64_t behind = to_wall - before;
-  const auto version = version_.load(std::memory_order_relaxed);
-  version_.store(version + 1, std::memory_order_relaxed);
-  std::atomic_thread_fence(std::memory_order_release);
-  to_wall_.store(to_wall, std::memory_order_relaxed);
-  behind_.store(std::abs(behind) > kFar ? 0 : behind, std::memory_order_relaxed);
-  since_.store(now.count(), std::memory_order_relaxed);
-  version_.store(version + 2, std::memory_order_release);
+  const std::int64_t behind = is_set() ? now.count() + to_wall - wall(now) : 0;
+  const std::lock_guard lock(mutex_);
+  to_wall_ = to_wall;
+  behind_ = std::abs(behind) > kFar ? 0 : behind;
+  since_ = now;
+  is_set_ = true;
 }
 
 std::int64_t DistantWall::wall(MonotonicTime now) const {
-  while (true) {
-    const auto version = version_.load(std::memory_order_acquire);
-    const auto to_wall = to_wall_.load(std::memory_order_relaxed),
-               behind = behind_.load(std::memory_order_relaxed),
-               since = since_.load(std::memory_order_relaxed);
-    std::atomic_thread_fence(std::memory_order_acquire);
-    if (version % 2 == 0 && version_.load(std::memory_order_relaxed) == version)
-      return now.count() + to_wall - still_behind(behind, now.count() - since);
-  }
+  const std::lock_guard lock(mutex_);
+  const auto made_up = std::max<std::int64_t>(0, (now - since_).count()) / kSlow;
+  return now.count() + to_wall_ - behind_ + std::clamp(behind_, -made_up, made_up);
 }
 
 }  // namespace hc::internal

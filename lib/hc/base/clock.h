@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <mutex>
 
 namespace hc {
 
@@ -47,12 +48,14 @@ class DistantWall {
   /// From the first call on the wall clock is the monotonic clock plus `to_wall` [ns]. What it is
   /// off by then it makes up for at 1 ms per second, or at once where that is more than 0.1 s.
   void set(std::int64_t to_wall, MonotonicTime now);
-  [[nodiscard]] bool is_set() const { return version_.load(std::memory_order_relaxed) != 0; }
+  [[nodiscard]] bool is_set() const { return is_set_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::int64_t wall(MonotonicTime now) const;
 
  private:
-  std::atomic<std::uint32_t> version_ = 0;  // odd while the rest changes
-  std::atomic<std::int64_t> to_wall_ = 0, behind_ = 0, since_ = 0;
+  std::atomic<bool> is_set_ = false;
+  mutable std::mutex mutex_;  // of what follows
+  std::int64_t to_wall_ = 0, behind_ = 0;
+  MonotonicTime since_{0};
 };
 
 /// The wall clock that SystemClock uses, where it is set (--wall_offset).

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include <hc/base/check.h>
+#include <hc/base/text.h>
 
 namespace hc::internal {
 namespace {
@@ -136,8 +137,7 @@ namespace hc {
 
 std::string hexadecimal(std::span<const unsigned char> bytes) {
   std::string text;
-  for (const unsigned byte : bytes)
-    for (const unsigned digit : {byte / 16, byte % 16}) text += "0123456789abcdef"[digit];
+  for (const unsigned char byte : bytes) text += hexadecimal_byte(static_cast<char>(byte));
   return text;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/base/json_string.h>
 
+#include <hc/base/text.h>
+
 namespace hc {
 
 // Source: The Unicode Standard, table 3-7.
@@ -24,7 +26,7 @@ std::size_t utf8_length(std::string_view text) {
 }
 
 void append_json_string(std::string_view text, std::string& json) {
-  constexpr std::string_view kHex = "0123456789abcdef";
+  constexpr std::string_view kEscaped = "\"\\\n\r\t", kLetters = "\"\\nrt";
   json += '"';
   while (!text.empty()) {
     std::size_t length = utf8_length(text);
@@ -32,19 +34,10 @@ void append_json_string(std::string_view text, std::string& json) {
     if (length == 0) {
       json += "\xef\xbf\xbd";  // U+FFFD
       length = 1;
-    } else if (c == '"' || c == '\\') {
-      json += '\\';
-      json += c;
-    } else if (c == '\n') {
-      json += "\\n";
-    } else if (c == '\r') {
-      json += "\\r";
-    } else if (c == '\t') {
-      json += "\\t";
+    } else if (const auto at = kEscaped.find(c); at != std::string_view::npos) {
+      json.append("\\").append(1, kLetters[at]);
     } else if (static_cast<unsigned char>(c) < 0x20) {
-      json += "\\u00";
-      json += kHex[static_cast<unsigned char>(c) >> 4];
-      json += kHex[static_cast<unsigned char>(c) & 15];
+      json.append("\\u00").append(hexadecimal_byte(c));
     } else {
       json += text.substr(0, length);
     }

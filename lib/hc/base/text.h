@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Texts taken apart: words between marks, and numbers. Pure.
+// Texts taken apart: words between marks, and numbers; and the digits of bytes. Pure.
 
 #include <algorithm>
 #include <charconv>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -25,6 +26,13 @@ bool read_number(std::string_view text, Number& number) {
   if (stop != end || status != std::errc()) return false;
   number = read;
   return true;
+}
+
+/// The two lower-case hexadecimal digits of a byte.
+inline std::string hexadecimal_byte(char byte) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  const auto value = static_cast<unsigned char>(byte);
+  return {kDigits[value >> 4], kDigits[value & 15]};
 }
 
 }  // namespace hc

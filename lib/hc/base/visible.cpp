@@ -5,6 +5,7 @@
 #include <array>
 
 #include <hc/base/json_string.h>
+#include <hc/base/text.h>
 
 namespace hc {
 namespace {
@@ -31,7 +32,6 @@ bool is_control(std::string_view character) {
 }  // namespace
 
 std::string visible(std::string_view line) {
-  constexpr std::string_view kHex = "0123456789abcdef";
   std::string text;
   text.reserve(line.size());
   while (!line.empty()) {
@@ -42,10 +42,7 @@ std::string visible(std::string_view line) {
       text += character;
       continue;
     }
-    for (const char c : character) {
-      const auto byte = static_cast<unsigned char>(c);
-      text.append("\\x").append({kHex[byte >> 4], kHex[byte & 15]});
-    }
+    for (const char c : character) text.append("\\x").append(hexadecimal_byte(c));
   }
   return text;
 }

@@ -19,7 +19,7 @@ Result<Message> expand_jpeg(const Message& message);
 /// The message compressed. `message` is plain, and of a kind that the encoding is for (R21).
 ///
 /// Errors: Unsupported (this build lacks the library).
-Result<Message> compress_zstd(const Message& message, int level);
+Result<Message> compress_zstd(const Message& message);
 Result<Message> compress_jpeg(const Message& message, int quality);
 
 /// "R36 elements: …, at byte N"

@@ -48,8 +48,7 @@ Result<Message> expand(const Message& message) {
   return internal::expand_jpeg(message);
 }
 
-Result<Message> compress(const Message& message, Encoding encoding,
-                         const CompressOptions& options) {
+Result<Message> compress(const Message& message, Encoding encoding, int jpeg_quality) {
   if (message.header.info.encoding == encoding) return message;
   auto plain = expand(message);
   if (!plain) return plain.error();
@@ -61,11 +60,11 @@ Result<Message> compress(const Message& message, Encoding encoding,
     case Encoding::Binary:
       return plain;
     case Encoding::Zstd:
-      return internal::compress_zstd(*plain, options.zstd_level);
+      return internal::compress_zstd(*plain);
     case Encoding::Jpeg:
       break;
   }
-  return internal::compress_jpeg(*plain, options.jpeg_quality);
+  return internal::compress_jpeg(*plain, jpeg_quality);
 }
 
 }  // namespace hc

@@ -17,11 +17,8 @@ namespace hc {
 /// Cost: decompression; allocates what the header promises, and no more whatever the bytes hold.
 Result<Message> expand(const Message& message);
 
-/// How hard compress() tries.
-struct CompressOptions {
-  int zstd_level = 1;     ///< 1 (fast) … 19 (small)
-  int jpeg_quality = 90;  ///< 1 … 100; from 90 on, colour keeps its full resolution
-};
+/// Of JPEG, unless another is given: 1 … 100; from 90 on, colour keeps its full resolution.
+inline constexpr int kJpegQuality = 90;
 
 /// The message in another encoding; the inverse of expand(), but for what JPEG loses.
 ///
@@ -29,6 +26,6 @@ struct CompressOptions {
 /// Malformed, as expand(). Cost: compression and one allocation; nothing when the encoding is the
 /// message's own already.
 Result<Message> compress(const Message& message, Encoding encoding,
-                         const CompressOptions& options = {});
+                         int jpeg_quality = kJpegQuality);
 
 }  // namespace hc

@@ -6,7 +6,7 @@ namespace hc::internal {
 Result<Message> expand_zstd(const Message&) {
   return no_codec("zstd", "libzstd-dev");
 }
-Result<Message> compress_zstd(const Message&, int) {
+Result<Message> compress_zstd(const Message&) {
   return no_codec("zstd", "libzstd-dev");
 }
 

@@ -49,11 +49,12 @@ Result<Message> expand_zstd(const Message& message) {
   return plain_message(message, bytes);
 }
 
-Result<Message> compress_zstd(const Message& message, int level) {
+Result<Message> compress_zstd(const Message& message) {
+  constexpr int kFast = 1;  // level, of 1 (fast) to 19 (small)
   std::size_t bound = ZSTD_compressBound(message.elements.size());
   SharedBytes bytes = allocate_bytes(bound);
   std::size_t size =
-      ZSTD_compress(bytes.get(), bound, message.elements.data(), message.elements.size(), level);
+      ZSTD_compress(bytes.get(), bound, message.elements.data(), message.elements.size(), kFast);
   HC_CHECK(ZSTD_isError(size) == 0, ZSTD_getErrorName(size));
   return Message{message.header, {bytes.get(), size}, bytes, 0};
 }

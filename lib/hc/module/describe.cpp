@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // --help and --describe: what a module says of itself.
-#include <algorithm>
-
+#include <hc/base/format.h>
 #include <hc/link/link.h>
 #include <hc/module/arguments.h>
 
@@ -9,12 +8,7 @@ namespace hc::internal {
 namespace {
 
 std::string line(const std::string& left, const std::string& right) {
-  constexpr std::size_t kColumn = 28;
-  const auto width = static_cast<std::size_t>(std::count_if(left.begin(), left.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;  // a character's first byte in UTF-8
-  }));
-  std::string pad(width + 3 < kColumn ? kColumn - width - 2 : 1, ' ');
-  return "  " + left + pad + right + "\n";
+  return hc::format("  {:<25} {}\n", left, right);
 }
 
 std::string lines(const std::string& title, const std::vector<PortDescription>& ports) {

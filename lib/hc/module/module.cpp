@@ -211,9 +211,7 @@ Message converted(const Message& message, const Conversion& conversion) {
   Header wanted = made.header;
   wanted.info.encoding = *conversion.as;
   if (!check(wanted, {~std::uint64_t{0}})) return made;
-  CompressOptions options;
-  options.jpeg_quality = conversion.quality.value_or(options.jpeg_quality);
-  return value_or_end(compress(made, *conversion.as, options));
+  return value_or_end(compress(made, *conversion.as, conversion.quality.value_or(kJpegQuality)));
 }
 
 /// Sends to a link; false when its reader has left, which ends the link.

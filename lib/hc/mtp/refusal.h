@@ -2,13 +2,13 @@
 #pragma once
 // The text of an error of the protocol: rule, field, what is wrong, where. Internal. Pure.
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include <hc/base/result.h>
+#include <hc/base/text.h>
 
 namespace hc::internal {
 
@@ -25,17 +25,12 @@ inline Error refusal(Code code, int rule, std::string_view field, std::string_vi
 /// not printable.
 inline std::string in_quotes(std::string_view bytes) {
   constexpr std::size_t kShown = 24;
-  constexpr std::string_view kHex = "0123456789abcdef";
   std::string result = "\"";
-  for (char c : bytes.substr(0, std::min(bytes.size(), kShown))) {
-    if (c >= 0x20 && c < 0x7f && c != '"' && c != '\\') {
+  for (char c : bytes.substr(0, kShown)) {
+    if (c >= 0x20 && c < 0x7f && c != '"' && c != '\\')
       result += c;
-    } else {
-      auto value = static_cast<unsigned char>(c);
-      result += "\\x";
-      result += kHex[value >> 4];
-      result += kHex[value & 15];
-    }
+    else
+      result.append("\\x").append(hexadecimal_byte(c));
   }
   return result + (bytes.size() > kShown ? "…\"" : "\"");
 }
