@@ -66,9 +66,7 @@ Status Runner::begin() {
     hosts_ = std::move(*watched);
   }
   if (options_.loader != nullptr && !graph_.files.empty()) {
-    auto files = FileWatch::make(*loop_, [this] { reload(); });
-    if (!files) return files.error();
-    files_ = std::move(*files);
+    files_ = std::make_unique<FileWatch>(*loop_, [this] { reload(); });
     files_->set_files(graph_.files);
   }
   // All listen before one starts: who comes early finds its peers.

@@ -2,55 +2,52 @@
 #pragma once
 // Notices that files are edited. Internal.
 
-#include <sys/inotify.h>
+#include <sys/types.h>
 
-#include <filesystem>
+#include <cstdint>
 #include <functional>
 #include <map>
-#include <memory>
-#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hc/os/loop.h>
 
 namespace hc::internal {
 
-/// Calls when one of some files has been written or taken away, or another put in its place, as
-/// most editors do: so it is their folders that are watched, and those of the links that lead
-/// there. Folders may come and go. What comes in quick succession is one call.
+/// Calls when one of some files has been written or taken away, or another put in its place, and
+/// nothing more happens to them: what comes in quick succession is one call. It looks at them,
+/// since not every file system announces what others do, and they may be reached by links.
 class FileWatch {
  public:
-  /// How long nothing more is to happen before the call.
-  static constexpr std::chrono::milliseconds kQuiet{50};
+  /// How often it looks, and how long nothing more is to happen before the call.
+  static constexpr std::chrono::milliseconds kPeriod{200}, kQuiet{50};
 
-  /// Errors: System.
-  static Result<std::unique_ptr<FileWatch>> make(Loop& loop, std::function<void()> changed);
+  FileWatch(Loop& loop, std::function<void()> changed)
+      : loop_(loop), changed_(std::move(changed)) {}
 
-  /// Watches these, and no others any more.
+  /// Watches these from now on, those that it has watched before from its last call on, and no
+  /// others any more.
   void set_files(const std::vector<std::string>& files);
 
  private:
-  FileWatch(Loop& loop, Descriptor notes, std::function<void()> changed)
-      : loop_(loop), changed_(std::move(changed)), notes_(std::move(notes)) {}
-
-  struct Folder {
-    std::filesystem::path path;
-    std::set<std::string> names;  // in it, that are of interest
+  /// What tells one state of a file from another; all 0: there is none.
+  struct Stamp {
+    dev_t device = 0;
+    ino_t number = 0;
+    off_t size = 0;
+    std::int64_t written = 0, written_ns = 0;
+    bool operator==(const Stamp&) const = default;
   };
+  using Stamps = std::map<std::string, Stamp>;
 
-  void set_watches();
-  void follow(const std::filesystem::path& path, int most);
-  void watch(std::filesystem::path path);
-  [[nodiscard]] bool is_ours(const inotify_event& note, const char* name) const;
-  void read();
+  static Stamp stamp_of(const std::string& file);
+  void look();
 
   Loop& loop_;
   std::function<void()> changed_;
-  Descriptor notes_;  // of inotify
-  std::vector<std::string> files_;
-  std::map<int, Folder> folders_;  // by the number of the watch
-  Loop::Handle watch_, timer_;
+  Stamps known_, seen_;  // at the last call, and at the last look
+  Loop::Handle timer_;
 };
 
 }  // namespace hc::internal
