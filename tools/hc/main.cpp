@@ -14,7 +14,7 @@
 #include <graph/run.h>
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
-#include <hc/os/standard_descriptors.h>
+#include <hc/os/program.h>
 #include <transports/all.h>
 
 #include "common.h"

@@ -14,7 +14,6 @@
 #include <hc/compress/scale.h>
 #include <hc/module/loop.h>
 #include <hc/os/program.h>
-#include <hc/os/standard_descriptors.h>
 
 namespace hc {
 namespace {

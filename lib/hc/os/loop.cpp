@@ -12,15 +12,14 @@ namespace hc::internal {
 constexpr std::uint64_t kTimerId = 0;  // entries have others
 
 Result<std::unique_ptr<Loop>> Loop::make() {
-  auto poll = system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
+  auto poll = open_descriptor("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
   if (!poll) return poll.error();
-  Descriptor owner(*poll);
-  auto timer = system_call("timerfd_create", "", [] {
+  auto timer = open_descriptor("timerfd_create", "", [] {
     return ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
   });
   if (!timer) return timer.error();
-  std::unique_ptr<Loop> loop(new Loop(std::move(owner), Descriptor(*timer)));
-  if (auto added = loop->control(EPOLL_CTL_ADD, *timer, EPOLLIN, kTimerId); !added)
+  std::unique_ptr<Loop> loop(new Loop(std::move(*poll), std::move(*timer)));
+  if (auto added = loop->control(EPOLL_CTL_ADD, loop->timer_.get(), EPOLLIN, kTimerId); !added)
     return added.error();
   return loop;
 }

@@ -20,11 +20,9 @@ using internal::system_error;
 constexpr mode_t kMode = 0666;
 
 Result<Descriptor> open_file(const std::string& path, int flags) {
-  auto opened = internal::system_call("open", path, [&] {
+  return internal::open_descriptor("open", path, [&] {
     return ::open(path.c_str(), flags | O_CREAT | O_CLOEXEC | O_NOCTTY, kMode);
   });
-  if (!opened) return opened.error();
-  return Descriptor(*opened);
 }
 
 /// Whether nobody else writes it; from then on nobody else does. Where a file system has no locks,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/os/program.h>
 
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -40,6 +41,12 @@ extern "C" void ask_to_stop(int number) {
 }
 
 }  // namespace
+
+void open_standard_descriptors() {
+  int opened = ::open("/dev/null", O_RDWR);
+  while (opened >= 0 && opened <= STDERR_FILENO) opened = ::open("/dev/null", O_RDWR);
+  if (opened >= 0) ::close(opened);
+}
 
 int stop_descriptor() {
   if (stop_event >= 0) return stop_event;

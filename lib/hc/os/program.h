@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What every program of ours needs from the system: the signals that end it, and text that a person
-// asked for. The library itself never writes anything on its own account.
+// What every program of ours needs from the system: standard descriptors, the signals that end it,
+// and text that a person asked for. The library itself never writes anything on its own account.
 
 #include <string_view>
 
 #include <hc/base/result.h>
 
 namespace hc {
+
+/// Opens /dev/null for those of the descriptors 0 to 2 that are closed: else the first file that is
+/// opened would get what is written to standard output or error. Called first thing in a program.
+void open_standard_descriptors();
 
 /// A descriptor that is readable once SIGINT, SIGTERM or, unless it is ignored as under nohup,
 /// SIGHUP has come, caught from the first call on; another one kills, as usual, unless it follows

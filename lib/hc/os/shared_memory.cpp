@@ -25,16 +25,17 @@ Result<std::byte*> map_bytes(int descriptor, std::uint64_t bytes, int protection
 }  // namespace
 
 Result<SharedMemory> SharedMemory::make(std::uint64_t bytes, std::uint64_t reserved) {
-  auto number = system_call("memfd_create", "", [] {
+  auto made = open_descriptor("memfd_create", "", [] {
     return ::memfd_create("hypercolumn", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   });
-  if (!number) return number.error();
+  if (!made) return made.error();
   SharedMemory memory;
-  memory.descriptor_ = Descriptor(*number);
+  memory.descriptor_ = std::move(*made);
+  const int number = memory.descriptor_.get();
   auto sized =
-      system_call("ftruncate", "", [&] { return ::ftruncate(*number, static_cast<off_t>(bytes)); });
+      system_call("ftruncate", "", [&] { return ::ftruncate(number, static_cast<off_t>(bytes)); });
   if (!sized) return sized.error();
-  auto data = map_bytes(*number, bytes, PROT_READ | PROT_WRITE);
+  auto data = map_bytes(number, bytes, PROT_READ | PROT_WRITE);
   if (!data) return data.error();
   memory.data_ = *data;
   memory.bytes_ = bytes;
@@ -42,7 +43,7 @@ Result<SharedMemory> SharedMemory::make(std::uint64_t bytes, std::uint64_t reser
   ::madvise(*data, bytes, MADV_HUGEPAGE);
   // The mapping made above can still write; nobody can make another that does.
   auto sealed = system_call("fcntl", "F_ADD_SEALS", [&] {
-    return ::fcntl(*number, F_ADD_SEALS, kFixedSize | F_SEAL_FUTURE_WRITE);
+    return ::fcntl(number, F_ADD_SEALS, kFixedSize | F_SEAL_FUTURE_WRITE);
   });
   if (!sealed) return sealed.error();
   if (auto done = memory.reserve(reserved); !done) return done.error();
@@ -101,10 +102,7 @@ Status SharedMemory::reserve(std::uint64_t end) {
 
 Result<Descriptor> SharedMemory::read_only() const {
   std::string path = "/proc/self/fd/" + std::to_string(descriptor_.get());
-  auto number =
-      system_call("open", path, [&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); });
-  if (!number) return number.error();
-  return Descriptor(*number);
+  return open_descriptor("open", path, [&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); });
 }
 
 bool allow_ordering() {

@@ -22,11 +22,9 @@ Address::Address(const void* data, unsigned length) : size(length) {
 }
 
 Result<Descriptor> open_socket(const Address& address) {
-  auto number = system_call("socket", "", [&] {
+  return open_descriptor("socket", "", [&] {
     return ::socket(address.storage.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   });
-  if (!number) return number.error();
-  return Descriptor(*number);
 }
 
 bool is_with_itself(int socket) {

@@ -27,10 +27,7 @@ namespace {
 /// since descriptors or ports have run out, it counts as one, so that its user is looked for.
 bool is_of_this_host(sockaddr_storage address) {
   Descriptor probe(::socket(address.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  if (address.ss_family == AF_INET)
-    reinterpret_cast<sockaddr_in&>(address).sin_port = 0;
-  else
-    reinterpret_cast<sockaddr_in6&>(address).sin6_port = 0;
+  reinterpret_cast<sockaddr_in&>(address).sin_port = 0;  // of IPv6 at the same place
   return ::bind(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
          errno != EADDRNOTAVAIL;
 }

@@ -29,9 +29,7 @@ Result<Descriptor> reopen_without_waiting(int number, int access_mode) {
       return own;
     }
   }
-  auto copy = system_call("dup", "", [&] { return ::fcntl(number, F_DUPFD_CLOEXEC, 0); });
-  if (!copy) return copy.error();
-  return Descriptor(*copy);
+  return open_descriptor("dup", "", [&] { return ::fcntl(number, F_DUPFD_CLOEXEC, 0); });
 }
 
 }  // namespace
