@@ -5,7 +5,6 @@
 
 #include <hc/base/suggestion.h>
 #include <hc/mtp/coords.h>
-#include <hc/mtp/names.h>
 
 namespace python {
 namespace {

@@ -8,7 +8,7 @@
 #include <new>
 
 #include <hc/base/format.h>
-#include <hc/link/lent.h>
+#include <hc/link/link.h>
 #include <hc/mtp/coords.h>
 #include <hc/mtp/rows.h>
 

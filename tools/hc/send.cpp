@@ -16,7 +16,6 @@
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
 #include <hc/compress/compress.h>
-#include <hc/mtp/names.h>
 #include <hc/mtp/text.h>
 
 #include "common.h"

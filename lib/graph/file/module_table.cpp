@@ -4,7 +4,7 @@
 #include <cstdlib>
 
 #include <graph/file/tables.h>
-#include <hc/mtp/names.h>
+#include <hc/mtp/element.h>
 
 namespace hc::internal {
 namespace {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Texts taken apart: words between marks, and numbers; and the digits of bytes. Pure.
+// Texts taken apart: words between marks, numbers, names of enumerators; and the digits of bytes.
+// Pure.
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -33,6 +36,16 @@ inline std::string hexadecimal_byte(char byte) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   const auto value = static_cast<unsigned char>(byte);
   return {kDigits[value >> 4], kDigits[value & 15]};
+}
+
+/// The enumerator of that name.
+/// @param names  of the enumerators 0, 1, 2, …
+template <typename Enum, std::size_t kCount>
+std::optional<Enum> enum_named(const std::array<std::string_view, kCount>& names,
+                               std::string_view name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<Enum>(found - names.begin());
 }
 
 }  // namespace hc

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/contract/command.h>
 
-#include <algorithm>
 #include <array>
 
 #include <hc/base/text.h>
@@ -31,10 +30,10 @@ Result<ModuleCommand> parse_module_command(std::string_view row) {
   const Error wrong{Code::Invalid,
                     "a command is set NAME=VALUE, link or unlink in|out PORT=URI, finish PORT=URI, "
                     "route PORT=URI WORDS, or wall_offset NANOSECONDS"};
-  const auto verb = std::find(kVerbs.begin(), kVerbs.end(), take_until(row, ' '));
-  if (verb == kVerbs.end() || row.empty()) return wrong;
+  const auto verb = enum_named<ModuleCommand::Verb>(kVerbs, take_until(row, ' '));
+  if (!verb || row.empty()) return wrong;
   ModuleCommand command;
-  command.verb = static_cast<ModuleCommand::Verb>(verb - kVerbs.begin());
+  command.verb = *verb;
   if (has_end(command.verb)) {
     const auto end = take_until(row, ' ');
     if ((end != "in" && end != "out") || row.empty()) return wrong;

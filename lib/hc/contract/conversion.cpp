@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include <hc/base/text.h>
-#include <hc/mtp/names.h>
 
 namespace hc {
 namespace {

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include <hc/contract/trace.h>
-#include <hc/mtp/names.h>
 
 namespace hc {
 namespace {
@@ -103,19 +102,13 @@ class Reader {
     value = static_cast<Integer>(number);
     return std::in_range<Integer>(number) && number >= 0;
   }
-  static bool get(const Json& json, MatrixType& type) {
-    const auto found = json.is_string() ? matrix_type_of(json.get<std::string>()) : std::nullopt;
-    type = found.value_or(type);
-    return found.has_value();
-  }
-  static bool get(const Json& json, Scalar& scalar) {
-    const auto found = json.is_string() ? scalar_of(json.get<std::string>()) : std::nullopt;
-    scalar = found.value_or(scalar);
-    return found.has_value();
-  }
-  static bool get(const Json& json, Encoding& encoding) {
-    const auto found = json.is_string() ? encoding_of(json.get<std::string>()) : std::nullopt;
-    encoding = found.value_or(encoding);
+  static bool get(const Json& json, MatrixType& type) { return get(json, matrix_type_of, type); }
+  static bool get(const Json& json, Scalar& scalar) { return get(json, scalar_of, scalar); }
+  static bool get(const Json& json, Encoding& encoding) { return get(json, encoding_of, encoding); }
+  template <typename Enum>
+  static bool get(const Json& json, std::optional<Enum> (*named)(std::string_view), Enum& value) {
+    const auto found = json.is_string() ? named(json.get<std::string>()) : std::nullopt;
+    value = found.value_or(value);
     return found.has_value();
   }
   static bool get(const Json& json, PortType& type) {
@@ -180,6 +173,12 @@ class Reader {
   const Json& json_;
   bool good_;
 };
+
+/// A port that every module with `control` has, where that is the one.
+const PortDescription* implicit(const Description& description, const PortDescription& own,
+                                std::string_view port) {
+  return description.control && port == own.name ? &own : nullptr;
+}
 
 }  // namespace
 
@@ -257,15 +256,13 @@ const PortDescription& trace_output() {
 }
 
 const PortDescription* find_output(const Description& description, std::string_view port) {
-  const PortDescription* found = find_named(description.outputs, port);
-  const bool is_implicit = description.control && port == trace_output().name;
-  return found == nullptr && is_implicit ? &trace_output() : found;
+  const auto* found = find_named(description.outputs, port);
+  return found != nullptr ? found : implicit(description, trace_output(), port);
 }
 
 const PortDescription* find_input(const Description& description, std::string_view port) {
-  const PortDescription* found = find_named(description.inputs, port);
-  const bool is_implicit = description.control && port == focus_input().name;
-  return found == nullptr && is_implicit ? &focus_input() : found;
+  const auto* found = find_named(description.inputs, port);
+  return found != nullptr ? found : implicit(description, focus_input(), port);
 }
 
 }  // namespace hc

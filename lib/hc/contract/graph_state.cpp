@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <hc/base/text.h>
+
 namespace hc {
 namespace {
 
@@ -46,9 +48,7 @@ struct FieldReader {
   }
   void operator()(const char* key, ModuleStatus& value) {
     const auto text = json.value(key, std::string());
-    const auto found = std::find(kStatusNames.begin(), kStatusNames.end(), text);
-    if (found != kStatusNames.end())
-      value = static_cast<ModuleStatus>(found - kStatusNames.begin());
+    value = enum_named<ModuleStatus>(kStatusNames, text).value_or(value);
   }
   void operator()(const char* key, Level& value) {
     value = level_named(json.value(key, std::string())).value_or(value);

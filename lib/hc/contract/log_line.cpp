@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/contract/log_line.h>
 
-#include <algorithm>
 #include <array>
 
 #include <nlohmann/json.hpp>
 
+#include <hc/base/text.h>
 #include <hc/mtp/rows.h>
 
 namespace hc {
@@ -20,9 +20,7 @@ std::string_view name(Level level) {
 }
 
 std::optional<Level> level_named(std::string_view name) {
-  const auto found = std::find(kNames.begin(), kNames.end(), name);
-  if (found == kNames.end()) return std::nullopt;
-  return static_cast<Level>(found - kNames.begin());
+  return enum_named<Level>(kNames, name);
 }
 
 std::string LogLine::line() const {
@@ -36,10 +34,10 @@ Message make_log(Level level, std::string_view text) {
 Result<LogLine> read_log(const Message& message) {
   const auto rows = rows_of(message);
   const std::string row = rows.empty() ? "" : rows.front();
-  const auto space = std::min(row.find(' '), row.size());
-  const auto level = level_named(row.substr(0, space));
+  std::string_view said = row;
+  const auto level = level_named(take_until(said, ' '));
   if (!level) return Error{Code::Malformed, "a log report is LEVEL TEXT, and not \"" + row + "\""};
-  return LogLine{{}, *level, row.substr(std::min(row.size(), space + 1))};
+  return LogLine{{}, *level, std::string(said)};
 }
 
 std::string to_json(const LogLine& line) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/contract/trace.h>
 
-#include <algorithm>
 #include <array>
 #include <optional>
 #include <string_view>
@@ -16,9 +15,9 @@ constexpr std::array<std::string_view, 5> kWhats = {"took", "began", "ended", "s
 
 std::optional<TraceEvent> parse_event(std::string_view row) {
   TraceEvent event;
-  const auto what = std::find(kWhats.begin(), kWhats.end(), take_until(row, ' '));
-  if (what == kWhats.end()) return std::nullopt;
-  event.what = static_cast<TraceEvent::What>(what - kWhats.begin());
+  const auto what = enum_named<TraceEvent::What>(kWhats, take_until(row, ' '));
+  if (!what) return std::nullopt;
+  event.what = *what;
   event.port = take_until(row, ' ');
   if (event.port == "-") event.port.clear();
   auto take = [&](auto& number) { return read_number(take_until(row, ' '), number); };

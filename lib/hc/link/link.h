@@ -176,4 +176,8 @@ std::vector<std::string_view> transports();
 /// Errors: as Source::take, and Stopped when `stop` becomes readable.
 Result<bool> receive(Source& source, Message& message, int stop = -1);
 
+/// Whether a publisher of shm lends the elements of a message: a reader that holds 63 gets further
+/// ones as copies, and a publisher without room waits for those.
+bool is_lent(const Message& message);
+
 }  // namespace hc

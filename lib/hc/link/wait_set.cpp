@@ -10,7 +10,6 @@
 #include <atomic>
 
 #include <hc/link/shm/spin.h>
-#include <hc/os/descriptor.h>
 
 namespace hc {
 namespace {
@@ -46,9 +45,7 @@ Result<bool> Source::wait(int stop, std::chrono::milliseconds timeout) {
 
 WaitSet::WaitSet(int stop) : stop_(stop), spin_(std::make_unique<internal::Spin>()) {}
 
-WaitSet::~WaitSet() {
-  if (poll_ >= 0) ::close(poll_);
-}
+WaitSet::~WaitSet() = default;
 
 Status WaitSet::watch(int descriptor, std::uint32_t events, std::uint64_t what) {
   if (descriptor < 0) return {};
@@ -56,8 +53,9 @@ Status WaitSet::watch(int descriptor, std::uint32_t events, std::uint64_t what) 
   event.events = events;
   event.data.u64 = what;
   const bool again = (events & EPOLLONESHOT) != 0;
-  if (again && ::epoll_ctl(poll_, EPOLL_CTL_MOD, descriptor, &event) == 0) return {};
-  if (::epoll_ctl(poll_, EPOLL_CTL_ADD, descriptor, &event) == 0 || errno == EEXIST) return {};
+  if (again && ::epoll_ctl(poll_.get(), EPOLL_CTL_MOD, descriptor, &event) == 0) return {};
+  if (::epoll_ctl(poll_.get(), EPOLL_CTL_ADD, descriptor, &event) == 0 || errno == EEXIST)
+    return {};
   if (errno != EPERM) return internal::system_error("epoll_ctl", "");
   never_sleeps_ = true;
   return {};
@@ -68,18 +66,18 @@ Status WaitSet::prepare(std::span<Source* const> sources) {
   auto is_watched = [](std::uint64_t number, const Source* source) {
     return number == source->number_;
   };
-  if (poll_ >= 0 &&
+  if (poll_ &&
       std::equal(watched_.begin(), watched_.end(), sources.begin(), sources.end(), is_watched))
     return {};
   // A new instance: the descriptor of a source that was closed may have been opened again
   // elsewhere.
-  if (poll_ >= 0) ::close(poll_);
+  poll_.reset();
   watched_.clear();
   never_sleeps_ = false;
   auto made =
-      internal::system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
-  poll_ = made ? *made : -1;
+      internal::open_descriptor("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
   if (!made) return made.error();
+  poll_ = std::move(*made);
   if (auto watched = watch(stop_, EPOLLIN, kStop); !watched) return watched;
   for (const Source* source : sources) {
     const auto number = source->number_;
@@ -99,7 +97,7 @@ bool WaitSet::was_woken_by(const Source& source) const {
 Result<bool> WaitSet::sleep(nanoseconds timeout) {
   std::array<epoll_event, 8> events;
   auto count = internal::system_call("epoll_pwait2", "",
-                                     [&] { return wait_for_events(poll_, events, timeout); });
+                                     [&] { return wait_for_events(poll_.get(), events, timeout); });
   if (!count) return count.error();
   for (const auto& event : std::span(events).first(static_cast<std::size_t>(*count)))
     if (event.data.u64 == kStop)

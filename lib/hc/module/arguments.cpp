@@ -10,7 +10,6 @@
 #include <hc/base/suggestion.h>
 #include <hc/base/text.h>
 #include <hc/contract/trace.h>
-#include <hc/mtp/names.h>
 
 namespace hc::internal {
 namespace {

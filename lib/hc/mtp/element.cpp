@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/mtp/element.h>
 
+#include <algorithm>
 #include <array>
-#include <iterator>
+
+#include <hc/base/text.h>
 
 namespace hc {
 namespace {
@@ -53,6 +55,20 @@ std::string_view name(Scalar scalar) {
 }
 std::string_view name(Encoding encoding) {
   return kEncodingNames[static_cast<std::size_t>(encoding)];
+}
+
+std::optional<MatrixType> matrix_type_of(std::string_view name) {
+  const auto found = std::ranges::find(kTypes, name, &TypeRule::name);
+  if (found == kTypes.end()) return std::nullopt;
+  return static_cast<MatrixType>(found - kTypes.begin() + 1);
+}
+
+std::optional<Scalar> scalar_of(std::string_view name) {
+  return enum_named<Scalar>(kScalarNames, name);
+}
+
+std::optional<Encoding> encoding_of(std::string_view name) {
+  return enum_named<Encoding>(kEncodingNames, name);
 }
 
 std::string matrix_text(const Info& info, std::optional<std::int32_t> width,

@@ -41,6 +41,11 @@ std::string_view name(MatrixType type);
 std::string_view name(Scalar scalar);
 std::string_view name(Encoding encoding);
 
+/// The way back: nothing where there is no such name.
+std::optional<MatrixType> matrix_type_of(std::string_view name);
+std::optional<Scalar> scalar_of(std::string_view name);
+std::optional<Encoding> encoding_of(std::string_view name);
+
 /// Bytes that a scalar takes: 1, 2, 4 or 8.
 constexpr std::size_t size_of(Scalar scalar) {
   constexpr std::uint8_t kSizes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <hc/mtp/names.h>
-
 namespace hc {
 namespace {
 

@@ -9,7 +9,6 @@
 #include <array>
 #include <cstring>
 
-#include <hc/link/lent.h>
 #include <hc/link/shm/crash_point.h>
 #include <hc/mtp/framing.h>
 

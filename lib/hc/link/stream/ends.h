@@ -93,8 +93,6 @@ Result<ListeningSocket> listen_unix(const Uri& uri);
 /// Names the variable of the environment with the numbers of sockets that listen already at @NAMEs,
 /// separated by blanks: whoever starts a program holds them for it.
 inline constexpr const char* kListeners = "HC_LISTENERS";
-/// A descriptor of its own for the one that listens at an address; none (-1): there is no such one.
-Descriptor held_for_us(const Address& address);
 
 /// Errors: Invalid (not `[HOST:]PORT`).
 Status check_host_port(const Uri& uri);

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // `unix:PATH` and `unix-listen:PATH`: between processes of one host. `@NAME` is in the abstract
 // namespace: it leaves no file, and only processes of the same user are let in.
+#include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
 
 #include <hc/link/stream/ends.h>
 #include <hc/os/peer_user.h>
@@ -47,6 +51,23 @@ bool is_left_behind(const Uri& uri, const Address& address) {
 std::function<Status(int)> admission(const Uri& uri, const char* what) {
   if (!is_abstract(uri)) return {};
   return [what](int socket) { return check_own(unix_peer_user(socket), what); };
+}
+
+/// A descriptor of its own for the socket that whoever has started this program holds for it at an
+/// address (spec/module.md, section 4); none (-1): there is no such one.
+Descriptor held_for_us(const Address& address) {
+  const char* numbers = std::getenv(kListeners);
+  std::istringstream words(numbers == nullptr ? "" : numbers);
+  for (int number = -1; words >> number;) {
+    sockaddr_un place{};
+    socklen_t size = sizeof place;
+    if (::getsockname(number, reinterpret_cast<sockaddr*>(&place), &size) != 0 ||
+        size != address.size || std::memcmp(&place, address.get(), size) != 0)
+      continue;
+    ::fcntl(number, F_SETFD, FD_CLOEXEC);  // is not for what this program starts
+    return Descriptor(::fcntl(number, F_DUPFD_CLOEXEC, 0));
+  }
+  return {};
 }
 
 }  // namespace
