@@ -91,3 +91,17 @@ class [[nodiscard]] Result<void> : public Result<std::monostate> {
 using Status = Result<void>;
 
 }  // namespace hc
+
+/// The value of a Result, in a function that returns one too: an error is what that returns.
+///
+///     auto socket = HC_TRY(open_socket(address));
+///     HC_TRY(check_name(uri));
+///
+/// For whole statements, not for parts of a larger expression, which would not be ended in order.
+#define HC_TRY(...)                \
+  __extension__({                  \
+    auto hc_tried = (__VA_ARGS__); \
+    if (!hc_tried) [[unlikely]]    \
+      return hc_tried.error();     \
+    *std::move(hc_tried);          \
+  })

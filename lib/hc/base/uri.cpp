@@ -80,8 +80,7 @@ Result<Uri> parse_uri(std::string_view text) {
     uri.rest = place.substr(colon + 1);
     if (!is_scheme(uri.scheme)) return usage("a URI's scheme is a word in small letters", text);
   }
-  if (question < text.size())
-    if (auto parsed = parse_options(text.substr(question + 1), uri); !parsed) return parsed.error();
+  if (question < text.size()) HC_TRY(parse_options(text.substr(question + 1), uri));
   return uri;
 }
 

@@ -50,21 +50,20 @@ Result<Message> expand(const Message& message) {
 
 Result<Message> compress(const Message& message, Encoding encoding, int jpeg_quality) {
   if (message.header.info.encoding == encoding) return message;
-  auto plain = expand(message);
-  if (!plain) return plain.error();
-  plain->header.info.encoding = encoding;
-  if (auto valid = check(plain->header, {~std::uint64_t{0}}); !valid)
+  auto plain = HC_TRY(expand(message));
+  plain.header.info.encoding = encoding;
+  if (auto valid = check(plain.header, {~std::uint64_t{0}}); !valid)
     return Error{Code::Unsupported, valid.error().detail};
   switch (encoding) {
     case Encoding::Text:
     case Encoding::Binary:
       return plain;
     case Encoding::Zstd:
-      return internal::compress_zstd(*plain);
+      return internal::compress_zstd(plain);
     case Encoding::Jpeg:
       break;
   }
-  return internal::compress_jpeg(*plain, jpeg_quality);
+  return internal::compress_jpeg(plain, jpeg_quality);
 }
 
 }  // namespace hc

@@ -96,16 +96,15 @@ Message shrink_plain(const Message& image, const Header& header) {
 }  // namespace
 
 Result<Message> shrink(const Message& image, std::int32_t width, std::int32_t height) {
-  auto plain = expand(image);
-  if (!plain) return plain.error();
-  Header header = plain->header;
+  auto plain = HC_TRY(expand(image));
+  Header header = plain.header;
   HC_CHECK(width > 0 && width <= header.width && height > 0 && height <= header.height, width,
            height, header.width, header.height);
   header.width = width;
   header.height = height;
-  if (header.info.scalar == Scalar::U8) return shrink_plain<std::uint8_t>(*plain, header);
+  if (header.info.scalar == Scalar::U8) return shrink_plain<std::uint8_t>(plain, header);
   HC_CHECK(header.info.scalar == Scalar::U16, matrix_text(header.info));
-  return shrink_plain<std::uint16_t>(*plain, header);
+  return shrink_plain<std::uint16_t>(plain, header);
 }
 
 }  // namespace hc

@@ -69,10 +69,10 @@ Result<GraphCommand> parse_graph_command(std::string_view line) {
   if (count < form->words || (count > form->words && !form->takes_more))
     return Error{Code::Invalid, "the command is: " + std::string(form->text)};
   if (form->verb == Verb::Set) {  // its value may hold anything
-    auto assignment = parse_assignment(line.substr(line.find(command.words[0], form->name.size())));
-    if (!assignment) return assignment.error();
-    command.words = {std::move(assignment->module), std::move(assignment->parameter),
-                     std::move(assignment->value)};
+    auto assignment =
+        HC_TRY(parse_assignment(line.substr(line.find(command.words[0], form->name.size()))));
+    command.words = {std::move(assignment.module), std::move(assignment.parameter),
+                     std::move(assignment.value)};
   }
   return command;
 }

@@ -16,19 +16,16 @@ Status wait_for_event(int descriptor, LinkOptions& options, TimePoint until) {
   if (until != TimePoint::max())
     timeout = std::max(std::chrono::milliseconds(0), std::chrono::ceil<std::chrono::milliseconds>(
                                                          until - std::chrono::steady_clock::now()));
-  auto ready = wait_readable(std::array{descriptor, interrupter}, options.stop, timeout);
-  if (!ready) return ready.error();
-  if (*ready == 1 && !call()) interrupter = -1;
+  auto ready = HC_TRY(wait_readable(std::array{descriptor, interrupter}, options.stop, timeout));
+  if (ready == 1 && !call()) interrupter = -1;
   return {};
 }
 
 Result<Audience> Audience::make(const Uri& uri, std::int64_t most, const Policy& policy,
                                 const LinkOptions& options) {
-  auto readers = number_option(uri, "readers", -1, {0, most});
-  if (!readers) return readers.error();
-  auto stays = number_option(uri, "stay", 0, {0, 1});
-  if (!stays) return stays.error();
-  return Audience(*readers, *stays == 1, policy, options);
+  auto readers = HC_TRY(number_option(uri, "readers", -1, {0, most}));
+  auto stays = HC_TRY(number_option(uri, "stay", 0, {0, 1}));
+  return Audience(readers, stays == 1, policy, options);
 }
 
 Audience::Fate Audience::decide(std::size_t present) {

@@ -50,17 +50,14 @@ Result<Descriptor> open_for_writing(const Uri& uri, bool appends, const LinkOpti
   if (is_written_in_place(uri.rest))
     return open_path(uri, O_WRONLY | O_CREAT | O_APPEND, options.stop);
   if (appends) {
-    auto file = continue_file(uri.rest);
-    if (!file) return file.error();
-    auto is_whole = go_behind_messages(file->descriptor.get());
-    if (!is_whole) return is_whole.error();
-    if (*is_whole) return std::move(file->descriptor);
+    auto file = HC_TRY(continue_file(uri.rest));
+    auto is_whole = HC_TRY(go_behind_messages(file.descriptor.get()));
+    if (is_whole) return std::move(file.descriptor);
   }
-  auto file = begin_file(uri.rest);
-  if (!file) return file.error();
-  if (file->path != uri.rest && options.log)
-    options.log(Level::Warning, "the file stays as it is; continuing in " + file->path);
-  return std::move(file->descriptor);
+  auto file = HC_TRY(begin_file(uri.rest));
+  if (file.path != uri.rest && options.log)
+    options.log(Level::Warning, "the file stays as it is; continuing in " + file.path);
+  return std::move(file.descriptor);
 }
 
 /// Loses what it is sent once the file cannot be written: a recording that ends, and not the work

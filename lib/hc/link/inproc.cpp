@@ -40,9 +40,7 @@ class Channels {
     if (channel == nullptr) {
       channel = std::make_shared<Channel>();
       for (Event* event : {&channel->readable, &channel->writable}) {
-        auto made = Event::make();
-        if (!made) return made.error();
-        *event = std::move(*made);
+        *event = HC_TRY(Event::make());
       }
       channels_[name] = channel;
     }
@@ -178,25 +176,21 @@ class InprocSink final : public Sink {
 }  // namespace
 
 Result<std::unique_ptr<Source>> open_inproc_source(const Uri& uri, const LinkOptions&) {
-  auto channel = channels().join(uri.rest, &Channel::has_source);
-  if (!channel) return channel.error();
-  return std::unique_ptr<Source>(new InprocSource(std::move(*channel)));
+  auto channel = HC_TRY(channels().join(uri.rest, &Channel::has_source));
+  return std::unique_ptr<Source>(new InprocSource(std::move(channel)));
 }
 
 Result<std::unique_ptr<Sink>> open_inproc_sink(const Uri& uri, const LinkOptions& options) {
-  auto policy = parse_policy(uri);
-  if (!policy) return policy.error();
-  auto joined = channels().join(uri.rest, &Channel::has_sink);
-  if (!joined) return joined.error();
-  auto& channel = **joined;
-  std::unique_ptr<Sink> sink(new InprocSink(*joined, *policy, options));
-  if (policy->is_paced()) {
-    auto started = channel.timer.start(-1, [&channel](auto) { channel.readable.raise(); });
-    if (!started) return started.error();
+  auto policy = HC_TRY(parse_policy(uri));
+  auto joined = HC_TRY(channels().join(uri.rest, &Channel::has_sink));
+  auto& channel = *joined;
+  std::unique_ptr<Sink> sink(new InprocSink(joined, policy, options));
+  if (policy.is_paced()) {
+    HC_TRY(channel.timer.start(-1, [&channel](auto) { channel.readable.raise(); }));
   }
   std::lock_guard lock(channel.mutex);
-  channel.messages = SendQueue<Message>(*policy);
-  channel.is_paced = policy->is_paced();
+  channel.messages = SendQueue<Message>(policy);
+  channel.is_paced = policy.is_paced();
   return sink;
 }
 

@@ -5,20 +5,14 @@ namespace hc::internal {
 
 Result<std::unique_ptr<Intake>> Intake::make(Loop& loop, const std::string& uri, Take take,
                                              const LinkOptions& options, bool is_limited) {
-  auto parsed = parse_uri(uri);
-  if (!parsed) return parsed.error();
-  auto source = open_source(*parsed, options);
-  if (!source) return source.error();
-  std::unique_ptr<Intake> intake(new Intake(loop, std::move(*source), std::move(take), is_limited));
-  auto watched = loop.watch(intake->source_->descriptor(), EPOLLIN,
-                            [self = intake.get()](auto) { self->take_unless_paused(); });
-  if (!watched) return watched.error();
-  intake->watch_ = std::move(*watched);
+  auto parsed = HC_TRY(parse_uri(uri));
+  auto source = HC_TRY(open_source(parsed, options));
+  std::unique_ptr<Intake> intake(new Intake(loop, std::move(source), std::move(take), is_limited));
+  intake->watch_ = HC_TRY(loop.watch(intake->source_->descriptor(), EPOLLIN,
+                                     [self = intake.get()](auto) { self->take_unless_paused(); }));
   if (const int wakes = intake->source_->wake_descriptor(); wakes >= 0) {
-    auto woken = loop.watch(wakes, EPOLLIN | EPOLLET,
-                            [self = intake.get()](auto) { self->take_unless_paused(); });
-    if (!woken) return woken.error();
-    intake->woken_ = std::move(*woken);
+    intake->woken_ = HC_TRY(loop.watch(
+        wakes, EPOLLIN | EPOLLET, [self = intake.get()](auto) { self->take_unless_paused(); }));
   }
   // A source may have something before its descriptor has ever been asked to tell.
   intake->again_ = loop.call_at({}, [self = intake.get()] { self->take(); });

@@ -13,11 +13,9 @@ Status Source::resume() {
 
 Result<bool> receive(Source& source, Message& message, int stop) {
   while (true) {
-    auto got = source.take(message);
-    if (!got) return got.error();
-    if (*got == Got::Message) return true;
-    if (*got == Got::End) return false;
-    if (auto ready = source.wait(stop); !ready) return ready.error();
+    const Got got = HC_TRY(source.take(message));
+    if (got != Got::Nothing) return got == Got::Message;
+    HC_TRY(source.wait(stop));
   }
 }
 

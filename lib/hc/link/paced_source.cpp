@@ -15,7 +15,7 @@ class PacedSource final : public Source {
 
   Result<Got> take(Message& message) override {
     // Its callbacks do nothing; but the descriptor announces again what comes from now on.
-    if (auto turned = loop_->turn(std::chrono::milliseconds(0)); !turned) return turned.error();
+    HC_TRY(loop_->turn(std::chrono::milliseconds(0)));
     const auto now = std::chrono::steady_clock::now();
     if (auto ready = pace_.ready_at(now); ready > now) {
       message = {};
@@ -23,7 +23,7 @@ class PacedSource final : public Source {
       return Got::Nothing;
     }
     const bool was_held = static_cast<bool>(timer_);
-    if (auto watched = watch(); !watched) return watched.error();
+    HC_TRY(watch());
     const auto overtaken = source_->traffic().dropped_newer;
     auto got = source_->take(message);
     if (was_held) overtaken_ += source_->traffic().dropped_newer - overtaken;
@@ -59,9 +59,7 @@ class PacedSource final : public Source {
          {std::tuple{&socket_, source_->descriptor(), std::uint32_t{EPOLLIN}},
           {&wake_, source_->wake_descriptor(), EPOLLIN | EPOLLET}}) {
       if (*handle || descriptor < 0) continue;
-      auto watched = loop_->watch(descriptor, events, [](auto) {});
-      if (!watched) return watched.error();
-      *handle = std::move(*watched);
+      *handle = HC_TRY(loop_->watch(descriptor, events, [](auto) {}));
     }
     return {};
   }
@@ -78,9 +76,8 @@ class PacedSource final : public Source {
 
 Result<std::unique_ptr<Source>> make_paced(std::unique_ptr<Source> source, const Policy& policy) {
   if (!policy.is_paced()) return source;
-  auto loop = Loop::make();
-  if (!loop) return loop.error();
-  return std::unique_ptr<Source>(new PacedSource(std::move(source), policy, std::move(*loop)));
+  auto loop = HC_TRY(Loop::make());
+  return std::unique_ptr<Source>(new PacedSource(std::move(source), policy, std::move(loop)));
 }
 
 }  // namespace hc::internal

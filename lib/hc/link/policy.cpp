@@ -22,14 +22,13 @@ Result<Policy> parse_policy(const Uri& uri) {
                                        {"burst", false, &policy.burst},
                                        {"memory", true, &policy.memory}}) {
     const auto default_value = static_cast<std::int64_t>(*value);
-    auto number = number_option(uri, key, default_value, {1, TokenBucket::kMost, has_units});
-    if (!number) return number.error();
-    *value = static_cast<std::uint64_t>(*number);
+    auto number =
+        HC_TRY(number_option(uri, key, default_value, {1, TokenBucket::kMost, has_units}));
+    *value = static_cast<std::uint64_t>(number);
   }
   constexpr std::int64_t kLongest = 86'400;  // [s]
-  const auto timeout = number_option(uri, "timeout", 0, {0, kLongest});
-  if (!timeout) return timeout.error();
-  policy.timeout = std::chrono::seconds(*timeout);
+  const auto timeout = HC_TRY(number_option(uri, "timeout", 0, {0, kLongest}));
+  policy.timeout = std::chrono::seconds(timeout);
   if (policy.rate == 0 && !uri.option("burst", "").empty())
     return Error{Code::Invalid, "option burst wants rate beside it"};
   return policy;

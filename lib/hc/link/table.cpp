@@ -83,13 +83,13 @@ Status check_options(const Uri& uri, std::string_view allowed) {
 
 /// Whether an end can be where it says, and its options have values that they can have.
 Status check_end(const Transport& transport, const Uri& uri, std::string_view allowed) {
-  if (auto checked = check_options(uri, allowed); !checked) return checked;
-  if (auto checked = transport.check(uri); !checked) return checked;
+  HC_TRY(check_options(uri, allowed));
+  HC_TRY(transport.check(uri));
   for (const char* key : {"wait", "reconnect", "readers", "stay", "spin", "same_user", "domain",
                           "append", "optional"})
-    if (auto number = number_option(uri, key, 0); !number) return number.error();
-  auto policy = internal::parse_policy(uri);
-  return policy ? Status() : policy.error();
+    HC_TRY(number_option(uri, key, 0));
+  HC_TRY(internal::parse_policy(uri));
+  return {};
 }
 
 /// The options with a log whose lines begin with the link's name.
@@ -107,8 +107,8 @@ LinkOptions with_name(LinkOptions options, const Uri& uri) {
 namespace internal {
 
 Status check_host_port(const Uri& uri) {
-  auto place = parse_host_port(uri.rest);
-  return place ? Status() : place.error();
+  HC_TRY(parse_host_port(uri.rest));
+  return {};
 }
 
 }  // namespace internal
@@ -127,29 +127,25 @@ std::vector<std::string_view> transports() {
 }
 
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options) {
-  auto transport = find_transport(uri);
-  if (!transport) return transport.error();
-  auto checked = check_options(uri, (*transport)->source_options);
-  if (!checked) return checked.error();
-  return (*transport)->open_source(uri, with_name(options, uri));
+  auto transport = HC_TRY(find_transport(uri));
+  HC_TRY(check_options(uri, transport->source_options));
+  return transport->open_source(uri, with_name(options, uri));
 }
 
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options) {
-  auto transport = find_transport(uri);
-  if (!transport) return transport.error();
-  auto checked = check_options(uri, (*transport)->sink_options);
-  if (!checked) return checked.error();
-  return (*transport)->open_sink(uri, with_name(options, uri));
+  auto transport = HC_TRY(find_transport(uri));
+  HC_TRY(check_options(uri, transport->sink_options));
+  return transport->open_sink(uri, with_name(options, uri));
 }
 
 Status check_source(const Uri& uri) {
-  auto transport = find_transport(uri);
-  return transport ? check_end(**transport, uri, (*transport)->source_options) : transport.error();
+  const auto* transport = HC_TRY(find_transport(uri));
+  return check_end(*transport, uri, transport->source_options);
 }
 
 Status check_sink(const Uri& uri) {
-  auto transport = find_transport(uri);
-  return transport ? check_end(**transport, uri, (*transport)->sink_options) : transport.error();
+  const auto* transport = HC_TRY(find_transport(uri));
+  return check_end(*transport, uri, transport->sink_options);
 }
 
 }  // namespace hc

@@ -74,16 +74,13 @@ Status WaitSet::prepare(std::span<Source* const> sources) {
   poll_.reset();
   watched_.clear();
   never_sleeps_ = false;
-  auto made =
-      internal::open_descriptor("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
-  if (!made) return made.error();
-  poll_ = std::move(*made);
-  if (auto watched = watch(stop_, EPOLLIN, kStop); !watched) return watched;
+  poll_ = HC_TRY(internal::open_descriptor("epoll_create1", "",
+                                           [] { return ::epoll_create1(EPOLL_CLOEXEC); }));
+  HC_TRY(watch(stop_, EPOLLIN, kStop));
   for (const Source* source : sources) {
     const auto number = source->number_;
-    if (auto watched = watch(source->descriptor(), EPOLLIN, number); !watched) return watched;
-    if (auto watched = watch(source->wake_descriptor(), EPOLLIN | EPOLLET, number); !watched)
-      return watched;
+    HC_TRY(watch(source->descriptor(), EPOLLIN, number));
+    HC_TRY(watch(source->wake_descriptor(), EPOLLIN | EPOLLET, number));
   }
   for (const Source* source : sources) watched_.push_back(source->number_);
   return {};
@@ -96,15 +93,14 @@ bool WaitSet::was_woken_by(const Source& source) const {
 /// Waits for the descriptors.
 Result<bool> WaitSet::sleep(nanoseconds timeout) {
   std::array<epoll_event, 8> events;
-  auto count = internal::system_call("epoll_pwait2", "",
-                                     [&] { return wait_for_events(poll_.get(), events, timeout); });
-  if (!count) return count.error();
-  for (const auto& event : std::span(events).first(static_cast<std::size_t>(*count)))
+  const int count = HC_TRY(internal::system_call(
+      "epoll_pwait2", "", [&] { return wait_for_events(poll_.get(), events, timeout); }));
+  for (const auto& event : std::span(events).first(static_cast<std::size_t>(count)))
     if (event.data.u64 == kStop)
       return Error{Code::Stopped, "asked to stop"};
     else
       woken_by_.push_back(std::uint64_t{event.data.u64});  // a copy, since the event is packed
-  return *count > 0;
+  return count > 0;
 }
 
 Result<bool> WaitSet::wait(std::span<Source* const> sources, std::span<const int> descriptors,
@@ -117,11 +113,9 @@ Result<bool> WaitSet::wait(std::span<Source* const> sources, std::span<const int
         sources[0]->descriptor(), POLLIN, stop_,
         timeout.count() < 0 ? internal::Deadline::max() : Clock::now() + timeout);
   }
-  if (auto prepared = prepare(sources); !prepared) return prepared.error();
+  HC_TRY(prepare(sources));
   // Each time: their owner may have closed one and opened another with the same number.
-  for (int descriptor : descriptors)
-    if (auto watched = watch(descriptor, EPOLLIN | EPOLLONESHOT, kOther); !watched)
-      return watched.error();
+  for (int descriptor : descriptors) HC_TRY(watch(descriptor, EPOLLIN | EPOLLONESHOT, kOther));
   auto found = spin_->run(sources, timeout, [&] { return sleep(nanoseconds(0)); });
   was_short_ = spin_->was_short();
   if (!found || *found) return found;

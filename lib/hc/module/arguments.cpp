@@ -55,8 +55,7 @@ class Parser {
 
   Result<Arguments> parse() {
     while (at_ < words_.size()) {
-      auto read = read_word();
-      if (!read) return read.error();
+      HC_TRY(read_word());
     }
     return std::move(arguments_);
   }
@@ -75,13 +74,12 @@ class Parser {
 
   Status encoding(const std::string& value) {
     bool all = value.find('=') == std::string::npos;
-    auto split = split_port(module_.outputs(), "output", value);
-    if (!split) return split.error();
-    auto encoding = encoding_of(split->second);
+    auto split = HC_TRY(split_port(module_.outputs(), "output", value));
+    auto encoding = encoding_of(split.second);
     if (!encoding)
-      return invalid("--encoding is text, binary, zstd or jpeg, not \"" + split->second + "\"");
+      return invalid("--encoding is text, binary, zstd or jpeg, not \"" + split.second + "\"");
     for (std::size_t i = 0; i < module_.outputs().size(); ++i)
-      if (all || i == split->first) module_.outputs()[i]->encoding = *encoding;
+      if (all || i == split.first) module_.outputs()[i]->encoding = *encoding;
     return {};
   }
 
@@ -113,9 +111,8 @@ class Parser {
     return {};
   }
   Status route(const std::string& value) {
-    auto route = parse_link_route(value);
-    if (!route) return route.error();
-    arguments_.routes.push_back(std::move(*route));
+    auto route = HC_TRY(parse_link_route(value));
+    arguments_.routes.push_back(std::move(route));
     return {};
   }
   Status clock(const std::string& value) {
@@ -141,30 +138,26 @@ class Parser {
   [[nodiscard]] Error no_option(const std::string& key) const;
 
   Status read_link(bool is_input, const std::string& value) {
-    auto link = parse_port_link(module_, is_input, value);
-    if (!link) return link.error();
-    if (link->is_focus)
-      arguments_.focus_links.push_back(link->uri);
-    else if (link->is_trace)
-      arguments_.trace_links.push_back(link->uri);
+    auto link = HC_TRY(parse_port_link(module_, is_input, value));
+    if (link.is_focus)
+      arguments_.focus_links.push_back(link.uri);
+    else if (link.is_trace)
+      arguments_.trace_links.push_back(link.uri);
     else
-      (is_input ? arguments_.inputs : arguments_.outputs).emplace_back(link->port, link->uri);
+      (is_input ? arguments_.inputs : arguments_.outputs).emplace_back(link.port, link.uri);
     return {};
   }
 
   Status read_address(const std::string& value, const std::string& wrong, std::int32_t min,
                       std::int32_t OutputState::*address) {
-    auto split = split_port(module_.outputs(), "output", value);
-    if (!split) return split.error();
-    auto& output = *module_.outputs()[split->first];
-    auto read = read_number(split->second, output.*address, wrong);
+    auto split = HC_TRY(split_port(module_.outputs(), "output", value));
+    auto& output = *module_.outputs()[split.first];
+    auto read = read_number(split.second, output.*address, wrong);
     return read && output.*address < min ? invalid(wrong) : read;
   }
 
   static Status read_uri(const std::string& value, std::optional<Uri>& uri) {
-    auto parsed = parse_uri(value);
-    if (!parsed) return parsed.error();
-    uri = *parsed;
+    uri = HC_TRY(parse_uri(value));
     return {};
   }
 
@@ -304,22 +297,18 @@ Result<PortLink> parse_port_link(const Module& module, bool is_input, const std:
   if (link.is_focus || link.is_trace) {
     uri.erase(0, text.find('=') + 1);
   } else {
-    auto split = is_input ? split_port(module.inputs(), "input", text)
-                          : split_port(module.outputs(), "output", text);
-    if (!split) return split.error();
-    std::tie(link.port, uri) = *split;
+    auto split = HC_TRY(is_input ? split_port(module.inputs(), "input", text)
+                                 : split_port(module.outputs(), "output", text));
+    std::tie(link.port, uri) = split;
   }
-  auto parsed = parse_uri(uri);
-  if (!parsed) return parsed.error();
-  link.uri = std::move(*parsed);
+  link.uri = HC_TRY(parse_uri(uri));
   return link;
 }
 
 Result<std::pair<std::string, Route>> parse_link_route(std::string_view text) {
   const auto link = take_until(text, ' ');
-  auto route = parse_route(text);
-  if (!route) return route.error();
-  return std::pair(std::string(link), std::move(*route));
+  auto route = HC_TRY(parse_route(text));
+  return std::pair(std::string(link), std::move(route));
 }
 
 Result<Arguments> parse_arguments(const Module& module, const std::vector<std::string>& words) {

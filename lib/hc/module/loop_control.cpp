@@ -116,22 +116,20 @@ bool Module::Loop::obey_while_sending() {
 }
 
 Status Module::Loop::carry_out(const std::string& row) {
-  const auto command = parse_module_command(row);
-  if (!command) return command.error();
-  switch (command->verb) {
+  const auto command = HC_TRY(parse_module_command(row));
+  switch (command.verb) {
     case ModuleCommand::Verb::Set:
-      return set_parameter(command->target, command->value);
+      return set_parameter(command.target, command.value);
     case ModuleCommand::Verb::Finish:
-      return finish(command->target);
+      return finish(command.target);
     case ModuleCommand::Verb::Route: {
-      auto route = internal::parse_route(command->value);
-      if (!route) return route.error();
-      set_route(command->target, *route);
+      auto route = HC_TRY(internal::parse_route(command.value));
+      set_route(command.target, route);
       return {};
     }
     case ModuleCommand::Verb::WallOffset: {
       std::int64_t wall_offset = 0;
-      if (!read_number(command->target, wall_offset))
+      if (!read_number(command.target, wall_offset))
         return Error{Code::Invalid, "wall_offset needs a number of nanoseconds"};
       internal::distant_wall.set(wall_offset, module_.clock_.monotonic());
       wall_offset_ = module_.clock_.wall() - module_.clock_.monotonic().count();
@@ -141,9 +139,8 @@ Status Module::Loop::carry_out(const std::string& row) {
     case ModuleCommand::Verb::Unlink:
       break;
   }
-  auto done = command->verb == ModuleCommand::Verb::Link
-                  ? link(command->is_input, command->target)
-                  : unlink(command->is_input, command->target);
+  auto done = command.verb == ModuleCommand::Verb::Link ? link(command.is_input, command.target)
+                                                        : unlink(command.is_input, command.target);
   if (done) report_links();
   return done;
 }
@@ -161,20 +158,19 @@ Status Module::Loop::set_parameter(const std::string& name, const std::string& v
 }
 
 Status Module::Loop::link(bool is_input, const std::string& text) {
-  auto link = internal::parse_port_link(module_, is_input, text);
-  if (!link) return link.error();
+  auto link = HC_TRY(internal::parse_port_link(module_, is_input, text));
   // What cannot be opened is an error, and changes nothing.
   try {
-    if (link->is_focus) {
-      std::erase_if(focus_, [uri = link->uri.text()](const auto& each) { return each.uri == uri; });
-      open_focus(link->uri);
-    } else if (link->is_trace) {
-      open_trace(link->uri);
+    if (link.is_focus) {
+      std::erase_if(focus_, [uri = link.uri.text()](const auto& each) { return each.uri == uri; });
+      open_focus(link.uri);
+    } else if (link.is_trace) {
+      open_trace(link.uri);
     } else if (is_input) {
-      open_input(link->uri, {module_.inputs_[link->port].get()});
+      open_input(link.uri, {module_.inputs_[link.port].get()});
     } else {
-      auto& output = *module_.outputs_[link->port];
-      output.links.push_back(open_output(link->uri, output.name, output.keep));
+      auto& output = *module_.outputs_[link.port];
+      output.links.push_back(open_output(link.uri, output.name, output.keep));
     }
   } catch (const ModuleError& error) {
     return Error{Code::System, error.what()};
@@ -183,20 +179,19 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
 }
 
 Status Module::Loop::unlink(bool is_input, const std::string& text) {
-  auto link = internal::parse_port_link(module_, is_input, text);
-  if (!link) return link.error();
-  auto uri = link->uri.text();
-  if (link->is_trace) {
+  auto link = HC_TRY(internal::parse_port_link(module_, is_input, text));
+  auto uri = link.uri.text();
+  if (link.is_trace) {
     if (trace_ == nullptr) return unknown_link();
     return unlink_output(trace_->output, uri);
   }
-  if (!is_input) return unlink_output(*module_.outputs_[link->port], uri);
+  if (!is_input) return unlink_output(*module_.outputs_[link.port], uri);
   report_counters();  // the last of this link
-  if (link->is_focus) {
+  if (link.is_focus) {
     const auto erased = std::erase_if(focus_, [&](const auto& each) { return each.uri == uri; });
     return erased == 0 ? unknown_link() : Status();
   }
-  auto* input = module_.inputs_[link->port].get();
+  auto* input = module_.inputs_[link.port].get();
   // What is taken together with this input waits for the next link, and is not ended.
   const auto erased = std::erase_if(
       sources_, [&](const Inlet& each) { return each.uri == uri && each.inputs.front() == input; });
@@ -223,13 +218,12 @@ Status Module::Loop::unlink_output(internal::OutputState& output, const std::str
 }
 
 Status Module::Loop::finish(const std::string& text) {
-  auto link = internal::parse_port_link(module_, true, text);
-  if (!link) return link.error();
-  for (auto& each : link->is_focus ? focus_ : sources_)
-    if (each.uri == link->uri.text() && each.source != nullptr) each.source->finish();
+  auto link = HC_TRY(internal::parse_port_link(module_, true, text));
+  for (auto& each : link.is_focus ? focus_ : sources_)
+    if (each.uri == link.uri.text() && each.source != nullptr) each.source->finish();
   // That its writer has ended is no news then.
   std::erase_if(lines_, [&](const auto& line) {
-    return line.uri.starts_with(link->uri.scheme + ":" + link->uri.rest + "?");
+    return line.uri.starts_with(link.uri.scheme + ":" + link.uri.rest + "?");
   });
   return {};
 }

@@ -7,23 +7,21 @@ namespace hc::internal {
 
 Result<Aside> Aside::begin(Loop& loop, std::function<void(int stop)> work,
                            std::function<void()> done) {
-  auto stop = Event::make();
-  if (!stop) return stop.error();
+  auto event = HC_TRY(Event::make());
   Aside aside;
-  aside.state_ = std::make_shared<State>(State{std::move(*stop), false, std::move(done), {}});
+  aside.state_ = std::make_shared<State>(State{std::move(event), false, std::move(done), {}});
   // The thread ends before the state does, which it must not own.
-  auto thread = start_thread([&loop, work = std::move(work), stop = aside.state_->stop.descriptor(),
-                              begun = std::weak_ptr(aside.state_)] {
-    work(stop);
-    loop.post([begun] {
-      const auto state = begun.lock();
-      if (!state || !state->thread.joinable()) return;
-      state->thread.join();
-      std::exchange(state->done, {})();
-    });
-  });
-  if (!thread) return thread.error();
-  aside.state_->thread = std::move(*thread);
+  aside.state_->thread =
+      HC_TRY(start_thread([&loop, work = std::move(work), stop = aside.state_->stop.descriptor(),
+                           begun = std::weak_ptr(aside.state_)] {
+        work(stop);
+        loop.post([begun] {
+          const auto state = begun.lock();
+          if (!state || !state->thread.joinable()) return;
+          state->thread.join();
+          std::exchange(state->done, {})();
+        });
+      }));
   return aside;
 }
 

@@ -9,7 +9,7 @@ namespace hc::internal {
 Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline) {
   using std::chrono::nanoseconds;
   std::array<pollfd, 2> polled = {{{descriptor, events, 0}, {stop, POLLIN, 0}}};
-  auto ready = system_call("ppoll", "", [&] {
+  auto ready = HC_TRY(system_call("ppoll", "", [&] {
     timespec left{};
     if (deadline != Deadline::max()) {
       auto time =
@@ -18,11 +18,10 @@ Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline)
     }
     return ::ppoll(polled.data(), polled.size(), deadline == Deadline::max() ? nullptr : &left,
                    nullptr);
-  });
-  if (!ready) return ready.error();
+  }));
   if (polled[0].revents == 0 && polled[1].revents != 0)
     return Error{Code::Stopped, "asked to stop"};
-  return *ready > 0;
+  return ready > 0;
 }
 
 }  // namespace hc::internal

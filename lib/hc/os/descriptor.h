@@ -64,9 +64,8 @@ Result<std::invoke_result_t<Call>> system_call(std::string_view name, std::strin
 /// The same of a call that opens a descriptor.
 template <typename Call>
 Result<Descriptor> open_descriptor(std::string_view name, std::string_view argument, Call&& call) {
-  auto number = system_call(name, argument, std::forward<Call>(call));
-  if (!number) return number.error();
-  return Descriptor(*number);
+  auto number = HC_TRY(system_call(name, argument, std::forward<Call>(call)));
+  return Descriptor(number);
 }
 
 using Deadline = std::chrono::steady_clock::time_point;

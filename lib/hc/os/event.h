@@ -17,10 +17,9 @@ class Event {
   Event() = default;  ///< none: its descriptor is -1, and nothing can be waited for
   /// Errors: System.
   static Result<Event> make() {
-    auto made =
-        open_descriptor("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
-    if (!made) return made.error();
-    return Event(std::move(*made));
+    auto made = HC_TRY(
+        open_descriptor("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); }));
+    return Event(std::move(made));
   }
 
   /// The same where a program begins, and cannot do without: ends it.

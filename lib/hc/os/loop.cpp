@@ -12,15 +12,13 @@ namespace hc::internal {
 constexpr std::uint64_t kTimerId = 0;  // entries have others
 
 Result<std::unique_ptr<Loop>> Loop::make() {
-  auto poll = open_descriptor("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
-  if (!poll) return poll.error();
-  auto timer = open_descriptor("timerfd_create", "", [] {
+  auto poll =
+      HC_TRY(open_descriptor("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); }));
+  auto timer = HC_TRY(open_descriptor("timerfd_create", "", [] {
     return ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-  });
-  if (!timer) return timer.error();
-  std::unique_ptr<Loop> loop(new Loop(std::move(*poll), std::move(*timer)));
-  if (auto added = loop->control(EPOLL_CTL_ADD, loop->timer_.get(), EPOLLIN, kTimerId); !added)
-    return added.error();
+  }));
+  std::unique_ptr<Loop> loop(new Loop(std::move(poll), std::move(timer)));
+  HC_TRY(loop->control(EPOLL_CTL_ADD, loop->timer_.get(), EPOLLIN, kTimerId));
   return loop;
 }
 
@@ -34,7 +32,7 @@ Status Loop::control(int operation, int descriptor, std::uint32_t events, std::u
 Result<Loop::Handle> Loop::watch(int descriptor, std::uint32_t events, Callback callback) {
   entries_.emplace(++last_id_, std::make_shared<Entry>(Entry{descriptor, std::move(callback)}));
   Handle handle(this, last_id_);
-  if (auto wanted = want(last_id_, events); !wanted) return wanted.error();
+  HC_TRY(want(last_id_, events));
   return handle;
 }
 
@@ -125,13 +123,12 @@ void Loop::call_due() {
 
 Status Loop::turn(std::chrono::milliseconds timeout) {
   std::array<epoll_event, 64> events;
-  auto count = system_call("epoll_wait", "", [&] {
+  auto count = HC_TRY(system_call("epoll_wait", "", [&] {
     return ::epoll_wait(poll_.get(), events.data(), static_cast<int>(events.size()),
                         static_cast<int>(timeout.count()));
-  });
-  if (!count) return count.error();
+  }));
   bool is_time = false;
-  for (const auto& event : std::span(events).first(static_cast<std::size_t>(*count))) {
+  for (const auto& event : std::span(events).first(static_cast<std::size_t>(count))) {
     const std::uint64_t id = event.data.u64;  // a copy, since the event is packed
     is_time = is_time || id == kTimerId;
     auto found = entries_.find(id);

@@ -65,9 +65,8 @@ std::string free_name(const std::string& path, std::string_view ending,
 
 Result<NewFile> begin_file(const std::string& path) {
   if (is_written_in_place(path)) {
-    auto opened = open_file(path, O_WRONLY | O_APPEND);
-    if (!opened) return opened.error();
-    return NewFile{std::move(*opened), path};
+    auto opened = HC_TRY(open_file(path, O_WRONLY | O_APPEND));
+    return NewFile{std::move(opened), path};
   }
   // The lock tells of two that find the same empty file.
   Result<Descriptor> file = Descriptor();
@@ -81,18 +80,16 @@ Result<NewFile> begin_file(const std::string& path) {
 }
 
 Result<NewFile> continue_file(const std::string& path) {
-  auto file = open_file(path, O_RDWR);
-  if (!file) return file.error();
-  if (!lock(*file)) return Error{Code::System, path + ": another process is writing it"};
-  return NewFile{std::move(*file), path};
+  auto file = HC_TRY(open_file(path, O_RDWR));
+  if (!lock(file)) return Error{Code::System, path + ": another process is writing it"};
+  return NewFile{std::move(file), path};
 }
 
 Status replace_file(const std::string& path, std::string_view contents) {
   const bool is_direct = is_written_in_place(path);
   const std::string unfinished = is_direct ? path : path + ".unfinished";
-  auto file = open_file(unfinished, O_WRONLY | (is_direct ? 0 : O_TRUNC));
-  if (!file) return file.error();
-  Status done = write_all(file->get(), contents);
+  auto file = HC_TRY(open_file(unfinished, O_WRONLY | (is_direct ? 0 : O_TRUNC)));
+  Status done = write_all(file.get(), contents);
   if (done && !is_direct && std::rename(unfinished.c_str(), path.c_str()) != 0)
     done = system_error("rename", path);
   if (done) return {};

@@ -29,9 +29,7 @@ class Watch::Reactor {
   Status add(State& state, int descriptor, Loop::Callback callback) {
     std::lock_guard lock(mutex);
     if (loop_ == nullptr) {
-      auto loop = Loop::make();
-      if (!loop) return loop.error();
-      loop_ = std::move(*loop);
+      loop_ = HC_TRY(Loop::make());
       if (auto started = start(); !started) {
         loop_.reset();
         return started;
@@ -67,10 +65,9 @@ class Watch::Reactor {
 
  private:
   Status start() {
-    auto thread = start_thread([this] { run(); });
-    if (!thread) return thread.error();
-    thread_ = thread->get_id();
-    thread->detach();
+    auto thread = HC_TRY(start_thread([this] { run(); }));
+    thread_ = thread.get_id();
+    thread.detach();
     return {};
   }
 

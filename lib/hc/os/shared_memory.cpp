@@ -25,28 +25,22 @@ Result<std::byte*> map_bytes(int descriptor, std::uint64_t bytes, int protection
 }  // namespace
 
 Result<SharedMemory> SharedMemory::make(std::uint64_t bytes, std::uint64_t reserved) {
-  auto made = open_descriptor("memfd_create", "", [] {
-    return ::memfd_create("hypercolumn", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  });
-  if (!made) return made.error();
   SharedMemory memory;
-  memory.descriptor_ = std::move(*made);
+  memory.descriptor_ = HC_TRY(open_descriptor("memfd_create", "", [] {
+    return ::memfd_create("hypercolumn", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  }));
   const int number = memory.descriptor_.get();
-  auto sized =
-      system_call("ftruncate", "", [&] { return ::ftruncate(number, static_cast<off_t>(bytes)); });
-  if (!sized) return sized.error();
-  auto data = map_bytes(number, bytes, PROT_READ | PROT_WRITE);
-  if (!data) return data.error();
-  memory.data_ = *data;
+  HC_TRY(
+      system_call("ftruncate", "", [&] { return ::ftruncate(number, static_cast<off_t>(bytes)); }));
+  memory.data_ = HC_TRY(map_bytes(number, bytes, PROT_READ | PROT_WRITE));
   memory.bytes_ = bytes;
   // Large pages are fewer to set up and to look up, for who writes images; it is advice alone.
-  ::madvise(*data, bytes, MADV_HUGEPAGE);
+  ::madvise(memory.data_, bytes, MADV_HUGEPAGE);
   // The mapping made above can still write; nobody can make another that does.
-  auto sealed = system_call("fcntl", "F_ADD_SEALS", [&] {
+  HC_TRY(system_call("fcntl", "F_ADD_SEALS", [&] {
     return ::fcntl(number, F_ADD_SEALS, kFixedSize | F_SEAL_FUTURE_WRITE);
-  });
-  if (!sealed) return sealed.error();
-  if (auto done = memory.reserve(reserved); !done) return done.error();
+  }));
+  HC_TRY(memory.reserve(reserved));
   return memory;
 }
 
@@ -90,11 +84,10 @@ Status SharedMemory::reserve(std::uint64_t end) {
     return ::madvise(data_ + reserved_, end - reserved_, MADV_POPULATE_WRITE);
   });
   if (!populated) {
-    auto allocated = system_call("fallocate", "", [&] {
+    HC_TRY(system_call("fallocate", "", [&] {
       return ::fallocate(descriptor_.get(), 0, static_cast<off_t>(reserved_),
                          static_cast<off_t>(end - reserved_));
-    });
-    if (!allocated) return allocated.error();
+    }));
   }
   reserved_ = end;
   return {};

@@ -46,22 +46,18 @@ ListeningSocket::~ListeningSocket() {
 }
 
 Result<Descriptor> bind_socket(const Address& address, const std::string& name) {
-  auto socket = open_socket(address);
-  if (!socket) return socket.error();
+  auto socket = HC_TRY(open_socket(address));
   int on = 1;
-  ::setsockopt(socket->get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  auto bound =
-      system_call("bind", name, [&] { return ::bind(socket->get(), address.get(), address.size); });
-  if (!bound) return bound.error();
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  HC_TRY(
+      system_call("bind", name, [&] { return ::bind(socket.get(), address.get(), address.size); }));
   return socket;
 }
 
 Result<Descriptor> listen_on(const Address& address, const std::string& name) {
-  auto socket = bind_socket(address, name);
-  if (!socket) return socket.error();
+  auto socket = HC_TRY(bind_socket(address, name));
   constexpr int kBacklog = 1024;  // who waits here costs no descriptor
-  auto listening = system_call("listen", name, [&] { return ::listen(socket->get(), kBacklog); });
-  if (!listening) return listening.error();
+  HC_TRY(system_call("listen", name, [&] { return ::listen(socket.get(), kBacklog); }));
   return socket;
 }
 

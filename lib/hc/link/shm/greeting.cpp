@@ -50,9 +50,8 @@ Status send_greeting(int socket, Greeting greeting, std::span<const int> descrip
     passed->cmsg_len = CMSG_LEN(descriptors.size_bytes());
     std::memcpy(CMSG_DATA(passed), descriptors.data(), descriptors.size_bytes());
   }
-  auto sent = system_call("sendmsg", "shm",
-                          [&] { return ::sendmsg(socket, &header, MSG_NOSIGNAL | MSG_DONTWAIT); });
-  if (!sent) return sent.error();
+  HC_TRY(system_call("sendmsg", "shm",
+                     [&] { return ::sendmsg(socket, &header, MSG_NOSIGNAL | MSG_DONTWAIT); }));
   return {};
 }
 
@@ -68,10 +67,9 @@ Result<Received> take_greeting(int socket, std::size_t wanted) {
   header.msg_iovlen = 1;
   header.msg_control = control.data();
   header.msg_controllen = control.size();
-  auto size = system_call("recvmsg", "shm", [&] {
+  auto size = HC_TRY(system_call("recvmsg", "shm", [&] {
     return ::recvmsg(socket, &header, MSG_CMSG_CLOEXEC | MSG_DONTWAIT);
-  });
-  if (!size) return size.error();
+  }));
   std::size_t count = 0;  // whatever comes is closed again
   for (cmsghdr* each = CMSG_FIRSTHDR(&header); each != nullptr; each = CMSG_NXTHDR(&header, each)) {
     if (each->cmsg_level != SOL_SOCKET || each->cmsg_type != SCM_RIGHTS) continue;
@@ -81,8 +79,8 @@ Result<Received> take_greeting(int socket, std::size_t wanted) {
       descriptors[count++] = Descriptor(number);
     }
   }
-  if (*size == 0) return Error{Code::Closed, "the other side disconnected"};
-  if (static_cast<std::size_t>(*size) != sizeof greeting || greeting.magic != kMagic)
+  if (size == 0) return Error{Code::Closed, "the other side disconnected"};
+  if (static_cast<std::size_t>(size) != sizeof greeting || greeting.magic != kMagic)
     return malformed("what answers is no end of a shared memory link of this version");
   // The refusal is shown to people, so it is printable.
   auto end = std::find(greeting.refusal.begin(), greeting.refusal.end(), '\0');
@@ -123,12 +121,11 @@ Status check_name(const Uri& uri) {
 }
 
 Status send_hello(int socket, std::uint64_t keep, const SharedMemory& page, int wakes) {
-  auto page_descriptor = page.read_only();
-  if (!page_descriptor) return page_descriptor.error();
+  auto page_descriptor = HC_TRY(page.read_only());
   Greeting greeting{};
   greeting.keep = keep;
   greeting.orders = can_order_everywhere() ? 1 : 0;
-  auto sent = send_greeting(socket, greeting, std::array{page_descriptor->get(), wakes});
+  auto sent = send_greeting(socket, greeting, std::array{page_descriptor.get(), wakes});
   // A publisher that has refused us before we said anything has said why.
   if (!sent && sent.error().code != Code::Closed) return sent;
   HC_CRASH_POINT("reader greeted");
@@ -154,18 +151,15 @@ Result<std::optional<Offer>> take_offer(int socket) {
 }
 
 Result<Offer> await_offer(int socket, int stop) {
-  auto answered = wait_for(socket, POLLIN, stop, std::chrono::steady_clock::now() + kAnswerTime);
-  if (!answered) return answered.error();
-  auto offer = *answered ? take_offer(socket) : Result<std::optional<Offer>>(std::nullopt);
-  if (!offer) return offer.error();
-  if (!offer->has_value()) return Error{Code::Closed, "the publisher does not answer"};
-  return std::move(**offer);
+  HC_TRY(wait_for(socket, POLLIN, stop, std::chrono::steady_clock::now() + kAnswerTime));
+  auto offer = HC_TRY(take_offer(socket));
+  if (!offer) return Error{Code::Closed, "the publisher does not answer"};
+  return std::move(*offer);
 }
 
 Result<Hello> take_hello(int socket, std::uint64_t keep) {
-  auto received = take_greeting(socket, 2);
-  if (!received) return received.error();
-  auto& [greeting, descriptors] = *received;
+  auto received = HC_TRY(take_greeting(socket, 2));
+  auto& [greeting, descriptors] = received;
   if (greeting.refusal[0] != '\0') return malformed("a reader that refuses");
   Hello hello;
   hello.keep = keep;
@@ -175,9 +169,7 @@ Result<Hello> take_hello(int socket, std::uint64_t keep) {
   auto page = SharedMemory::map(std::move(descriptors[0]), kPageBytes);
   if (!page) return malformed(page.error().detail);
   hello.page = std::move(*page);
-  auto wakes = open_pipe(descriptors[1]);
-  if (!wakes) return wakes.error();
-  hello.wakes = std::move(*wakes);
+  hello.wakes = HC_TRY(open_pipe(descriptors[1]));
   return hello;
 }
 

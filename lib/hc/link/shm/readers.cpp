@@ -13,12 +13,10 @@ namespace hc::internal {
 Result<std::unique_ptr<ShmReaders>> ShmReaders::make(ListeningSocket socket,
                                                      const SharedMemory& memory, std::uint64_t keep,
                                                      const Patience& patience) {
-  auto event = Event::make();
-  if (!event) return event.error();
-  auto read_only = memory.read_only();
-  if (!read_only) return read_only.error();
+  auto event = HC_TRY(Event::make());
+  auto read_only = HC_TRY(memory.read_only());
   std::unique_ptr<ShmReaders> readers(
-      new ShmReaders(std::move(socket), std::move(*event), std::move(*read_only)));
+      new ShmReaders(std::move(socket), std::move(event), std::move(read_only)));
   readers->head_ = reinterpret_cast<const Head*>(memory.data());
   readers->bytes_ = memory.size();
   readers->keep_ = keep;
@@ -28,10 +26,9 @@ Result<std::unique_ptr<ShmReaders>> ShmReaders::make(ListeningSocket socket,
     if (!own) refuse(peer, "another user");
     return own;
   };
-  auto watched = readers->watch_.start(readers->socket_.descriptor.get(),
-                                       [all = readers.get()](auto) { all->accept_all(); });
-  if (watched) watched = readers->watch_.want(EPOLLIN);
-  if (!watched) return watched.error();
+  HC_TRY(readers->watch_.start(readers->socket_.descriptor.get(),
+                               [all = readers.get()](auto) { all->accept_all(); }));
+  HC_TRY(readers->watch_.want(EPOLLIN));
   return readers;
 }
 
@@ -61,15 +58,14 @@ void ShmReaders::accept_all() {
   auto has_room = [] { return true; };
   socket_.accept_all(watch_, log, has_room, [this](ConnectedSocket peer) -> Status {
     auto reader = std::make_shared<ShmReader>();
-    auto started = reader->watch.start(peer.get(), [this, each = reader.get()](auto events) {
+    HC_TRY(reader->watch.start(peer.get(), [this, each = reader.get()](auto events) {
       if ((events & (EPOLLHUP | EPOLLERR)) != 0)
         let_go(*each);
       else if (!each->is_known())
         hear(*each);
       else
         note_leaving(*each);
-    });
-    if (!started) return started;
+    }));
     reader->socket = std::move(peer.descriptor);
     reader->patience = patience_;
     std::shared_ptr<ShmReader> silent;

@@ -28,18 +28,14 @@ Result<std::unique_ptr<Source>> attach(Descriptor socket, const Wishes& wishes,
                                        const LinkOptions& options) {
   auto attachment = std::make_shared<Attachment>();
   attachment->socket = std::move(socket);
-  auto page = SharedMemory::make(kPageBytes, kPageBytes);
-  if (!page) return page.error();
-  attachment->page = std::move(*page);
+  attachment->page = HC_TRY(SharedMemory::make(kPageBytes, kPageBytes));
   HC_CRASH_POINT("reader made page");
   const int connection = attachment->socket.get();
-  auto sent = send_hello(connection, wishes.keep, attachment->page, wishes.wakes->get());
-  if (!sent) return sent.error();
+  HC_TRY(send_hello(connection, wishes.keep, attachment->page, wishes.wakes->get()));
   auto source = std::make_unique<ShmSource>(attachment, wishes.wakes, wishes.spin, options);
   if (wishes.waits) {
-    auto offer = await_offer(connection, options.stop);
-    if (!offer) return offer.error();
-    source->attach(std::move(*offer));
+    auto offer = HC_TRY(await_offer(connection, options.stop));
+    source->attach(std::move(offer));
   }
   return std::unique_ptr<Source>(std::move(source));
 }
@@ -47,54 +43,43 @@ Result<std::unique_ptr<Source>> attach(Descriptor socket, const Wishes& wishes,
 }  // namespace
 
 Status check_shm_memory(const Uri& uri) {
-  auto policy = parse_policy(uri);
-  if (!policy) return policy.error();
-  if (policy->memory >= kLeastMemory) return {};
+  const auto policy = HC_TRY(parse_policy(uri));
+  if (policy.memory >= kLeastMemory) return {};
   return Error{Code::Invalid, "memory is at least " + std::to_string(kLeastMemory) +
                                   " bytes where it is shared, not " +
-                                  std::to_string(policy->memory)};
+                                  std::to_string(policy.memory)};
 }
 
 Result<std::unique_ptr<Sink>> open_shm_sink(const Uri& uri, const LinkOptions& options) {
-  if (auto named = check_name(uri); !named) return named.error();
-  if (auto enough = check_shm_memory(uri); !enough) return enough.error();
-  auto policy = parse_policy(uri);
-  if (!policy) return policy.error();
-  auto audience = Audience::make(uri, kMostReaders, *policy, options);
-  if (!audience) return audience.error();
-  auto socket = listen_unix(meeting_place(uri));
-  if (!socket) return socket.error();
-  auto memory = SharedMemory::make(policy->memory / kPageBytes * kPageBytes, kSlotsBegin);
-  if (!memory) return memory.error();
-  auto sink = std::make_unique<ShmSink>(std::move(*memory), *audience, *policy, options);
-  if (auto begun = sink->begin(std::move(*socket)); !begun) return begun.error();
+  HC_TRY(check_name(uri));
+  HC_TRY(check_shm_memory(uri));
+  auto policy = HC_TRY(parse_policy(uri));
+  auto audience = HC_TRY(Audience::make(uri, kMostReaders, policy, options));
+  auto socket = HC_TRY(listen_unix(meeting_place(uri)));
+  auto memory = HC_TRY(SharedMemory::make(policy.memory / kPageBytes * kPageBytes, kSlotsBegin));
+  auto sink = std::make_unique<ShmSink>(std::move(memory), audience, policy, options);
+  HC_TRY(sink->begin(std::move(socket)));
   return std::unique_ptr<Sink>(std::move(sink));
 }
 
 Result<std::unique_ptr<Source>> open_shm_source(const Uri& uri, const LinkOptions& options) {
-  if (auto named = check_name(uri); !named) return named.error();
-  auto spin = number_option(uri, "spin", kDefaultSpin);
-  if (!spin) return spin.error();
-  auto reconnect = number_option(uri, "reconnect", 0);
-  if (!reconnect) return reconnect.error();
-  auto policy = parse_policy(uri);
-  if (!policy) return policy.error();
+  HC_TRY(check_name(uri));
+  auto spin = HC_TRY(number_option(uri, "spin", kDefaultSpin));
+  auto reconnect = HC_TRY(number_option(uri, "reconnect", 0));
+  auto policy = HC_TRY(parse_policy(uri));
   std::uint64_t keep = kPublishersKeep;
   if (!uri.option("keep", "").empty())
-    keep = policy->writer_waits() ? 0 : std::min<std::uint64_t>(policy->keep, kPublishersKeep - 1);
-  auto wakes = make_wake_pipe();
-  if (!wakes) return wakes.error();
-  const Wishes wishes{keep, std::chrono::microseconds(*spin), *reconnect == 0, std::move(*wakes)};
+    keep = policy.writer_waits() ? 0 : std::min<std::uint64_t>(policy.keep, kPublishersKeep - 1);
+  auto wakes = HC_TRY(make_wake_pipe());
+  const Wishes wishes{keep, std::chrono::microseconds(spin), reconnect == 0, std::move(wakes)};
   Uri place = meeting_place(uri);
-  auto peer = unix_peer(place);
-  if (!peer) return peer.error();
-  peer->name = uri.rest;
+  auto peer = HC_TRY(unix_peer(place));
+  peer.name = uri.rest;
   auto open = [wishes, options](ConnectedSocket connection) {
     return attach(std::move(connection.descriptor), wishes, options);
   };
-  auto source = dial_source(*peer, uri, options, {open, wishes.wakes->get()});
-  if (!source) return source.error();
-  return make_paced(std::move(*source), *policy);
+  auto source = HC_TRY(dial_source(peer, uri, options, {open, wishes.wakes->get()}));
+  return make_paced(std::move(source), policy);
 }
 
 }  // namespace hc::internal

@@ -41,8 +41,7 @@ Status ShmSink::send(const Message& message) {
   if (ended_) return abandoned();
   refresh();
   auto fate = audience_.decide(present_);
-  for (; fate == Audience::Fate::Kept; fate = audience_.decide(present_))
-    if (auto came = await_readers(); !came) return came;
+  for (; fate == Audience::Fate::Kept; fate = audience_.decide(present_)) HC_TRY(await_readers());
   if (fate == Audience::Fate::End) return Error{Code::Closed, "the readers disconnected"};
   if (fate == Audience::Fate::Lost) {
     audience_.count_lost(traffic_);
@@ -60,9 +59,8 @@ Status ShmSink::send(const Message& message) {
     copy_words(message.elements, text + text_bytes);
     text_bytes += bytes;
   } else {
-    if (is_too_far_ahead(bytes))
-      if (auto room = let_catch_up(bytes); !room) return room;
-    if (auto placed = place(message, slot); !placed) return placed;
+    if (is_too_far_ahead(bytes)) HC_TRY(let_catch_up(bytes));
+    HC_TRY(place(message, slot));
     if (slot == nullptr) {
       ++traffic_.messages;
       ++traffic_.dropped_memory;

@@ -32,10 +32,8 @@ class ShmSink final : public Sink {
 
   /// Lets readers in; before all else. Errors: System.
   Status begin(ListeningSocket socket) {
-    auto readers = ShmReaders::make(std::move(socket), *memory_, keep_,
-                                    Patience(timeout_, options_.awaits_reader, options_.log));
-    if (!readers) return readers.error();
-    readers_ = std::move(*readers);
+    readers_ = HC_TRY(ShmReaders::make(std::move(socket), *memory_, keep_,
+                                       Patience(timeout_, options_.awaits_reader, options_.log)));
     return {};
   }
 

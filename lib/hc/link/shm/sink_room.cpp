@@ -103,7 +103,7 @@ Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>&
     if (!reader->patience.waits(reader->cursor(published_), now)) continue;
     HC_CRASH_POINT("publisher waits for room");
     futex_wait(reader->page().progress, progress, kStopCheckPeriod);
-    if (auto waited = wait_for_event(-1, options_, now); !waited) return waited;
+    HC_TRY(wait_for_event(-1, options_, now));
     if (ended_) return abandoned();
   }
 }
@@ -178,11 +178,10 @@ Status ShmSink::place(const Message& message, Slot*& slot) {
                      " bytes does not fit memory=" + std::to_string(memory_->size())};
   slot = clear_slot(bytes);
   if (slot == nullptr && keep_ == 0) {
-    auto room = wait_for_room(Head::kAnyRoom, [&] {
+    HC_TRY(wait_for_room(Head::kAnyRoom, [&] {
       slot = clear_slot(bytes);
       return slot != nullptr;
-    });
-    if (!room) return room;
+    }));
   }
   if (slot == nullptr) return {};
   HC_CRASH_POINT("publisher has slot");

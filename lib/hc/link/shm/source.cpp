@@ -43,9 +43,7 @@ Error damaged(const std::string& what) {
 
 Result<std::shared_ptr<const Descriptor>> make_wake_pipe() {
   std::array<int, 2> ends;
-  auto made =
-      system_call("pipe2", "", [&] { return ::pipe2(ends.data(), O_NONBLOCK | O_CLOEXEC); });
-  if (!made) return made.error();
+  HC_TRY(system_call("pipe2", "", [&] { return ::pipe2(ends.data(), O_NONBLOCK | O_CLOEXEC); }));
   Descriptor writer(ends[1]);  // a publisher opens its own
   return std::make_shared<const Descriptor>(ends[0]);
 }

@@ -30,9 +30,7 @@ Result<std::unique_ptr<Connection>> Connection::make(ConnectedSocket connection,
                                                      const LinkOptions& options,
                                                      std::unique_ptr<Dialer> dialer) {
   std::unique_ptr<Connection> made(new Connection(policy, options, std::move(dialer)));
-  auto started =
-      made->watch_.start(-1, [self = made.get()](auto events) { self->on_event(events); });
-  if (!started) return started.error();
+  HC_TRY(made->watch_.start(-1, [self = made.get()](auto events) { self->on_event(events); }));
   std::lock_guard lock(made->mutex_);
   auto now = clock_now();
   if (connection)

@@ -70,10 +70,9 @@ class DialingSource final : public Source {
     auto now = std::chrono::steady_clock::now();
     watch_.reset();  // before the dialer closes its descriptor
     retry_.reset();
-    auto connected = dialer_->dial(now);
-    if (!connected) return connected.error();
-    if (*connected) {
-      auto source = made_.open(std::move(*connected));
+    auto connected = HC_TRY(dialer_->dial(now));
+    if (connected) {
+      auto source = made_.open(std::move(connected));
       if (!source) {
         if (source.error().code == Code::Stopped) return source.error();
         dialer_->lost(now, false, in_words(source.error()));
@@ -131,31 +130,26 @@ class DialingSource final : public Source {
 
 /// None where the link is to end with its connection. Errors: Invalid.
 Result<std::unique_ptr<Dialer>> dialer_for(const Peer& peer, const Uri& uri) {
-  auto patience = number_option(uri, "reconnect", 0, {0, kMostSeconds});
-  if (!patience) return patience.error();
-  if (*patience == 0) return std::unique_ptr<Dialer>();
-  auto first = number_option(uri, "wait", 0, {0, kMostSeconds});
-  if (!first) return first.error();
-  if (*first == 0) first = *patience;
-  return std::make_unique<Dialer>(peer, std::chrono::seconds(*first),
-                                  std::chrono::seconds(*patience),
+  auto patience = HC_TRY(number_option(uri, "reconnect", 0, {0, kMostSeconds}));
+  if (patience == 0) return std::unique_ptr<Dialer>();
+  auto first = HC_TRY(number_option(uri, "wait", 0, {0, kMostSeconds}));
+  if (first == 0) first = patience;
+  return std::make_unique<Dialer>(peer, std::chrono::seconds(first), std::chrono::seconds(patience),
                                   std::chrono::steady_clock::now());
 }
 
 }  // namespace
 
 Result<ConnectedSocket> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options) {
-  auto wait = number_option(uri, "wait", 0, {0, kMostSeconds});
-  if (!wait) return wait.error();
-  const auto first = *wait > 0 ? std::chrono::seconds(*wait) : kAnswerTime;
+  auto wait = HC_TRY(number_option(uri, "wait", 0, {0, kMostSeconds}));
+  const auto first = wait > 0 ? std::chrono::seconds(wait) : kAnswerTime;
   Dialer dialer(peer, first, first, std::chrono::steady_clock::now());
   while (true) {
     auto connected = dialer.dial(std::chrono::steady_clock::now());
     if (connected && *connected) return connected;
-    if (!connected || (*wait == 0 && dialer.is_refused()))
+    if (!connected || (wait == 0 && dialer.is_refused()))
       return Error{Code::Closed, "connect(" + peer.name + "): " + dialer.why()};
-    auto waited = wait_for(dialer.descriptor(), dialer.events(), options.stop, dialer.due());
-    if (!waited) return waited.error();
+    HC_TRY(wait_for(dialer.descriptor(), dialer.events(), options.stop, dialer.due()));
   }
 }
 
@@ -167,27 +161,23 @@ Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
       return Result<std::unique_ptr<Source>>(
           std::make_unique<StreamSource>(std::move(connection), options));
     };
-  auto dialer = dialer_for(peer, uri);
-  if (!dialer) return dialer.error();
-  if (*dialer == nullptr) {
+  auto dialer = HC_TRY(dialer_for(peer, uri));
+  if (dialer == nullptr) {
     auto connected = connect_now(peer, uri, options);
     return connected ? made.open(std::move(*connected)) : connected.error();
   }
-  auto loop = Loop::make();
-  if (!loop) return loop.error();
+  auto loop = HC_TRY(Loop::make());
   return std::unique_ptr<Source>(
-      new DialingSource(std::move(*dialer), std::move(made), std::move(*loop), options));
+      new DialingSource(std::move(dialer), std::move(made), std::move(loop), options));
 }
 
 Result<std::unique_ptr<Sink>> dial_sink(const Peer& peer, const Uri& uri,
                                         const LinkOptions& options) {
-  auto dialer = dialer_for(peer, uri);
-  if (!dialer) return dialer.error();
-  if (*dialer != nullptr)
-    return make_stream_sink(ConnectedSocket(), uri, options, std::move(*dialer));
-  auto connected = connect_now(peer, uri, options);
-  if (!connected) return connected.error();
-  return make_stream_sink(std::move(*connected), uri, options);
+  auto dialer = HC_TRY(dialer_for(peer, uri));
+  if (dialer != nullptr)
+    return make_stream_sink(ConnectedSocket(), uri, options, std::move(dialer));
+  auto connected = HC_TRY(connect_now(peer, uri, options));
+  return make_stream_sink(std::move(connected), uri, options);
 }
 
 }  // namespace hc::internal

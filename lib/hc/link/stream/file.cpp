@@ -17,8 +17,7 @@ namespace {
 /// processes that share it; only that of a socket still blocks.
 Result<Descriptor> reopen_without_waiting(int number, int access_mode) {
   struct stat status {};
-  auto looked = system_call("fstat", "", [&] { return ::fstat(number, &status); });
-  if (!looked) return looked.error();
+  HC_TRY(system_call("fstat", "", [&] { return ::fstat(number, &status); }));
   if (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode)) {
     // A second open gets flags of its own; setting them on the first would set them for the shell
     // and for everybody else who shares it.
@@ -50,30 +49,26 @@ Result<Descriptor> open_path(const Uri& uri, int flags, int stop) {
     bool is_fifo = ::stat(path, &status) == 0 && S_ISFIFO(status.st_mode);
     if (number != ENXIO || !is_fifo) return system_error("open", uri.rest, number);
     // Nobody has opened it for reading yet.
-    auto waited = wait_for(-1, 0, stop, std::chrono::steady_clock::now() + backoff.next());
-    if (!waited) return waited.error();
+    HC_TRY(wait_for(-1, 0, stop, std::chrono::steady_clock::now() + backoff.next()));
   }
 }
 
 Result<std::unique_ptr<Source>> open_stdin(const Uri&, const LinkOptions& options) {
-  auto descriptor = reopen_without_waiting(STDIN_FILENO, O_RDONLY);
-  if (!descriptor) return descriptor.error();
-  return std::unique_ptr<Source>(new StreamSource({std::move(*descriptor)}, options));
+  auto descriptor = HC_TRY(reopen_without_waiting(STDIN_FILENO, O_RDONLY));
+  return std::unique_ptr<Source>(new StreamSource({std::move(descriptor)}, options));
 }
 
 Result<std::unique_ptr<Sink>> open_stdout(const Uri& uri, const LinkOptions& options) {
-  auto descriptor = reopen_without_waiting(STDOUT_FILENO, O_WRONLY);
-  if (!descriptor) return descriptor.error();
-  return make_stream_sink({std::move(*descriptor)}, uri, options);
+  auto descriptor = HC_TRY(reopen_without_waiting(STDOUT_FILENO, O_WRONLY));
+  return make_stream_sink({std::move(descriptor)}, uri, options);
 }
 
 Result<std::unique_ptr<Source>> open_file_source(const Uri& uri, const LinkOptions& options) {
-  auto descriptor = open_path(uri, O_RDONLY, options.stop);
-  if (!descriptor) return descriptor.error();
-  ::posix_fadvise(descriptor->get(), 0, 0, POSIX_FADV_SEQUENTIAL);
+  auto descriptor = HC_TRY(open_path(uri, O_RDONLY, options.stop));
+  ::posix_fadvise(descriptor.get(), 0, 0, POSIX_FADV_SEQUENTIAL);
   struct stat status {};
-  bool is_fifo = ::fstat(descriptor->get(), &status) == 0 && S_ISFIFO(status.st_mode);
-  return std::unique_ptr<Source>(new StreamSource({std::move(*descriptor)}, options, is_fifo));
+  bool is_fifo = ::fstat(descriptor.get(), &status) == 0 && S_ISFIFO(status.st_mode);
+  return std::unique_ptr<Source>(new StreamSource({std::move(descriptor)}, options, is_fifo));
 }
 
 }  // namespace hc::internal

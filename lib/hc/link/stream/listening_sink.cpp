@@ -32,9 +32,8 @@ class ListeningSink final : public Sink {
         options_(std::move(options)) {}
 
   Status begin() {
-    auto watched = loop_->watch(socket_.descriptor.get(), EPOLLIN, [this](auto) { accept_all(); });
-    if (!watched) return watched.error();
-    listening_ = std::move(*watched);
+    listening_ =
+        HC_TRY(loop_->watch(socket_.descriptor.get(), EPOLLIN, [this](auto) { accept_all(); }));
     return {};
   }
 
@@ -55,7 +54,7 @@ class ListeningSink final : public Sink {
         return {};
       }
       if (fate == Audience::Fate::Kept) {
-        if (auto awaited = await_readers(); !awaited) return awaited;
+        HC_TRY(await_readers());
         continue;
       }
       auto has = put_to_all(outgoing, now);
@@ -118,13 +117,12 @@ class ListeningSink final : public Sink {
         if (peers_[i]->has_failed()) leave(i);
       return peers_.size() < kMaxPeers;
     };
-    socket_.accept_all(listening_, options_.log, has_room,
-                       [this](ConnectedSocket accepted) -> Status {
-                         auto connection = Connection::make(std::move(accepted), policy_, options_);
-                         if (!connection) return connection.error();
-                         peers_.push_back(std::move(*connection));
-                         return {};
-                       });
+    socket_.accept_all(
+        listening_, options_.log, has_room, [this](ConnectedSocket accepted) -> Status {
+          auto connection = HC_TRY(Connection::make(std::move(accepted), policy_, options_));
+          peers_.push_back(std::move(connection));
+          return {};
+        });
   }
 
   /// Another link may listen here from now on, while this object still exists.
@@ -188,18 +186,15 @@ class ListeningSink final : public Sink {
           ::ioctl(peer.descriptor(), SIOCOUTQ, &unanswered) != 0 || unanswered == 0)
         return true;
       if (look_at_peer(peer.descriptor()).vanished) return false;
-      auto waited =
-          wait_for(-1, 0, options_.stop, std::chrono::steady_clock::now() + backoff.next());
-      if (!waited) return waited.error();
+      HC_TRY(wait_for(-1, 0, options_.stop, std::chrono::steady_clock::now() + backoff.next()));
     }
   }
 
   /// Whether there is a reader that has taken what was sent; one is enough.
   Result<bool> has_reader() {
     while (!peers_.empty()) {
-      auto taken = has_taken(*peers_.back());
-      if (!taken) return taken.error();
-      if (*taken) return true;
+      auto taken = HC_TRY(has_taken(*peers_.back()));
+      if (taken) return true;
       leave(peers_.size() - 1);
     }
     return false;
@@ -221,15 +216,12 @@ class ListeningSink final : public Sink {
 
 Result<std::unique_ptr<Sink>> listening_sink(ListeningSocket socket, const Uri& uri,
                                              const LinkOptions& options) {
-  auto policy = parse_policy(uri);
-  if (!policy) return policy.error();
-  auto audience = Audience::make(uri, kMaxPeers, *policy, options);
-  if (!audience) return audience.error();
-  auto loop = Loop::make();
-  if (!loop) return loop.error();
-  auto sink = std::make_unique<ListeningSink>(std::move(socket), std::move(*loop), *audience,
-                                              *policy, options);
-  if (auto begun = sink->begin(); !begun) return begun.error();
+  auto policy = HC_TRY(parse_policy(uri));
+  auto audience = HC_TRY(Audience::make(uri, kMaxPeers, policy, options));
+  auto loop = HC_TRY(Loop::make());
+  auto sink = std::make_unique<ListeningSink>(std::move(socket), std::move(loop), audience, policy,
+                                              options);
+  HC_TRY(sink->begin());
   return std::unique_ptr<Sink>(std::move(sink));
 }
 

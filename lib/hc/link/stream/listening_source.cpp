@@ -23,9 +23,8 @@ class ListeningSource final : public Source {
         times_(times) {}
 
   Status begin() {
-    auto watched = loop_->watch(socket_.descriptor.get(), EPOLLIN, [this](auto) { accept_all(); });
-    if (!watched) return watched.error();
-    listening_ = std::move(*watched);
+    listening_ =
+        HC_TRY(loop_->watch(socket_.descriptor.get(), EPOLLIN, [this](auto) { accept_all(); }));
     return {};
   }
 
@@ -34,7 +33,7 @@ class ListeningSource final : public Source {
     message = {};
     if (ready_.empty() || ++takes_ > kTakesBetween) {
       takes_ = 0;
-      if (auto asked = loop_->turn(std::chrono::milliseconds(0)); !asked) return asked.error();
+      HC_TRY(loop_->turn(std::chrono::milliseconds(0)));
     }
     while (!ready_.empty()) {
       if (turn_ >= ready_.size()) turn_ = 0;
@@ -95,16 +94,15 @@ class ListeningSource final : public Source {
     auto has_room = [&] { return !is_full() || find_idlest() != peers_.size(); };
     socket_.accept_all(listening_, options_.log, has_room, [&](ConnectedSocket accepted) -> Status {
       auto peer = std::make_unique<Peer>();
-      auto watched = loop_->watch(accepted.get(), EPOLLIN, [this, each = peer.get()](auto) {
+      auto watched = HC_TRY(loop_->watch(accepted.get(), EPOLLIN, [this, each = peer.get()](auto) {
         if (std::exchange(each->is_ready, true)) return;
         ready_.push_back(each);
-      });
-      if (!watched) return watched.error();
+      }));
       if (is_full())
         leave(*peers_[find_idlest()], "closed the peer that was silent longest, to let another in");
       set_up_reader(accepted.get());
       peer->source = std::make_unique<StreamSource>(std::move(accepted), options_);
-      peer->watch = std::move(*watched);
+      peer->watch = std::move(watched);
       peer->said_at = std::chrono::steady_clock::now();
       peers_.push_back(std::move(peer));
       return {};
@@ -148,11 +146,10 @@ class ListeningSource final : public Source {
 
 Result<std::unique_ptr<Source>> listening_source(ListeningSocket socket, const LinkOptions& options,
                                                  PeerTimes times) {
-  auto loop = Loop::make();
-  if (!loop) return loop.error();
+  auto loop = HC_TRY(Loop::make());
   auto source =
-      std::make_unique<ListeningSource>(std::move(socket), std::move(*loop), options, times);
-  if (auto begun = source->begin(); !begun) return begun.error();
+      std::make_unique<ListeningSource>(std::move(socket), std::move(loop), options, times);
+  HC_TRY(source->begin());
   return std::unique_ptr<Source>(std::move(source));
 }
 

@@ -50,11 +50,10 @@ class StreamSink final : public Sink {
 Result<std::unique_ptr<Sink>> make_stream_sink(ConnectedSocket descriptor, const Uri& uri,
                                                const LinkOptions& options,
                                                std::unique_ptr<Dialer> dialer) {
-  auto policy = parse_policy(uri);
-  if (!policy) return policy.error();
-  auto connection = Connection::make(std::move(descriptor), *policy, options, std::move(dialer));
-  if (!connection) return connection.error();
-  return std::unique_ptr<Sink>(new StreamSink(std::move(*connection)));
+  auto policy = HC_TRY(parse_policy(uri));
+  auto connection =
+      HC_TRY(Connection::make(std::move(descriptor), policy, options, std::move(dialer)));
+  return std::unique_ptr<Sink>(new StreamSink(std::move(connection)));
 }
 
 }  // namespace hc::internal

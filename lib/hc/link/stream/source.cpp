@@ -10,9 +10,8 @@
 namespace hc::internal {
 Result<Got> StreamSource::take(Message& message) {
   while (true) {
-    auto got = reader_.next(message);
-    if (!got) return got.error();
-    if (*got) return Got::Message;
+    auto got = HC_TRY(reader_.next(message));
+    if (got) return Got::Message;
     // Who asked and got an answer waits for the next one now: to read once more would be in vain.
     if (std::exchange(is_dry_, false) && between_messages()) return nothing();
     auto space = reader_.space();
@@ -37,8 +36,7 @@ Result<Got> StreamSource::take(Message& message) {
       return error;
     }
     if (size == 0 && awaits_writer()) return Got::Nothing;
-    auto end = reader_.finish();
-    if (!end) return end.error();
+    HC_TRY(reader_.finish());
     return Got::End;
   }
 }
@@ -71,9 +69,7 @@ Status StreamSource::resume() {
   auto begin = begin_ + static_cast<off_t>(reader_.message_begin());
   struct stat status {};
   if (::fstat(descriptor_.get(), &status) != 0 || !S_ISREG(status.st_mode)) return Source::resume();
-  auto moved =
-      system_call("lseek", "", [&] { return ::lseek(descriptor_.get(), begin, SEEK_SET); });
-  if (!moved) return moved.error();
+  HC_TRY(system_call("lseek", "", [&] { return ::lseek(descriptor_.get(), begin, SEEK_SET); }));
   reader_.resume();
   return {};
 }

@@ -14,14 +14,13 @@ namespace {
 using Addresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
 Result<Addresses> resolve(const Uri& uri, int flags) {
-  auto place = parse_host_port(uri.rest);
-  if (!place) return place.error();
+  auto place = HC_TRY(parse_host_port(uri.rest));
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_flags = flags | AI_NUMERICSERV;
   addrinfo* list = nullptr;
-  std::string port = std::to_string(place->port);
-  const char* host = place->host.empty() ? "127.0.0.1" : place->host.c_str();
+  std::string port = std::to_string(place.port);
+  const char* host = place.host.empty() ? "127.0.0.1" : place.host.c_str();
   int status = ::getaddrinfo(host, port.c_str(), &hints, &list);
   if (status != 0) return Error{Code::NotFound, std::string(host) + ": " + ::gai_strerror(status)};
   return Addresses(list, ::freeaddrinfo);
@@ -29,9 +28,8 @@ Result<Addresses> resolve(const Uri& uri, int flags) {
 
 /// The check of each connection with `same_user=1`; empty without it. Errors: Invalid.
 Result<std::function<Status(int)>> admission(const Uri& uri, Connected how, const char* what) {
-  auto same_user = number_option(uri, "same_user", 0, {0, 1});
-  if (!same_user) return same_user.error();
-  if (*same_user == 0) return std::function<Status(int)>();
+  auto same_user = HC_TRY(number_option(uri, "same_user", 0, {0, 1}));
+  if (same_user == 0) return std::function<Status(int)>();
   return std::function([=](int socket) { return check_own(tcp_peer_user(socket, how), what); });
 }
 
@@ -39,29 +37,21 @@ Result<std::function<Status(int)>> admission(const Uri& uri, Connected how, cons
 
 /// A name may have several addresses; localhost has two.
 Result<Peer> tcp_peer(const Uri& uri) {
-  auto list = resolve(uri, 0);
-  if (!list) return list.error();
-  auto admit = admission(uri, Connected::Dialed, kListener);
-  if (!admit) return admit.error();
+  auto list = HC_TRY(resolve(uri, 0));
   Peer peer;
   peer.name = uri.rest;
-  peer.admit = std::move(*admit);
+  peer.admit = HC_TRY(admission(uri, Connected::Dialed, kListener));
   if (peer.admit) peer.longest_pause = kLocalPause;
-  for (const addrinfo* each = list->get(); each != nullptr; each = each->ai_next)
+  for (const addrinfo* each = list.get(); each != nullptr; each = each->ai_next)
     peer.addresses.emplace_back(each->ai_addr, each->ai_addrlen);
   return peer;
 }
 
 Result<ListeningSocket> listen_tcp(const Uri& uri) {
-  auto addresses = resolve(uri, AI_PASSIVE);
-  if (!addresses) return addresses.error();
-  auto admit = admission(uri, Connected::Accepted, kAccepted);
-  if (!admit) return admit.error();
-  auto descriptor = listen_on({(*addresses)->ai_addr, (*addresses)->ai_addrlen}, uri.rest);
-  if (!descriptor) return descriptor.error();
+  auto addresses = HC_TRY(resolve(uri, AI_PASSIVE));
   ListeningSocket socket;
-  socket.descriptor = std::move(*descriptor);
-  socket.admit = std::move(*admit);
+  socket.admit = HC_TRY(admission(uri, Connected::Accepted, kAccepted));
+  socket.descriptor = HC_TRY(listen_on({addresses->ai_addr, addresses->ai_addrlen}, uri.rest));
   return socket;
 }
 

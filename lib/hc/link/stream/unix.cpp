@@ -73,25 +73,21 @@ Descriptor held_for_us(const Address& address) {
 }  // namespace
 
 Result<Peer> unix_peer(const Uri& uri) {
-  auto address = address_of(uri);
-  if (!address) return address.error();
+  auto address = HC_TRY(address_of(uri));
   Peer peer;
   peer.name = uri.rest;
-  peer.addresses = {*address};
+  peer.addresses = {address};
   peer.longest_pause = kLocalPause;
   peer.admit = admission(uri, kListener);
   return peer;
 }
 
 Result<ListeningSocket> listen_unix(const Uri& uri) {
-  auto address = address_of(uri);
-  if (!address) return address.error();
-  if (!is_abstract(uri) && is_left_behind(uri, *address)) ::unlink(uri.rest.c_str());
-  Descriptor held = held_for_us(*address);
-  auto descriptor = held ? Result<Descriptor>(std::move(held)) : listen_on(*address, uri.rest);
-  if (!descriptor) return descriptor.error();
+  auto address = HC_TRY(address_of(uri));
+  if (!is_abstract(uri) && is_left_behind(uri, address)) ::unlink(uri.rest.c_str());
   ListeningSocket socket;
-  socket.descriptor = std::move(*descriptor);
+  socket.descriptor = held_for_us(address);
+  if (!socket.descriptor) socket.descriptor = HC_TRY(listen_on(address, uri.rest));
   socket.admit = admission(uri, kAccepted);
   if (!is_abstract(uri)) socket.unlink_path = uri.rest;
   return socket;
