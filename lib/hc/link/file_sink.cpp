@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-#include <hc/link/stream/sink.h>
+#include <hc/link/stream/ends.h>
 #include <hc/link/transports.h>
 #include <hc/mtp/stream_reader.h>
 #include <hc/os/new_file.h>

@@ -87,7 +87,9 @@ class Source {
   /// Continues after an error that take() gave, at the next valid header (R40).
   ///
   /// Errors: Unsupported for everything that cannot be read once more; files can.
-  virtual Status resume();
+  virtual Status resume() {
+    return Error{Code::Unsupported, "only a file can be read on after an error"};
+  }
 
  private:
   friend class WaitSet;
@@ -112,7 +114,7 @@ class Sink {
   /// A message to be filled in place and sent: in the memory that readers will see where the
   /// transport shares any, else on the heap. Sent to another sink, it is copied there.
   /// A header that check() refuses is a bug.
-  virtual Draft loan(const Header& header);
+  virtual Draft loan(const Header& header) { return Draft::make(header); }
 
   /// Ends the link: the reader finds End behind the last message. Errors as send().
   virtual Status close() = 0;

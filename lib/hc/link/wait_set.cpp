@@ -43,6 +43,14 @@ Result<bool> Source::wait(int stop, std::chrono::milliseconds timeout) {
   return alone_->wait(self, timeout);
 }
 
+Result<bool> receive(Source& source, Message& message, int stop) {
+  while (true) {
+    const Got got = HC_TRY(source.take(message));
+    if (got != Got::Nothing) return got == Got::Message;
+    HC_TRY(source.wait(stop));
+  }
+}
+
 WaitSet::WaitSet(int stop) : stop_(stop), spin_(std::make_unique<internal::Spin>()) {}
 
 WaitSet::~WaitSet() = default;

@@ -3,12 +3,15 @@
 // What the elements of a message are: matrix type, components, scalar, encoding, and the header's
 // `info` field that says so in six decimal digits (spec/mtp-1.md, section 3). Pure.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
+#include <variant>
 
 #include <hc/base/result.h>
 
@@ -74,29 +77,12 @@ constexpr Scalar scalar_for() {
 ///     visit_scalar(info.scalar, [&](auto zero) { using T = decltype(zero); … });
 template <typename F>
 decltype(auto) visit_scalar(Scalar scalar, F&& f) {
-  switch (scalar) {
-    case Scalar::U8:
-      return f(std::uint8_t{});
-    case Scalar::I8:
-      return f(std::int8_t{});
-    case Scalar::U16:
-      return f(std::uint16_t{});
-    case Scalar::I16:
-      return f(std::int16_t{});
-    case Scalar::U32:
-      return f(std::uint32_t{});
-    case Scalar::I32:
-      return f(std::int32_t{});
-    case Scalar::U64:
-      return f(std::uint64_t{});
-    case Scalar::I64:
-      return f(std::int64_t{});
-    case Scalar::F32:
-      return f(float{});
-    case Scalar::F64:
-      break;
-  }
-  return f(double{});
+  using Zero = std::variant<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::uint32_t,
+                            std::int32_t, std::uint64_t, std::int64_t, float, double>;
+  static constexpr std::array<Zero, 10> kZeros = {
+      std::uint8_t{}, std::int8_t{},   std::uint16_t{}, std::int16_t{}, std::uint32_t{},
+      std::int32_t{}, std::uint64_t{}, std::int64_t{},  float{},        double{}};
+  return std::visit(std::forward<F>(f), kZeros[static_cast<std::size_t>(scalar)]);
 }
 
 /// What the elements of a message are and how they are written.

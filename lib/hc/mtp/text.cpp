@@ -151,12 +151,8 @@ Result<std::size_t> TextRows::read(std::string_view text, std::uint64_t byte, st
 }
 
 void append_text(const Header& header, std::span<const std::byte> elements, std::string& text) {
-  if (header.info.type == MatrixType::String) {
+  if (header.info.type == MatrixType::String || header.empty()) {
     text.append(reinterpret_cast<const char*>(elements.data()), elements.size());
-    text += '\n';
-    return;
-  }
-  if (header.empty()) {
     text += '\n';
     return;
   }

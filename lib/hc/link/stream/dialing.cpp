@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include <hc/link/stream/sink.h>
 #include <hc/link/stream/source.h>
 #include <hc/os/loop.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The ends of links between sockets: those that connect, with `wait` and `reconnect`, and those
-// that listen, with any number of peers that come and go; and the sockets of each transport.
-// Internal.
+// The ends of links that are streams of bytes, and the sockets that carry them: ends that connect,
+// with `wait` and `reconnect`, and those that listen, with any number of peers that come and go.
+// Internal. source.h is the end of one stream where messages come out.
 
 #include <functional>
 #include <memory>
@@ -15,6 +15,20 @@
 #include <hc/os/socket.h>
 
 namespace hc::internal {
+
+/// Puts messages into one stream, by a Connection.
+///
+/// A message that was begun is finished, also when it is to stop: the reader could not tell where
+/// the next one begins, and would call the stream damaged.
+///
+/// @param descriptor  its writes do not wait; those of sockets never do. May be none (-1) with a
+///     dialer, which connects again when the connection is lost.
+/// @param uri  for its policy.
+///
+/// Errors: Invalid, System.
+Result<std::unique_ptr<Sink>> make_stream_sink(ConnectedSocket descriptor, const Uri& uri,
+                                               const LinkOptions& options,
+                                               std::unique_ptr<Dialer> dialer = nullptr);
 
 /// A connection to a peer that listens, waiting for it as long as `wait` says.
 ///

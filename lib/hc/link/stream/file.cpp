@@ -6,12 +6,18 @@
 #include <unistd.h>
 
 #include <hc/base/backoff.h>
-#include <hc/link/stream/sink.h>
+#include <hc/link/stream/ends.h>
 #include <hc/link/stream/source.h>
 #include <hc/link/transports.h>
 
 namespace hc::internal {
 namespace {
+
+/// Lets a pipe hold more than the kernel's 64 KiB; harmless where it is none.
+void widen_pipe(int descriptor) {
+  constexpr int kPipeBytes = 1 << 20;
+  ::fcntl(descriptor, F_SETPIPE_SZ, kPipeBytes);
+}
 
 /// A non-blocking descriptor for what `number` is open on, without changing `number` for the other
 /// processes that share it; only that of a socket still blocks.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <hc/link/stream/sink.h>
-
 #include <hc/link/stream/connection.h>
+#include <hc/link/stream/ends.h>
 #include <hc/mtp/codec.h>
 
 namespace hc::internal {

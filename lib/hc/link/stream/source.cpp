@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/link/stream/source.h>
 
-#include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 
@@ -72,11 +71,6 @@ Status StreamSource::resume() {
   HC_TRY(system_call("lseek", "", [&] { return ::lseek(descriptor_.get(), begin, SEEK_SET); }));
   reader_.resume();
   return {};
-}
-
-void widen_pipe(int descriptor) {
-  constexpr int kPipeBytes = 1 << 20;
-  ::fcntl(descriptor, F_SETPIPE_SZ, kPipeBytes);
 }
 
 }  // namespace hc::internal

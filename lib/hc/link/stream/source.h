@@ -46,7 +46,4 @@ class StreamSource final : public Source {
   StreamReader reader_;
 };
 
-/// Lets a pipe hold more than the kernel's 64 KiB; harmless where it is none.
-void widen_pipe(int descriptor);
-
 }  // namespace hc::internal
