@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include <hc/link/stream/source.h>
+#include <hc/link/stream/ends.h>
 #include <hc/os/socket.h>
 
 namespace hc::internal {
@@ -68,6 +68,16 @@ void Connection::dial(TimePoint now) {
 void Connection::stop_watching() {
   watch_.move_to(-1);
   wanted_ = 0;
+}
+
+Status Connection::send(const Message& message) {
+  Outgoing outgoing(encoder_.encode(message), message);
+  auto sent = send(outgoing, clock_now());
+  remarks_.flush(log_);
+  if (!sent) return sent.error();
+  ++messages_;
+  bytes_ += outgoing.size();
+  return {};
 }
 
 Result<bool> Connection::send(Outgoing& message, TimePoint now) {
@@ -261,7 +271,7 @@ Status Connection::drain(std::unique_lock<std::mutex>& lock, Outgoing* message,
       give_up_reader(*message);
       break;
     }
-    flush_log();
+    remarks_.flush(log_);
     auto waited = wait(lock, give_up, now);
     if (waited) continue;
     if (waited.error().code != Code::Stopped) return waited.error();
@@ -326,6 +336,12 @@ Result<bool> Connection::wait(std::unique_lock<std::mutex>& lock, std::optional<
   return waited;
 }
 
+Status Connection::close() {
+  auto closed = close(true);
+  remarks_.flush(log_);
+  return closed;
+}
+
 Status Connection::close(bool patient) {
   std::unique_lock lock(mutex_);
   std::optional<TimePoint> give_up;
@@ -347,6 +363,18 @@ void Connection::abandon() {
   fail({Code::Closed, "the link was closed"});
 }
 
+Traffic Connection::traffic() const {
+  Traffic traffic = losses();
+  traffic.messages = messages_;
+  traffic.bytes += bytes_;
+  return traffic;
+}
+
+std::optional<std::size_t> Connection::peers() {
+  std::lock_guard lock(mutex_);
+  return connected() ? 1 : 0;
+}
+
 Traffic Connection::losses() const {
   std::lock_guard lock(mutex_);
   return losses_;
@@ -355,6 +383,15 @@ Traffic Connection::losses() const {
 bool Connection::has_failed() const {
   std::lock_guard lock(mutex_);
   return failed_.has_value();
+}
+
+Result<std::unique_ptr<Sink>> make_stream_sink(ConnectedSocket descriptor, const Uri& uri,
+                                               const LinkOptions& options,
+                                               std::unique_ptr<Dialer> dialer) {
+  auto policy = HC_TRY(parse_policy(uri));
+  std::unique_ptr<Sink> sink =
+      HC_TRY(Connection::make(std::move(descriptor), policy, options, std::move(dialer)));
+  return sink;
 }
 
 }  // namespace hc::internal

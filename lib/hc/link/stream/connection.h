@@ -55,7 +55,7 @@ class Gathering {
 ///
 /// The lock is free while a sending thread waits; that thread then sees to all there is to do, and
 /// the reactor to nothing.
-class Connection {
+class Connection final : public Sink {
  public:
   /// How long a reader may take, after `stop`, for the rest of a message.
   static constexpr std::chrono::seconds kGrace{2};
@@ -73,31 +73,29 @@ class Connection {
   static Result<std::unique_ptr<Connection>> make(ConnectedSocket connection, const Policy& policy,
                                                   const LinkOptions& options,
                                                   std::unique_ptr<Dialer> dialer = nullptr);
-  ~Connection();
+  ~Connection() override;
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
+  Status send(const Message& message) override;
+  Status close() override;
+  /// Ends the link with what can be written at once; the rest is lost.
+  void abandon() override;
+  [[nodiscard]] Traffic traffic() const override;
+  std::optional<std::size_t> peers() override;
+
+  // Of a message that goes to several, for who counts them.
   /// Takes a message; whether all that was taken is with the kernel, and not in memory of ours.
   /// Errors: as Sink::send.
   Result<bool> send(Outgoing& message, TimePoint now);
   /// Waits until all has been written, unless it is not `patient`, and ends the stream.
   /// Errors: as Sink::close.
-  Status close(bool patient = true);
-  /// Ends the link with what can be written at once; the rest is lost.
-  void abandon();
-
+  Status close(bool patient);
   /// What was lost or throttled; `bytes` is minus those of messages that were dropped.
   [[nodiscard]] Traffic losses() const;
   /// Whether the connection has failed for good.
   [[nodiscard]] bool has_failed() const;
-  /// Logs what has happened to the connection; on the thread that sends, which also hears
-  /// of it while it waits in send() or close().
-  void flush_log() { remarks_.flush(log_); }
   [[nodiscard]] int descriptor() const { return writer_.descriptor(); }
-  [[nodiscard]] bool is_connected() const {
-    const std::lock_guard lock(mutex_);
-    return connected();
-  }
 
  private:
   Connection(const Policy& policy, const LinkOptions& options, std::unique_ptr<Dialer> dialer)
@@ -157,11 +155,13 @@ class Connection {
   bool flush_is_due_ = false;  // the reactor will look at what is gathered
   std::optional<Error> failed_;
   Traffic losses_;
-  Remarks remarks_;
-  std::uint32_t wanted_ = 0;  // of watch_
-  bool waits_ = false;        // a thread, in wait()
-  bool is_sending_ = false;   // a thread, in send()
-  Watch watch_;               // of the connection or the dialer's attempt, and of the next time
+  Encoder encoder_;
+  std::uint64_t messages_ = 0, bytes_ = 0;  // that send() has taken
+  Remarks remarks_;                         // for the log of the thread that sends
+  std::uint32_t wanted_ = 0;                // of watch_
+  bool waits_ = false;                      // a thread, in wait()
+  bool is_sending_ = false;                 // a thread, in send()
+  Watch watch_;  // of the connection or the dialer's attempt, and of the next time
 };
 
 }  // namespace hc::internal
