@@ -187,14 +187,11 @@ Status Module::Loop::unlink(bool is_input, const std::string& text) {
   }
   if (!is_input) return unlink_output(*module_.outputs_[link.port], uri);
   report_counters();  // the last of this link
-  if (link.is_focus) {
-    const auto erased = std::erase_if(focus_, [&](const auto& each) { return each.uri == uri; });
-    return erased == 0 ? unknown_link() : Status();
-  }
-  auto* input = module_.inputs_[link.port].get();
   // What is taken together with this input waits for the next link, and is not ended.
-  const auto erased = std::erase_if(
-      sources_, [&](const Inlet& each) { return each.uri == uri && each.inputs.front() == input; });
+  const auto erased = std::erase_if(link.is_focus ? focus_ : sources_, [&](const Inlet& each) {
+    return each.uri == uri &&
+           (link.is_focus || each.inputs.front() == module_.inputs_[link.port].get());
+  });
   return erased == 0 ? unknown_link() : Status();
 }
 

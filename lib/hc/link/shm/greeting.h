@@ -33,12 +33,12 @@ struct Greeting {
 };
 static_assert(sizeof(Greeting) == 168);
 
-/// What a reader asks for.
+/// What a reader asks for, and hands over.
 struct Hello {
-  std::uint64_t keep = 0;  ///< as in Greeting, but never kPublishersKeep
-  bool orders = false;
-  SharedMemory page;
-  Descriptor wakes;  ///< the reader's pipe, open to be written to without waiting
+  std::uint64_t keep = 0;  ///< newest messages that wait for it at most; 0: all of them
+  bool orders = false;     ///< it can order the stores of both sides
+  SharedMemory page;       ///< a ReaderPage
+  Descriptor wakes;        ///< its pipe, open to be written to without waiting: a byte wakes it
 };
 
 /// What a publisher offers.

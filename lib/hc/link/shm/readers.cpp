@@ -64,7 +64,7 @@ void ShmReaders::accept_all() {
       else if (!each->is_known())
         hear(*each);
       else
-        note_leaving(*each);
+        note_change(*each);  // it takes no more, but may hold messages still
     }));
     reader->socket = std::move(peer.descriptor);
     reader->patience = patience_;
@@ -103,10 +103,7 @@ void ShmReaders::hear(ShmReader& reader) {
     if (why.empty() && is_full_of(true))
       why = "it has " + std::to_string(kMostReaders) + " readers already";
     if (why.empty()) {
-      reader.memory = std::move(hello->page);
-      reader.wakes = std::move(hello->wakes);
-      reader.keep = hello->keep;
-      reader.orders = hello->orders;
+      reader.hello = std::move(*hello);
       // First: a publisher that has published more than what is read here sees this when it looks
       // before it takes anything back, which the reader is to have.
       changed_.store(true, std::memory_order_relaxed);
@@ -123,17 +120,10 @@ void ShmReaders::hear(ShmReader& reader) {
   HC_CRASH_POINT("publisher knows reader");
   // Edge-triggered: the reader's end of its direction, and then that of the connection.
   static_cast<void>(reader.watch.want(EPOLLRDHUP | EPOLLET));
-  Offer offer{reader.begin, reader.keep, {}};
+  Offer offer{reader.begin, reader.hello.keep, {}};
   if (!answer(reader.socket.get(), offer, bytes_, read_only_.get())) return let_go(reader);
   HC_CRASH_POINT("publisher answered");
-  std::lock_guard lock(mutex_);
-  tell_change(reader);
-}
-
-/// A reader takes no more, but may hold messages still.
-void ShmReaders::note_leaving(const ShmReader& reader) {
-  std::lock_guard lock(mutex_);
-  tell_change(reader);
+  note_change(reader);
 }
 
 /// A reader or stranger has left, or died, which looks the same: what it held is free.
@@ -147,6 +137,11 @@ void ShmReaders::let_go(ShmReader& reader) {
   owner = std::move(*found);
   all_.erase(found);
   if (reader.is_known()) tell_change(reader);
+}
+
+void ShmReaders::note_change(const ShmReader& reader) {
+  std::lock_guard lock(mutex_);
+  tell_change(reader);
 }
 
 /// With the lock, so that refresh() sees the flag and the event together.
@@ -183,7 +178,7 @@ void ShmReaders::end_waits() {
 std::uint64_t ShmReaders::taken_by_all(std::uint64_t published) {
   std::uint64_t taken = published;
   for (const auto& reader : current_)
-    if (reader->keep == 0 && !is_given_up(*reader, published))
+    if (reader->hello.keep == 0 && !is_given_up(*reader, published))
       taken = std::min(taken, reader->cursor(published));
   return taken;
 }
@@ -192,7 +187,8 @@ std::uint64_t ShmReaders::wanted_by_none(std::uint64_t published) const {
   std::uint64_t end = published;
   for (const auto& reader : current_) {
     auto cursor = reader->cursor(published);
-    if (reader->keep > 0 && published - cursor > reader->keep) cursor = published - reader->keep;
+    if (reader->hello.keep > 0 && published - cursor > reader->hello.keep)
+      cursor = published - reader->hello.keep;
     end = std::min(end, cursor);
   }
   return end;
@@ -203,7 +199,7 @@ std::shared_ptr<ShmReader> ShmReaders::blocker(std::uint64_t published) {
   for (const auto& reader : current_) {
     if (is_given_up(*reader, published)) continue;
     auto cursor = reader->cursor(published);
-    if (reader->keep == 0 && cursor < published &&
+    if (reader->hello.keep == 0 && cursor < published &&
         (slowest == nullptr || cursor < slowest->cursor(published)))
       slowest = reader;
     for (const auto& held : reader->page().held)
@@ -219,7 +215,7 @@ bool ShmReaders::wake() {
     if (armed == 0 || armed == reader->woken) continue;
     reader->woken = armed;
     any = true;
-    [[maybe_unused]] const auto size = ::write(reader->wakes.get(), "!", 1);
+    [[maybe_unused]] const auto size = ::write(reader->hello.wakes.get(), "!", 1);
   }
   return any;
 }

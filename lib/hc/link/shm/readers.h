@@ -22,10 +22,7 @@ namespace hc::internal {
 /// One reader, as its publisher sees it.
 struct ShmReader {
   Descriptor socket;
-  Descriptor wakes;         ///< a pipe: a byte wakes the reader
-  SharedMemory memory;      ///< a ReaderPage
-  std::uint64_t keep = 0;   ///< newest messages that wait for it at most; 0: all of them
-  bool orders = false;      ///< it can order the stores of both sides
+  Hello hello;              ///< what it has said
   std::uint64_t begin = 0;  ///< position of its first message
   std::uint64_t seen = 0;   ///< how far it said that it is, at most; of the publisher's thread
   std::uint32_t woken = 0;  ///< what `armed` said when it was woken last
@@ -33,9 +30,9 @@ struct ShmReader {
   Watch watch;              ///< last, so that it ends first
 
   /// Whether it has said what it is; a stranger has not.
-  [[nodiscard]] bool is_known() const { return memory.data() != nullptr; }
+  [[nodiscard]] bool is_known() const { return hello.page.data() != nullptr; }
   [[nodiscard]] const ReaderPage& page() const {
-    return *reinterpret_cast<const ReaderPage*>(memory.data());
+    return *reinterpret_cast<const ReaderPage*>(hello.page.data());
   }
   [[nodiscard]] bool left() const {
     return page().cursor.load(std::memory_order_acquire) == ReaderPage::kLeft;
@@ -99,7 +96,7 @@ class ShmReaders {
   void hear(ShmReader& reader);
   void let_go(ShmReader& reader);
   [[nodiscard]] bool is_full_of(bool known) const;
-  void note_leaving(const ShmReader& reader);
+  void note_change(const ShmReader& reader);
   void tell_change(const ShmReader& reader);
   void remark(std::string line);
   bool is_given_up(ShmReader& reader, std::uint64_t published);

@@ -19,8 +19,9 @@ class Waker {
 
   /// To be called when readers came or went.
   void meet(const std::vector<std::shared_ptr<ShmReader>>& readers) {
-    may_leave_fence_ = ordering_ && std::all_of(readers.begin(), readers.end(),
-                                                [](const auto& each) { return each->orders; });
+    may_leave_fence_ =
+        ordering_ && std::all_of(readers.begin(), readers.end(),
+                                 [](const auto& each) { return each->hello.orders; });
     fence_again();
   }
 
