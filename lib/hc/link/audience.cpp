@@ -1,23 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/link/audience.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <utility>
 
-#include <hc/os/wait_readable.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::internal {
 
 Status wait_for_event(int descriptor, LinkOptions& options, TimePoint until) {
   auto& [interrupter, call] = options.interrupt;
-  auto timeout = std::chrono::milliseconds(-1);
-  if (until != TimePoint::max())
-    timeout = std::max(std::chrono::milliseconds(0), std::chrono::ceil<std::chrono::milliseconds>(
-                                                         until - std::chrono::steady_clock::now()));
-  auto ready = HC_TRY(wait_readable(std::array{descriptor, interrupter}, options.stop, timeout));
-  if (ready == 1 && !call()) interrupter = -1;
+  std::array<pollfd, 3> polled = {
+      {{descriptor, POLLIN, 0}, {interrupter, POLLIN, 0}, {options.stop, POLLIN, 0}}};
+  HC_TRY(poll_until(polled, until));
+  if (polled[2].revents != 0) return Error{Code::Stopped, "asked to stop"};
+  if (polled[1].revents != 0 && !call()) interrupter = -1;
   return {};
 }
 

@@ -6,19 +6,20 @@
 
 namespace hc::internal {
 
-Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline) {
+Result<int> poll_until(std::span<pollfd> polled, Deadline deadline) {
   using std::chrono::nanoseconds;
+  return system_call("ppoll", "", [&] {
+    const bool is_limited = deadline != Deadline::max();
+    nanoseconds left(0);
+    if (is_limited) left = std::max(left, nanoseconds(deadline - Deadline::clock::now()));
+    const timespec time{left.count() / std::nano::den, left.count() % std::nano::den};
+    return ::ppoll(polled.data(), polled.size(), is_limited ? &time : nullptr, nullptr);
+  });
+}
+
+Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline) {
   std::array<pollfd, 2> polled = {{{descriptor, events, 0}, {stop, POLLIN, 0}}};
-  auto ready = HC_TRY(system_call("ppoll", "", [&] {
-    timespec left{};
-    if (deadline != Deadline::max()) {
-      auto time =
-          std::max<nanoseconds>(nanoseconds(0), deadline - std::chrono::steady_clock::now());
-      left = {time.count() / std::nano::den, time.count() % std::nano::den};
-    }
-    return ::ppoll(polled.data(), polled.size(), deadline == Deadline::max() ? nullptr : &left,
-                   nullptr);
-  }));
+  const int ready = HC_TRY(poll_until(polled, deadline));
   if (polled[0].revents == 0 && polled[1].revents != 0)
     return Error{Code::Stopped, "asked to stop"};
   return ready > 0;

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -70,8 +71,11 @@ Result<Descriptor> open_descriptor(std::string_view name, std::string_view argum
 
 using Deadline = std::chrono::steady_clock::time_point;
 
-/// Waits until `descriptor` has one of the poll events; false when `deadline` passes first, which
-/// Deadline::max() never does.
+/// poll(), until `deadline` at most, which Deadline::max() never is; gives how many have events.
+/// Errors: System.
+Result<int> poll_until(std::span<pollfd> polled, Deadline deadline);
+
+/// Waits until `descriptor` has one of the poll events; false when `deadline` passes first.
 ///
 /// Errors: Stopped when `stop` is readable and the descriptor has none of the events; System.
 Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline = Deadline::max());

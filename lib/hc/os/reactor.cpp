@@ -29,11 +29,11 @@ class Watch::Reactor {
   Status add(State& state, int descriptor, Loop::Callback callback) {
     std::lock_guard lock(mutex);
     if (loop_ == nullptr) {
-      loop_ = HC_TRY(Loop::make());
-      if (auto started = start(); !started) {
-        loop_.reset();
-        return started;
-      }
+      auto loop = HC_TRY(Loop::make());
+      auto thread = HC_TRY(start_thread([this] { run(); }));  // which waits for the lock
+      thread_ = thread.get_id();
+      thread.detach();
+      loop_ = std::move(loop);
     }
     state.handle = std::move(*loop_->watch(descriptor, 0, std::move(callback)));
     return {};
@@ -64,13 +64,6 @@ class Watch::Reactor {
   std::mutex mutex;
 
  private:
-  Status start() {
-    auto thread = HC_TRY(start_thread([this] { run(); }));
-    thread_ = thread.get_id();
-    thread.detach();
-    return {};
-  }
-
   [[noreturn]] void run() {
     lock_ = std::unique_lock(mutex);
     while (true) {

@@ -24,7 +24,6 @@ class StreamWriter {
   /// @param descriptor  non-blocking, unless it is a socket. -1: none, for now.
   void start(ConnectedSocket descriptor);
   [[nodiscard]] int descriptor() const { return descriptor_.get(); }
-  [[nodiscard]] bool is_socket() const { return is_socket_; }
   [[nodiscard]] bool empty() const { return gathered() == 0 && large_left_ == 0 && !has_unsent(); }
   /// Bytes that have been written, over all descriptors.
   [[nodiscard]] std::uint64_t total() const { return total_; }
