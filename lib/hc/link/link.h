@@ -151,13 +151,7 @@ struct LinkOptions {
 
 /// Opens the end of a link where messages come out, or go in.
 ///
-/// `-` is standard input or output, `file:PATH` a file, `tcp:HOST:PORT` and `unix:PATH` a peer that
-/// listens (`unix:@NAME` in the abstract namespace, without a file), `tcp-listen:[HOST:]PORT` and
-/// `unix-listen:PATH` wait for peers, `tls` and `tls-listen` are tcp encrypted (lib/tls),
-/// `shm:NAME` is memory that the sink's process shares with any number of sources of this host and
-/// user, `inproc:NAME` another thread of it, `dds:TOPIC` any number of writers and readers in a
-/// network, by Cyclone DDS (lib/dds). What options each end has, and what they do: doc/modules.md,
-/// "Links".
+/// What URIs there are, and what options each end has: doc/modules.md, "Links".
 ///
 /// Errors: Invalid (no such scheme; an option that it does not have, or not with that value),
 /// NotFound (no such file or host), Closed (nobody listens), Stopped, System (name in use, …).

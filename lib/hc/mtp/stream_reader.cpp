@@ -95,11 +95,10 @@ Result<bool> StreamReader::read_head(Message& message) {
   std::size_t head = line->bytes;
   std::uint64_t length = header_.element_bytes();
   if (internal::is_compressed(header_)) {
-    auto part = internal::read_length_line(unread().substr(head), limits_, byte_ + head);
-    if (!part) return part.error();
-    if (part->bytes == 0) return false;
-    head += part->bytes;
-    length = part->length;
+    auto part = HC_TRY(internal::read_length_line(unread().substr(head), limits_, byte_ + head));
+    if (part.bytes == 0) return false;
+    head += part.bytes;
+    length = part.length;
   }
   if (length > kMaxInBlock) {
     consume(head);
@@ -110,10 +109,9 @@ Result<bool> StreamReader::read_head(Message& message) {
   }
 
   if (unread().size() < head + length) return false;
-  auto closing =
-      internal::read_closing(header_, unread().substr(head + length), byte_ + head + length);
-  if (!closing) return closing.error();
-  if (*closing == 0) return false;
+  const auto end = head + length;
+  auto closing = HC_TRY(internal::read_closing(header_, unread().substr(end), byte_ + end));
+  if (closing == 0) return false;
   // Elements are moved to the left onto the head, which nobody needs any more, until they are
   // aligned.
   std::byte* elements = block_.get() + begin_ + head;
@@ -123,7 +121,7 @@ Result<bool> StreamReader::read_head(Message& message) {
     elements -= excess;
   }
   elements_begin_ = byte_ + head;
-  consume(head + length + *closing);
+  consume(end + closing);
   return deliver(message, {elements, length}, block_);
 }
 
@@ -132,9 +130,8 @@ Result<bool> StreamReader::read_rows(Message& message) {
   std::uint64_t scalar = size_of(header_.info.scalar);
   std::uint64_t most = (rows_.count() + unread().size() / 2 + 1) * scalar;
   if (body_capacity_ < body_size_ && body_capacity_ < most) grow_body(most);
-  auto used = rows_.read(unread(), byte_, body_.get() + rows_.count() * scalar);
-  if (!used) return used.error();
-  consume(*used);
+  auto used = HC_TRY(rows_.read(unread(), byte_, body_.get() + rows_.count() * scalar));
+  consume(used);
   if (!rows_.done()) return false;
   return deliver(message, {body_.get(), body_size_}, body_);
 }
@@ -149,10 +146,9 @@ Result<bool> StreamReader::read_body(Message& message) {
     consume(size);
   }
   if (body_filled_ < body_size_) return false;
-  auto closing = internal::read_closing(header_, unread(), byte_);
-  if (!closing) return closing.error();
-  if (*closing == 0) return false;
-  consume(*closing);
+  auto closing = HC_TRY(internal::read_closing(header_, unread(), byte_));
+  if (closing == 0) return false;
+  consume(closing);
   return deliver(message, {body_.get(), body_size_}, body_);
 }
 

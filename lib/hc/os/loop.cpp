@@ -43,9 +43,7 @@ Loop::Handle Loop::call_at(TimePoint when, std::function<void()> callback) {
 }
 
 Status Loop::want(std::uint64_t id, std::uint32_t events) {
-  auto found = entries_.find(id);
-  if (found == entries_.end()) return {};
-  Entry& entry = *found->second;
+  Entry& entry = *entries_.at(id);
   if (events == entry.wanted && (events & EPOLLONESHOT) == 0) return {};
   int operation = events == 0 ? EPOLL_CTL_DEL : entry.wanted == 0 ? EPOLL_CTL_ADD : EPOLL_CTL_MOD;
   auto done = control(operation, entry.descriptor, events, id);
@@ -55,15 +53,14 @@ Status Loop::want(std::uint64_t id, std::uint32_t events) {
 
 void Loop::move(std::uint64_t id, int descriptor) {
   static_cast<void>(want(id, 0));
-  if (auto found = entries_.find(id); found != entries_.end())
-    found->second->descriptor = descriptor;
+  entries_.at(id)->descriptor = descriptor;
 }
 
 void Loop::set_due(std::uint64_t id, TimePoint when) {
-  auto found = entries_.find(id);
-  if (found == entries_.end() || found->second->due <= when) return;
-  due_.erase({found->second->due, id});
-  found->second->due = when;
+  Entry& entry = *entries_.at(id);
+  if (entry.due <= when) return;
+  due_.erase({entry.due, id});
+  entry.due = when;
   due_.emplace(when, id);
   if (when < timer_due_) set_timer(when);
 }
@@ -86,10 +83,7 @@ void Loop::arm(TimePoint when) const {
 }
 
 void Loop::remove(std::uint64_t id) {
-  auto found = entries_.find(id);
-  if (found == entries_.end()) return;
-  auto entry = found->second;  // what its callback holds may end other watches
-  entries_.erase(found);
+  const auto entry = entries_.extract(id).mapped();  // what it holds may end other watches
   due_.erase({entry->due, id});
   if (entry->due == timer_due_ && entry->due != TimePoint::max()) set_timer(next_due());
   if (entry->wanted != 0) static_cast<void>(control(EPOLL_CTL_DEL, entry->descriptor, 0, id));

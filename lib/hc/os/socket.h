@@ -85,11 +85,8 @@ constexpr std::chrono::milliseconds kVanishTime{3500};
 /// is said: it is asked after 1 and 2 s, and given up after 3 s. Harmless where the socket is not
 /// TCP.
 void set_up_connection(int socket);
-/// Has a connection that only receives end by time too (TCP_USER_TIMEOUT), however few its own
-/// questions.
-///
-/// Not for a connection that sends: there the kernel also counts the time in which a slow reader
-/// has no room, and would end the link to it. See look_at_peer().
+/// Has a connection that only receives end by time too (TCP_USER_TIMEOUT). One that sends would end
+/// when a slow reader has no room for as long; see look_at_peer().
 void set_up_reader(int socket);
 
 /// What a socket's kernel knows of the peer's kernel.

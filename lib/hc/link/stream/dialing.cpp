@@ -34,7 +34,7 @@ class DialingSource final : public Source {
         auto dialed = finishing_ ? Status() : dial();
         ended_ = finishing_ || !dialed;
         if (!dialed && dialed.error().code == Code::NotFound) return dialed.error();
-        if (!dialed) log(in_words(dialed.error()));
+        if (!dialed && options_.log) options_.log(Level::Warning, in_words(dialed.error()));
         if (source_ == nullptr) break;
       }
       auto got = source_->take(message);
@@ -108,10 +108,6 @@ class DialingSource final : public Source {
   void watch(int descriptor, short events) {
     auto watched = loop_->watch(descriptor, static_cast<std::uint32_t>(events), [](auto) {});
     if (watched) watch_ = std::move(*watched);
-  }
-
-  void log(std::string_view line) const {
-    if (options_.log) options_.log(Level::Warning, line);
   }
 
   std::unique_ptr<Dialer> dialer_;
