@@ -30,36 +30,24 @@ struct Channel {
   Watch timer;            // raises the first when one may
 };
 
-/// The channels by name, for as long as somebody holds them.
-class Channels {
- public:
-  Result<std::shared_ptr<Channel>> join(const std::string& name, bool Channel::*end) {
-    std::lock_guard lock(mutex_);
-    std::erase_if(channels_, [](const auto& entry) { return entry.second.expired(); });
-    auto channel = channels_[name].lock();
-    if (channel == nullptr) {
-      channel = std::make_shared<Channel>();
-      for (Event* event : {&channel->readable, &channel->writable}) {
-        *event = HC_TRY(Event::make());
-      }
-      channels_[name] = channel;
-    }
-    std::lock_guard channel_lock(channel->mutex);
-    if ((*channel).*end)
-      return Error{Code::System, "inproc:" + name + ": this end is in use already"};
-    (*channel).*end = true;
-    return channel;
+/// Takes an end of the channel of that name: two threads that agree on a name meet here.
+Result<std::shared_ptr<Channel>> join(const std::string& name, bool Channel::*end) {
+  static std::mutex mutex;
+  static std::map<std::string, std::weak_ptr<Channel>> channels;  // as long as somebody holds them
+  std::lock_guard lock(mutex);
+  std::erase_if(channels, [](const auto& entry) { return entry.second.expired(); });
+  auto channel = channels[name].lock();
+  if (channel == nullptr) {
+    channel = std::make_shared<Channel>();
+    channel->readable = HC_TRY(Event::make());
+    channel->writable = HC_TRY(Event::make());
+    channels[name] = channel;
   }
-
- private:
-  std::mutex mutex_;
-  std::map<std::string, std::weak_ptr<Channel>> channels_;
-};
-
-/// A name that two threads agree on needs one place in the process to meet.
-Channels& channels() {
-  static Channels all;
-  return all;
+  std::lock_guard channel_lock(channel->mutex);
+  if ((*channel).*end)
+    return Error{Code::System, "inproc:" + name + ": this end is in use already"};
+  (*channel).*end = true;
+  return channel;
 }
 
 class InprocSource final : public Source {
@@ -176,13 +164,13 @@ class InprocSink final : public Sink {
 }  // namespace
 
 Result<std::unique_ptr<Source>> open_inproc_source(const Uri& uri, const LinkOptions&) {
-  auto channel = HC_TRY(channels().join(uri.rest, &Channel::has_source));
+  auto channel = HC_TRY(join(uri.rest, &Channel::has_source));
   return std::unique_ptr<Source>(new InprocSource(std::move(channel)));
 }
 
 Result<std::unique_ptr<Sink>> open_inproc_sink(const Uri& uri, const LinkOptions& options) {
   auto policy = HC_TRY(parse_policy(uri));
-  auto joined = HC_TRY(channels().join(uri.rest, &Channel::has_sink));
+  auto joined = HC_TRY(join(uri.rest, &Channel::has_sink));
   auto& channel = *joined;
   std::unique_ptr<Sink> sink(new InprocSink(joined, policy, options));
   if (policy.is_paced()) {
