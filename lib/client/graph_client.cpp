@@ -31,10 +31,8 @@ Status GraphClient::watch(Callbacks callbacks) {
   callbacks_ = std::move(callbacks);
   LinkOptions options;
   options.limits.element_bytes = kMaxStateBytes;
-  auto states = Intake::make(
-      loop_, graph_.state_uri(), [this](const Message& message) { take(message); }, options);
-  if (!states) return states.error();
-  states_ = std::move(*states);
+  states_ = HC_TRY(Intake::make(
+      loop_, graph_.state_uri(), [this](const Message& message) { take(message); }, options));
   states_->on_end([this] { end(); });
   return {};
 }
@@ -58,16 +56,13 @@ void GraphClient::end() {
 Status GraphClient::open() {
   static std::atomic<unsigned> clients{0};
   reply_ = hc::format("unix:@hypercolumn-answer.{}.{}", ::getpid(), clients++);
-  auto answers = Intake::make(loop_, "unix-listen" + reply_.substr(reply_.find(':')),
-                              [this](const Message& message) { take_answer(message); });
-  if (!answers) return answers.error();
-  auto uri = parse_uri(graph_.command_uri());
-  if (!uri) return uri.error();
-  uri->options = {{"keep", std::to_string(kMaxWaiting)}};  // so that nothing is waited for
-  auto commands = open_sink(*uri);
-  if (!commands) return commands.error();
-  answers_ = std::move(*answers);
-  commands_ = std::move(*commands);
+  auto answers = HC_TRY(Intake::make(loop_, "unix-listen" + reply_.substr(reply_.find(':')),
+                                     [this](const Message& message) { take_answer(message); }));
+  auto uri = HC_TRY(parse_uri(graph_.command_uri()));
+  uri.options = {{"keep", std::to_string(kMaxWaiting)}};  // so that nothing is waited for
+  auto commands = HC_TRY(open_sink(uri));
+  answers_ = std::move(answers);
+  commands_ = std::move(commands);
   return {};
 }
 
@@ -113,21 +108,14 @@ void GraphClient::fail(const Error& error) {
 }
 
 Result<GraphAnswer> ask(const RunningGraph& graph, std::vector<std::string> commands, int stop) {
-  auto loop = internal::Loop::make();
-  if (!loop) return loop.error();
+  auto loop = HC_TRY(internal::Loop::make());
   std::optional<Result<GraphAnswer>> answer;
-  internal::Loop::Handle stopped;
-  if (stop >= 0) {
-    auto watched = (*loop)->watch(stop, EPOLLIN, [&](auto) {
-      answer = Error{Code::Stopped, "asked to stop"};
-    });
-    if (!watched) return watched.error();
-    stopped = std::move(*watched);
-  }
-  GraphClient client(**loop, graph);
+  const auto stopped = HC_TRY(loop->watch(stop, stop < 0 ? 0U : EPOLLIN, [&](auto) {
+    answer = Error{Code::Stopped, "asked to stop"};
+  }));
+  GraphClient client(*loop, graph);
   client.command(std::move(commands), [&](const auto& answered) { answer = answered; });
-  while (!answer)
-    if (auto turned = (*loop)->turn(); !turned) return turned.error();
+  while (!answer) HC_TRY(loop->turn());
   return *answer;
 }
 

@@ -22,17 +22,14 @@ using internal::Descriptor;
 class TapSource final : public Source {
  public:
   static Result<std::unique_ptr<Source>> make(std::unique_ptr<Source> source, Descriptor graph) {
-    auto poll =
-        internal::system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); });
-    if (!poll) return poll.error();
-    Descriptor both(*poll);
+    Descriptor both(HC_TRY(
+        internal::system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); })));
     for (const auto& [number, events] :
          {std::pair(source->descriptor(), EPOLLIN), {graph.get(), EPOLLRDHUP}}) {
       epoll_event event{static_cast<std::uint32_t>(events), {}};
-      auto added = internal::system_call("epoll_ctl", "", [&, watched = number] {
+      HC_TRY(internal::system_call("epoll_ctl", "", [&, watched = number] {
         return ::epoll_ctl(both.get(), EPOLL_CTL_ADD, watched, &event);
-      });
-      if (!added) return added.error();
+      }));
     }
     return std::unique_ptr<Source>(
         new TapSource(std::move(source), std::move(graph), std::move(both)));
@@ -74,23 +71,19 @@ void yield_to_robot() {
 }  // namespace
 
 Result<Uri> tap_uri(const RunningGraph& graph, const std::string& port, int stop) {
-  auto answer = ask(graph, {"observe " + port}, stop);
-  if (!answer) return answer.error();
-  if (!answer->is_ok || answer->rows.empty())
-    return Error{Code::Invalid, answer->is_ok ? "no URI in the answer" : answer->rows.back()};
-  return parse_uri(answer->rows.front());
+  auto answer = HC_TRY(ask(graph, {"observe " + port}, stop));
+  if (!answer.is_ok || answer.rows.empty())
+    return Error{Code::Invalid, answer.is_ok ? "no URI in the answer" : answer.rows.back()};
+  return parse_uri(answer.rows.front());
 }
 
 Result<std::unique_ptr<Source>> open_tap(const RunningGraph& graph, const std::string& port,
                                          const LinkOptions& options) {
-  auto connection = connect_to(graph);
-  if (!connection) return connection.error();
-  auto uri = tap_uri(graph, port, options.stop);
-  if (!uri) return uri.error();
-  uri->options.emplace_back("reconnect", "86400");
-  auto source = open_source(*uri, options);
-  if (!source) return source.error();
-  return TapSource::make(std::move(*source), std::move(*connection));
+  auto connection = HC_TRY(connect_to(graph));
+  auto uri = HC_TRY(tap_uri(graph, port, options.stop));
+  uri.options.emplace_back("reconnect", "86400");
+  auto source = HC_TRY(open_source(uri, options));
+  return TapSource::make(std::move(source), std::move(connection));
 }
 
 Tap::Tap(RunningGraph graph, std::string port, Callbacks callbacks)

@@ -206,7 +206,7 @@ std::vector<std::string> Graph::host_names() const {
 }
 
 Status check_policy(Uri policy) {
-  if (auto conversion = take_conversion(policy); !conversion) return conversion.error();
+  HC_TRY(take_conversion(policy));
   auto valid = internal::parse_policy(policy);
   return valid ? Status() : valid.error();
 }

@@ -15,15 +15,13 @@ Result<std::shared_ptr<const HeldPort>> hold_port(bool of_all_addresses, std::ui
   place.sin_port = htons(number);
   place.sin_addr.s_addr = htonl(of_all_addresses ? INADDR_ANY : INADDR_LOOPBACK);
   const internal::Address address(&place, sizeof place);
-  auto socket = internal::bind_socket(
-      address, (of_all_addresses ? "0.0.0.0:" : "127.0.0.1:") + std::to_string(number));
-  if (!socket) return socket.error();
+  auto socket = HC_TRY(internal::bind_socket(
+      address, (of_all_addresses ? "0.0.0.0:" : "127.0.0.1:") + std::to_string(number)));
   socklen_t size = sizeof place;
-  auto named = internal::system_call("getsockname", "", [&] {
-    return ::getsockname(socket->get(), reinterpret_cast<sockaddr*>(&place), &size);
-  });
-  if (!named) return named.error();
-  return std::make_shared<const HeldPort>(HeldPort{std::move(*socket), ntohs(place.sin_port)});
+  HC_TRY(internal::system_call("getsockname", "", [&] {
+    return ::getsockname(socket.get(), reinterpret_cast<sockaddr*>(&place), &size);
+  }));
+  return std::make_shared<const HeldPort>(HeldPort{std::move(socket), ntohs(place.sin_port)});
 }
 
 }  // namespace hc

@@ -151,8 +151,7 @@ std::vector<std::string> environment_with(const std::vector<int>& listeners) {
 
 Result<std::array<Descriptor, 2>> make_pipe() {
   int ends[2];
-  auto made = system_call("pipe2", "", [&] { return ::pipe2(ends, O_CLOEXEC); });
-  if (!made) return made.error();
+  HC_TRY(system_call("pipe2", "", [&] { return ::pipe2(ends, O_CLOEXEC); }));
   return std::array<Descriptor, 2>{Descriptor(ends[0]), Descriptor(ends[1])};
 }
 
@@ -162,21 +161,14 @@ Result<Process> Process::start(const std::vector<std::string>& command, Capture 
                                const Given& given) {
   const auto words = environment_with(given.listeners);
   const auto arguments = pointers(command), environment = pointers(words);
-  auto output = make_pipe();
-  if (!output) return output.error();
-  auto failure = make_pipe();
-  if (!failure) return failure.error();
-  auto life = make_pipe();
-  if (!life) return life.error();
+  auto output = HC_TRY(make_pipe());
+  auto failure = HC_TRY(make_pipe());
+  auto life = HC_TRY(make_pipe());
   std::array<Descriptor, 2> input, errors;
   if (capture == Capture::Both)
-    for (auto* ends : {&input, &errors}) {
-      auto made = make_pipe();
-      if (!made) return made.error();
-      *ends = std::move(*made);
-    }
+    for (auto* ends : {&input, &errors}) *ends = HC_TRY(make_pipe());
 
-  const int captured = (*output)[1].get();
+  const int captured = output[1].get();
   const bool is_both = capture == Capture::Both;
   const Start start{arguments.data(),
                     input[0].get(),
@@ -184,8 +176,8 @@ Result<Process> Process::start(const std::vector<std::string>& command, Capture 
                     is_both                      ? errors[1].get()
                     : capture == Capture::Errors ? captured
                                                  : -1,
-                    (*failure)[1].get(),
-                    (*life)[0].get(),
+                    failure[1].get(),
+                    life[0].get(),
                     &given,
                     environment.data()};
   pid_t child = ::fork();
@@ -195,17 +187,17 @@ Result<Process> Process::start(const std::vector<std::string>& command, Capture 
   Process process;
   process.number_ = child;
   process.handle_ = Descriptor(static_cast<int>(::syscall(SYS_pidfd_open, child, 0)));
-  process.output_ = std::move((*output)[0]);
+  process.output_ = std::move(output[0]);
   process.errors_ = std::move(errors[0]);
   process.input_ = std::move(input[1]);
-  process.life_ = std::move((*life)[1]);
+  process.life_ = std::move(life[1]);
   for (const auto* ours : {&process.output_, &process.errors_, &process.input_})
     if (*ours) ::fcntl(ours->get(), F_SETFL, O_NONBLOCK);
   // The pipe closes when exec succeeds.
-  (*failure)[1].reset();
+  failure[1].reset();
   int number = 0;
   auto size =
-      system_call("read", "", [&] { return ::read((*failure)[0].get(), &number, sizeof number); });
+      system_call("read", "", [&] { return ::read(failure[0].get(), &number, sizeof number); });
   if (size && *size == sizeof number) return system_error("exec", command[0], number);
   if (!process.handle_) return system_error("pidfd_open", command[0]);
   return process;

@@ -36,26 +36,24 @@ struct Described {
 
 /// Runs `program --describe` to its end.
 Result<Described> run_describe(const std::string& program, Process::Capture capture, int stop) {
-  auto process = Process::start({program, "--describe"}, capture);
-  if (!process) return process.error();
+  auto process = HC_TRY(Process::start({program, "--describe"}, capture));
   Described described;
   auto give_up = MonotonicClock::now() + kDescribeTime;
   auto wait = [&](int descriptor) -> Status {
     auto left = std::chrono::ceil<milliseconds>(give_up - MonotonicClock::now());
     std::array<int, 1> descriptors = {descriptor};
-    auto ready = wait_readable(descriptors, stop, std::max(left, milliseconds(0)));
-    if (!ready) return ready.error();
-    if (*ready == 1) return Error{Code::System, program + " --describe does not end"};
+    auto ready = HC_TRY(wait_readable(descriptors, stop, std::max(left, milliseconds(0))));
+    if (ready == 1) return Error{Code::System, program + " --describe does not end"};
     return {};
   };
   while (described.text.size() <= kMaxDescription) {
-    if (auto ready = wait(process->output()); !ready) return ready.error();
+    HC_TRY(wait(process.output()));
     char piece[4096];
-    ssize_t size = ::read(process->output(), piece, sizeof piece);
+    ssize_t size = ::read(process.output(), piece, sizeof piece);
     if (size > 0) described.text.append(piece, static_cast<std::size_t>(size));
     if (size != 0) continue;
-    if (auto ended = wait(process->ended()); !ended) return ended.error();
-    described.status = process->poll_status().value_or(0);
+    HC_TRY(wait(process.ended()));
+    described.status = process.poll_status().value_or(0);
     return described;
   }
   return Error{Code::System, program + " --describe prints more than a MiB"};
@@ -103,14 +101,13 @@ std::string find_program(const std::string& name) {
 }
 
 Result<std::string> describe_program(const std::string& program, int stop) {
-  auto described = run_describe(program, Process::Capture::Output, stop);
-  if (!described) return described.error();
-  if (described->status == 0) return std::move(described->text);
+  auto described = HC_TRY(run_describe(program, Process::Capture::Output, stop));
+  if (described.status == 0) return std::move(described.text);
   // Run once more for why: one stream of a process is captured.
   const auto said = run_describe(program, Process::Capture::Errors, stop);
   const auto line = said ? last_line(said->text) : "";
   return Error{Code::System, program + " --describe failed with status " +
-                                 std::to_string(described->status) +
+                                 std::to_string(described.status) +
                                  (line.empty() ? "" : ": " + line) +
                                  "; how a program describes itself is in spec/module.md"};
 }

@@ -45,32 +45,24 @@ class Agent {
   explicit Agent(const AgentOptions& options) : options_(options) {}
 
   Status run() {
-    if (auto begun = begin(); !begun) return begun.error();
-    while (!is_over_)
-      if (auto turned = loop_->turn(); !turned) return turned.error();
+    HC_TRY(begin());
+    while (!is_over_) HC_TRY(loop_->turn());
     questions_.clear();
     return end_children();
   }
 
  private:
   Status begin() {
-    auto loop = Loop::make();
-    if (!loop) return loop.error();
-    loop_ = std::move(*loop);
+    loop_ = HC_TRY(Loop::make());
     for (int descriptor : {options_.in, options_.out})
       ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) | O_NONBLOCK);
-    auto conversation = Conversation::make(*loop_, options_.in, options_.out, kSilence,
-                                           {[this](const Message& message) { take(message); },
-                                            [this](const std::string& why) {
-                                              end(Error{Code::Closed, why});
-                                            }});
-    if (!conversation) return conversation.error();
-    conversation_ = std::move(*conversation);
-    if (options_.stop >= 0) {
-      auto watched = loop_->watch(options_.stop, EPOLLIN, [this](auto) { end({}); });
-      if (!watched) return watched.error();
-      stop_ = std::move(*watched);
-    }
+    conversation_ = HC_TRY(Conversation::make(*loop_, options_.in, options_.out, kSilence,
+                                              {[this](const Message& message) { take(message); },
+                                               [this](const std::string& why) {
+                                                 end(Error{Code::Closed, why});
+                                               }}));
+    const int stop = options_.stop;
+    stop_ = HC_TRY(loop_->watch(stop, stop < 0 ? 0U : EPOLLIN, [this](auto) { end({}); }));
     Json hello = {{"what", "hello"}, {"version", options_.version}};
     // "CLIENT PORT SERVER PORT": the two hosts as they see each other.
     const char* connection = std::getenv("SSH_CONNECTION");
@@ -98,8 +90,7 @@ class Agent {
     auto runs = [](const auto& entry) { return entry.second.process->runs(); };
     bool is_late = false;
     const auto timer = loop_->call_at(Clock::now() + kTimeToEnd, [&] { is_late = true; });
-    while (std::ranges::any_of(children_, runs) && !is_late)
-      if (auto turned = loop_->turn(); !turned) return turned.error();
+    while (std::ranges::any_of(children_, runs) && !is_late) HC_TRY(loop_->turn());
     return outcome_;
   }
 

@@ -26,28 +26,20 @@ Result<T> answer_of(internal::Loop& loop, int stop, std::chrono::nanoseconds tim
     std::unique_ptr<internal::Loop> loop;
     std::optional<Result<T>> answer;
   };
-  auto made = internal::Loop::make();
-  if (!made) return made.error();
-  auto here = std::make_shared<Here>(Here{std::move(*made), {}});
+  auto here = std::make_shared<Here>(Here{HC_TRY(internal::Loop::make()), {}});
   loop.post([here, begin = std::move(begin)] {
     begin([here](Result<T> value) {
       here->loop->post(
           [self = here.get(), value = std::move(value)] { self->answer.emplace(value); });
     });
   });
-  internal::Loop::Handle stopped;
-  if (stop >= 0) {
-    auto watched = here->loop->watch(stop, EPOLLIN, [&](auto) {
-      here->answer.emplace(Error{Code::Stopped, "asked to stop"});
-    });
-    if (!watched) return watched.error();
-    stopped = std::move(*watched);
-  }
+  const auto stopped = HC_TRY(here->loop->watch(stop, stop < 0 ? 0U : EPOLLIN, [&](auto) {
+    here->answer.emplace(Error{Code::Stopped, "asked to stop"});
+  }));
   const auto late = here->loop->call_at(std::chrono::steady_clock::now() + timeout, [&] {
     if (!here->answer) here->answer.emplace(Error{Code::Closed, "no answer in time"});
   });
-  while (!here->answer)
-    if (auto turned = here->loop->turn(); !turned) return turned.error();
+  while (!here->answer) HC_TRY(here->loop->turn());
   return std::move(*here->answer);
 }
 

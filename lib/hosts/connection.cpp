@@ -114,7 +114,7 @@ void Connection::ask(Json question, Answered answered) {
 
 Result<std::string> Connection::ask_text(const char* what, const std::string& subject, int stop) {
   const Json question = {{"what", what}, {"subject", subject}};
-  auto answer = answer_of<Json>(
+  const Json answer = HC_TRY(answer_of<Json>(
       loop_, stop, kAnswerTime, [self = shared_from_this(), question](const auto& give) {
         self->ask(question, [self, question, give](Result<Json> answered) {
           auto& known = self->answers_[question.dump()];
@@ -124,10 +124,9 @@ Result<std::string> Connection::ask_text(const char* what, const std::string& su
             answered = known;
           give(std::move(answered));
         });
-      });
-  if (!answer) return answer.error();
-  const auto text = answer->find("text");
-  if (text == answer->end() || !text->is_string()) return Error{Code::Malformed, "no text"};
+      }));
+  const auto text = answer.find("text");
+  if (text == answer.end() || !text->is_string()) return Error{Code::Malformed, "no text"};
   return text->get<std::string>();
 }
 

@@ -90,12 +90,8 @@ Result<std::unique_ptr<Conversation>> Conversation::make(internal::Loop& loop, i
   auto* self = made.get();
   self->heard_ = Clock::now();
   self->patience_ = patience;
-  auto readable = loop.watch(in, EPOLLIN, [self](auto) { self->read(); });
-  if (!readable) return readable.error();
-  self->readable_ = std::move(*readable);
-  auto writable = loop.watch(out, 0, [self](auto) { self->write(); });
-  if (!writable) return writable.error();
-  self->writable_ = std::move(*writable);
+  self->readable_ = HC_TRY(loop.watch(in, EPOLLIN, [self](auto) { self->read(); }));
+  self->writable_ = HC_TRY(loop.watch(out, 0, [self](auto) { self->write(); }));
   self->silence_ = loop.call_at(self->heard_ + patience, [self] {
     if (self->is_stuck_) return self->end("it does not take what it is sent");
     const auto due = self->heard_ + self->patience_;

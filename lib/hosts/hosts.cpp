@@ -30,14 +30,9 @@ class AllHosts final : public Hosts {
   /// Before anything else: the key is every module's, of whose links any may be to a host that is
   /// declared later.
   Status make_key() {
-    auto text = tls::make_key_text();
-    if (!text) return text.error();
-    auto fingerprint = tls::fingerprint_of_text(*text);
-    if (!fingerprint) return fingerprint.error();
-    auto file = make_key_file(*text);
-    if (!file) return file.error();
-    fingerprint_ = *fingerprint;
-    key_ = std::move(*file);
+    const auto text = HC_TRY(tls::make_key_text());
+    fingerprint_ = HC_TRY(tls::fingerprint_of_text(text));
+    key_ = HC_TRY(make_key_file(text));
     return {};
   }
 
@@ -51,16 +46,9 @@ class AllHosts final : public Hosts {
   }
   Status serve(const std::function<void()>& work) override {
     bool is_done = false;
-    auto aside = internal::run_aside(
-        *loop_,
-        [&work](int) {
-          work();
-          return true;
-        },
-        [&](bool) { is_done = true; });
-    if (!aside) return aside.error();
-    while (!is_done)
-      if (auto turned = loop_->turn(); !turned) return turned;
+    const auto aside = HC_TRY(internal::run_aside(
+        *loop_, [&work](int) { return work(), true; }, [&](bool) { is_done = true; }));
+    while (!is_done) HC_TRY(loop_->turn());
     return {};
   }
 
@@ -141,10 +129,9 @@ class AllHosts final : public Hosts {
 }  // namespace
 
 Result<std::unique_ptr<Hosts>> make_hosts(std::string version) {
-  auto loop = internal::Loop::make();
-  if (!loop) return loop.error();
-  auto hosts = std::make_unique<AllHosts>(std::move(version), std::move(*loop));
-  if (auto made = hosts->make_key(); !made) return made.error();
+  auto loop = HC_TRY(internal::Loop::make());
+  auto hosts = std::make_unique<AllHosts>(std::move(version), std::move(loop));
+  HC_TRY(hosts->make_key());
   return std::unique_ptr<Hosts>(std::move(hosts));
 }
 

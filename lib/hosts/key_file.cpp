@@ -10,20 +10,17 @@
 namespace hc::hosts {
 
 Result<internal::Descriptor> make_key_file(std::string_view key) {
-  auto made = internal::system_call("memfd_create", "key", [] {
+  internal::Descriptor file(HC_TRY(internal::system_call("memfd_create", "key", [] {
     return ::memfd_create("hypercolumn key", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  });
-  if (!made) return made.error();
-  internal::Descriptor file(*made);
+  })));
   constexpr mode_t kOwnerOnly = 0600;
-  auto closed = internal::system_call("fchmod", "key", [&] { return ::fchmod(*made, kOwnerOnly); });
-  if (!closed) return closed.error();
-  if (auto written = write_all(*made, key); !written) return written.error();
+  HC_TRY(internal::system_call("fchmod", "key", [&] { return ::fchmod(file.get(), kOwnerOnly); }));
+  HC_TRY(write_all(file.get(), key));
   // Modules have it too, and one must not change it for the others.
-  auto sealed = internal::system_call("fcntl", "key", [&] {
-    return ::fcntl(*made, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL);
-  });
-  if (!sealed) return sealed.error();
+  HC_TRY(internal::system_call("fcntl", "key", [&] {
+    constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL;
+    return ::fcntl(file.get(), F_ADD_SEALS, kSeals);
+  }));
   return file;
 }
 

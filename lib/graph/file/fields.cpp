@@ -17,7 +17,7 @@ std::string quoted_name(std::string_view name) {
 
 Result<GraphPort> parse_port(const std::string& text, bool may_be_uri) {
   if (may_be_uri && text.find(':') != std::string::npos) {
-    if (auto uri = parse_uri(text); !uri) return uri.error();
+    HC_TRY(parse_uri(text));
     return GraphPort{{}, {}, text};
   }
   auto dot = text.find('.');

@@ -15,15 +15,11 @@ namespace hc::internal {
 
 Result<std::unique_ptr<Announcer>> Announcer::make(Loop& loop, const std::string& uri,
                                                    std::function<std::vector<Message>()> welcome) {
-  auto parsed = parse_uri(uri);
-  if (!parsed) return parsed.error();
-  auto socket = listen_unix(*parsed);
-  if (!socket) return socket.error();
-  std::unique_ptr<Announcer> announcer(new Announcer(loop, std::move(*socket), std::move(welcome)));
-  auto watched = loop.watch(announcer->socket_.descriptor.get(), EPOLLIN,
-                            [self = announcer.get()](auto) { self->let_in(); });
-  if (!watched) return watched.error();
-  announcer->watch_ = std::move(*watched);
+  auto parsed = HC_TRY(parse_uri(uri));
+  auto socket = HC_TRY(listen_unix(parsed));
+  std::unique_ptr<Announcer> announcer(new Announcer(loop, std::move(socket), std::move(welcome)));
+  announcer->watch_ = HC_TRY(loop.watch(announcer->socket_.descriptor.get(), EPOLLIN,
+                                        [self = announcer.get()](auto) { self->let_in(); }));
   return announcer;
 }
 
@@ -43,10 +39,9 @@ void Announcer::let_in() {
     if (peers_.size() >= kMostPeers) leave_idlest();
     auto peer = std::make_unique<Peer>();
     peer->socket = std::move(accepted.descriptor);
-    auto watched = loop_.watch(peer->socket.get(), EPOLLIN,
-                               [this, each = peer.get()](auto events) { serve(*each, events); });
-    if (!watched) return watched.error();
-    peer->watch = std::move(*watched);
+    peer->watch =
+        HC_TRY(loop_.watch(peer->socket.get(), EPOLLIN,
+                           [this, each = peer.get()](auto events) { serve(*each, events); }));
     peers_.push_back(std::move(peer));
     if (welcome_)
       for (const auto& message : welcome_()) put(*peers_.back(), encode(message));
@@ -98,14 +93,12 @@ void Announcer::forget_those_who_left() {
 }
 
 Status say_at_once(const std::string& uri, const Message& message) {
-  auto parsed = parse_uri(uri);
-  if (!parsed) return parsed.error();
-  if (parsed->scheme != "unix") return Error{Code::Invalid, uri + ": only unix: can be said to"};
-  parsed->options = {{"keep", "latest"}};  // so that nothing is waited for
-  auto sink = open_sink(*parsed);
-  if (!sink) return sink.error();
-  auto sent = (*sink)->send(message);
-  (*sink)->abandon();
+  auto parsed = HC_TRY(parse_uri(uri));
+  if (parsed.scheme != "unix") return Error{Code::Invalid, uri + ": only unix: can be said to"};
+  parsed.options = {{"keep", "latest"}};  // so that nothing is waited for
+  auto sink = HC_TRY(open_sink(parsed));
+  auto sent = sink->send(message);
+  sink->abandon();
   return sent;
 }
 

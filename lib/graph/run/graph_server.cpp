@@ -31,17 +31,13 @@ Result<std::unique_ptr<GraphServer>> GraphServer::make(Loop& loop, const Running
                                                        Callbacks callbacks) {
   std::unique_ptr<GraphServer> server(new GraphServer(loop, std::move(callbacks)));
   auto& self = *server;
-  auto states = Announcer::make(loop, listening(graph.state_uri()),
-                                [&self] { return std::vector{self.state_message()}; });
-  if (!states) return states.error();
-  self.states_ = std::move(*states);
+  self.states_ = HC_TRY(Announcer::make(loop, listening(graph.state_uri()),
+                                        [&self] { return std::vector{self.state_message()}; }));
   LinkOptions options;
   options.limits.element_bytes = kMaxCommandBytes;
-  auto commands = Intake::make(
+  self.commands_ = HC_TRY(Intake::make(
       loop, listening(graph.command_uri()),
-      [&self](const Message& message) { self.take_request(message); }, options);
-  if (!commands) return commands.error();
-  self.commands_ = std::move(*commands);
+      [&self](const Message& message) { self.take_request(message); }, options));
   return server;
 }
 

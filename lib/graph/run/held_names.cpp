@@ -36,10 +36,9 @@ Status HeldNames::hold(const std::vector<std::string>& command) {
       wanted[socket->rest] = std::move(before->second);
       held_.erase(before);
     } else if (!wanted.contains(socket->rest)) {
-      auto listening = listen_unix(*socket);
-      if (!listening) return listening.error();
+      auto listening = HC_TRY(listen_unix(*socket));
       // The number below is the key's in the program (Process::start).
-      const int kept = ::fcntl(listening->descriptor.get(), F_DUPFD_CLOEXEC, kKeyDescriptor + 1);
+      const int kept = ::fcntl(listening.descriptor.get(), F_DUPFD_CLOEXEC, kKeyDescriptor + 1);
       if (kept < 0) return system_error("fcntl", socket->rest);
       wanted[socket->rest] = Descriptor(kept);
     }

@@ -32,33 +32,26 @@ class ProcessHere final : public ModuleProcess {
   Status listen(const std::string& manage_uri) {
     LinkOptions options;
     options.limits.element_bytes = kMostReported;
-    auto reports = Intake::make(
+    reports_ = HC_TRY(Intake::make(
         loop_, manage_uri, [this](const Message& message) { callbacks_.reported(message); },
-        options);
-    if (!reports) return reports.error();
-    reports_ = std::move(*reports);
+        options));
     return {};
   }
 
   Status start(const std::vector<std::string>& command, const std::string& control_uri) override {
     if (control_uri.empty()) commands_.reset();
-    if (!control_uri.empty() && !commands_) {
-      auto commands = Announcer::make(loop_, control_uri, [this] {
+    if (!control_uri.empty() && !commands_)
+      commands_ = HC_TRY(Announcer::make(loop_, control_uri, [this] {
         return process_ ? callbacks_.listens() : std::vector<Message>();
-      });
-      if (!commands) return commands.error();
-      commands_ = std::move(*commands);
-    }
-    if (auto held = names_.hold(command); !held) return held;
-    auto started = Process::start(command, Process::Capture::Errors, {key_, names_.descriptors()});
-    if (!started) return started.error();
-    auto said = loop_.watch(started->output(), EPOLLIN, [this](auto) { read(); });
-    if (!said) return said.error();
-    auto ended = loop_.watch(started->ended(), EPOLLIN, [this](auto) { look(); });
-    if (!ended) return ended.error();
-    process_.emplace(std::move(*started));
-    said_ = std::move(*said);
-    ended_ = std::move(*ended);
+      }));
+    HC_TRY(names_.hold(command));
+    auto started =
+        HC_TRY(Process::start(command, Process::Capture::Errors, {key_, names_.descriptors()}));
+    auto said = HC_TRY(loop_.watch(started.output(), EPOLLIN, [this](auto) { read(); }));
+    auto ended = HC_TRY(loop_.watch(started.ended(), EPOLLIN, [this](auto) { look(); }));
+    process_.emplace(std::move(started));
+    said_ = std::move(said);
+    ended_ = std::move(ended);
     number_ = internal::first_child(process_->guard_number());
     return {};
   }
@@ -136,7 +129,7 @@ class ProcessHere final : public ModuleProcess {
 Result<std::unique_ptr<ModuleProcess>> make_process_here(Loop& loop, const std::string& manage_uri,
                                                          int key, ModuleCallbacks callbacks) {
   auto made = std::make_unique<ProcessHere>(loop, key, std::move(callbacks));
-  if (auto listens = made->listen(manage_uri); !listens) return listens.error();
+  HC_TRY(made->listen(manage_uri));
   return std::unique_ptr<ModuleProcess>(std::move(made));
 }
 
@@ -144,18 +137,16 @@ Result<std::shared_ptr<void>> read_in_place_here(Loop& loop, std::string reader_
   // Modules find the key at another descriptor.
   if (const auto at = reader_uri.find(kKeyFile); at != std::string::npos && key >= 0)
     reader_uri.replace(at, kKeyFile.size(), "/proc/self/fd/" + std::to_string(key));
-  auto uri = parse_uri(reader_uri);
-  if (!uri) return uri.error();
+  auto uri = HC_TRY(parse_uri(reader_uri));
   constexpr std::array<std::string_view, 4> kWhoMay = {"same_user", "key", "peer", "interface"};
-  std::erase_if(uri->options, [&](const auto& option) {
+  std::erase_if(uri.options, [&](const auto& option) {
     return std::find(kWhoMay.begin(), kWhoMay.end(), option.first) == kWhoMay.end();
   });
-  uri->options.emplace_back("reconnect", "86400");
-  if (uri->scheme == "shm" || uri->scheme == "dds") uri->options.emplace_back("keep", "latest");
-  auto reader = Intake::make(
-      loop, uri->text(), [](const Message&) {}, {}, false);
-  if (!reader) return reader.error();
-  return std::shared_ptr<void>(std::move(*reader));
+  uri.options.emplace_back("reconnect", "86400");
+  if (uri.scheme == "shm" || uri.scheme == "dds") uri.options.emplace_back("keep", "latest");
+  auto reader = HC_TRY(Intake::make(
+      loop, uri.text(), [](const Message&) {}, {}, false));
+  return std::shared_ptr<void>(std::move(reader));
 }
 
 }  // namespace hc

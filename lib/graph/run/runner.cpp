@@ -20,9 +20,9 @@ constexpr int kTicksOfState = 2, kTicksOfMemory = 8;
 }  // namespace
 
 Result<RunReport> Runner::run() {
-  if (auto begun = begin(); !begun) return begun.error();
+  HC_TRY(begin());
   while (!is_over()) {
-    if (auto turned = loop_->turn(); !turned) return turned.error();
+    HC_TRY(loop_->turn());
     settle();
   }
   refuse_changes();
@@ -37,33 +37,22 @@ Result<RunReport> Runner::run() {
 Status Runner::begin() {
   begun_ = now();
   if (options_.hosts == nullptr) {
-    auto loop = Loop::make();
-    if (!loop) return loop.error();
-    own_loop_ = std::move(*loop);
+    own_loop_ = HC_TRY(Loop::make());
   }
   loop_ = own_loop_ ? own_loop_.get() : &options_.hosts->loop();
-  if (!options_.name.empty()) {
-    auto server =
+  if (!options_.name.empty())
+    server_ = HC_TRY(
         GraphServer::make(*loop_, {options_.name, ::getpid()},
                           {[this] { return state(); },
-                           [this](const auto& lines, const auto& reply) { obey(lines, reply); }});
-    if (!server) return server.error();
-    server_ = std::move(*server);
-  }
-  if (options_.stop >= 0) {
-    auto watched = loop_->watch(options_.stop, EPOLLIN, [this](auto) {
-      stop_.reset();
-      is_stopped_ = true;
-      end_all();
-    });
-    if (!watched) return watched.error();
-    stop_ = std::move(*watched);
-  }
+                           [this](const auto& lines, const auto& reply) { obey(lines, reply); }}));
+  stop_ = HC_TRY(loop_->watch(options_.stop, options_.stop < 0 ? 0U : EPOLLIN, [this](auto) {
+    stop_.reset();
+    is_stopped_ = true;
+    end_all();
+  }));
   if (options_.hosts != nullptr) {
-    auto watched =
-        loop_->watch(options_.hosts->descriptor(), EPOLLIN, [this](auto) { look_at_hosts(); });
-    if (!watched) return watched.error();
-    hosts_ = std::move(*watched);
+    hosts_ = HC_TRY(
+        loop_->watch(options_.hosts->descriptor(), EPOLLIN, [this](auto) { look_at_hosts(); }));
   }
   if (options_.loader != nullptr && !graph_.files.empty()) {
     files_ = std::make_unique<FileWatch>(*loop_, [this] { reload(); });
@@ -71,14 +60,12 @@ Status Runner::begin() {
   }
   // All listen before one starts: who comes early finds its peers.
   for (const auto& planned : plan_.modules) {
-    auto module = make(planned);
-    if (!module) return module.error();
-    modules_[planned.name] = std::move(*module);
+    modules_[planned.name] = HC_TRY(make(planned));
   }
   pollfd stop{options_.stop, POLLIN, 0};
   for (const auto& planned : plan_.modules) {
     if (::poll(&stop, 1, 0) > 0) break;  // the loop ends those that have been started
-    if (auto started = find(planned.name)->start(); !started) return started;
+    HC_TRY(find(planned.name)->start());
   }
   tick();
   return {};

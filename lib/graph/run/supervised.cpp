@@ -57,7 +57,7 @@ Result<std::unique_ptr<Supervised>> Supervised::make(Loop& loop, PlannedModule p
                                                      Callbacks callbacks, Hosts* hosts) {
   std::unique_ptr<Supervised> module(
       new Supervised(loop, std::move(plan), limits, std::move(callbacks), hosts));
-  if (auto made = module->make_process(); !made) return made.error();
+  HC_TRY(module->make_process());
   return module;
 }
 
@@ -74,10 +74,8 @@ Status Supervised::make_process() {
   if (there) {
     made = there->make_process(plan_, std::move(callbacks));
   } else {
-    auto here = make_process_here(loop_, plan_.manage_uri, hosts_ == nullptr ? -1 : hosts_->key(),
-                                  std::move(callbacks));
-    if (!here) return here.error();
-    made = std::move(*here);
+    made = HC_TRY(make_process_here(loop_, plan_.manage_uri, hosts_ == nullptr ? -1 : hosts_->key(),
+                                    std::move(callbacks)));
   }
   // The one before, on another host, may be what calls this.
   if (process_) loop_.post([before = std::shared_ptr(std::move(process_))] {});
@@ -142,7 +140,7 @@ void Supervised::send_wall_offset() {
 Status Supervised::start() {
   timer_.reset();
   wish_ = Wish::None;
-  if (auto made = make_process(); !made) return made;
+  HC_TRY(make_process());
   const auto& there = process_host_;
   awaits_host_ = there && !there->state().is_connected;
   if (awaits_host_) {

@@ -21,7 +21,7 @@ Result<std::string> Supervised::observe(const std::string& port, const std::stri
   auto found = observed_.find(port);
   if (found == observed_.end()) {
     Observed observed;
-    if (auto opened = open_observed(observed, port, name); !opened) return opened.error();
+    HC_TRY(open_observed(observed, port, name));
     found = observed_.emplace(port, std::move(observed)).first;
     send_commands({found->second.command()});
   }
@@ -33,9 +33,7 @@ Result<std::string> Supervised::observe(const std::string& port, const std::stri
 Status Supervised::open_observed(Observed& observed, const std::string& port,
                                  const std::string& name) {
   if (const auto there = host()) {
-    auto held = there->spare_port();
-    if (!held) return held.error();
-    observed.held = std::move(*held);
+    observed.held = HC_TRY(there->spare_port());
     const auto number = ":" + std::to_string(observed.held->number);
     const auto place = there->place();
     const bool is_v6 = place.address.find(':') != std::string::npos;
