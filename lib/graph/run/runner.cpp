@@ -45,7 +45,7 @@ Status Runner::begin() {
         GraphServer::make(*loop_, {options_.name, ::getpid()},
                           {[this] { return state(); },
                            [this](const auto& lines, const auto& reply) { obey(lines, reply); }}));
-  stop_ = HC_TRY(loop_->watch(options_.stop, options_.stop < 0 ? 0U : EPOLLIN, [this](auto) {
+  stop_ = HC_TRY(loop_->watch(options_.stop, EPOLLIN, [this](auto) {
     stop_.reset();
     is_stopped_ = true;
     end_all();

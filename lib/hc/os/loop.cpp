@@ -24,9 +24,9 @@ Result<std::unique_ptr<Loop>> Loop::make() {
 
 Status Loop::control(int operation, int descriptor, std::uint32_t events, std::uint64_t id) const {
   epoll_event event{events, {.u64 = id}};
-  auto done = system_call("epoll_ctl", "",
-                          [&] { return ::epoll_ctl(poll_.get(), operation, descriptor, &event); });
-  return done ? Status() : done.error();
+  HC_TRY(system_call("epoll_ctl", "",
+                     [&] { return ::epoll_ctl(poll_.get(), operation, descriptor, &event); }));
+  return {};
 }
 
 Result<Loop::Handle> Loop::watch(int descriptor, std::uint32_t events, Callback callback) {
@@ -44,6 +44,7 @@ Loop::Handle Loop::call_at(TimePoint when, std::function<void()> callback) {
 
 Status Loop::want(std::uint64_t id, std::uint32_t events) {
   Entry& entry = *entries_.at(id);
+  if (entry.descriptor < 0) return {};
   if (events == entry.wanted && (events & EPOLLONESHOT) == 0) return {};
   int operation = events == 0 ? EPOLL_CTL_DEL : entry.wanted == 0 ? EPOLL_CTL_ADD : EPOLL_CTL_MOD;
   auto done = control(operation, entry.descriptor, events, id);
