@@ -61,8 +61,7 @@ class Agent {
                                                [this](const std::string& why) {
                                                  end(Error{Code::Closed, why});
                                                }}));
-    const int stop = options_.stop;
-    stop_ = HC_TRY(loop_->watch(stop, stop < 0 ? 0U : EPOLLIN, [this](auto) { end({}); }));
+    stop_ = HC_TRY(loop_->watch(options_.stop, EPOLLIN, [this](auto) { end({}); }));
     Json hello = {{"what", "hello"}, {"version", options_.version}};
     // "CLIENT PORT SERVER PORT": the two hosts as they see each other.
     const char* connection = std::getenv("SSH_CONNECTION");
@@ -99,28 +98,16 @@ class Agent {
   /// Speaks from time to time, so that the other end knows that this one is there.
   void send_heartbeat() {
     if (++heartbeats_ % kHeartbeatsOfUsage == 0) send_usage();
-    const Moments moments{0, 0, monotonic_now(), monotonic_to_wall()};
-    conversation_->say(make_numbers(Heartbeat, moments, moments.size()));
+    send_times({0, 0, monotonic_now(), monotonic_to_wall()});
     heartbeat_ = loop_->call_at(Clock::now() + kHeartbeat, [this] { send_heartbeat(); });
   }
 
+  void send_times(const Moments& times) { send({{"what", "heartbeat"}, {"times", times}}); }
+
   void take(const Message& message) {
-    const auto taken = monotonic_now();
-    switch (message.header.src) {
-      case Order:
-        return obey(read_order(message));
-      case Heartbeat: {
-        const auto moments = read_numbers(message, Moments().size());
-        if (moments.size() != Moments().size()) return;
-        const Moments answer = {moments[0], taken, monotonic_now(), monotonic_to_wall()};
-        return conversation_->say(make_numbers(Heartbeat, answer, answer.size()));
-      }
-      case Commands:
-        if (auto* process = find(message.header.dst)) process->send(message);
-        return;
-      default:
-        return;
-    }
+    if (message.header.src == Order) return obey(read_order(message), monotonic_now());
+    auto* process = message.header.src == Commands ? find(message.header.dst) : nullptr;
+    if (process != nullptr) process->send(message);
   }
 
   ModuleProcess* find(std::int64_t number) {
@@ -128,30 +115,34 @@ class Agent {
     return found == children_.end() ? nullptr : found->second.process.get();
   }
 
-  void obey(const Json& order) try {
+  /// @param taken  when the order came, by the monotonic clock [ns].
+  void obey(const Json& order, std::int64_t taken) try {
     if (order.is_null()) return;
     const std::string what = order.at("what");
-    if (what == "key") {
+    const auto number = order.value("number", std::int64_t{0});
+    auto* process = find(number);
+    if (what == "heartbeat") {
+      const auto times = order.at("times").get<Moments>();
+      send_times({times[0], taken, monotonic_now(), monotonic_to_wall()});
+    } else if (what == "key") {
       auto key = make_key_file(order.at("key").get<std::string>());
       if (!key) return end(key.error());
       key_ = std::move(*key);
     } else if (what == "start") {
-      start(order);
+      start(number, order);
     } else if (what == "end") {
-      if (auto* process = find(order.at("number"))) process->ask_to_end();
+      if (process != nullptr) process->ask_to_end();
     } else if (what == "kill") {
-      if (auto* process = find(order.at("number"))) process->kill();
+      if (process != nullptr) process->kill();
+    } else if (what == "over") {
+      if (process != nullptr) children_.at(number).is_over = true;
+      forget_if_over(number);
     } else if (what == "read") {
       auto reader = read_in_place_here(*loop_, order.at("uri"), key_.get());
       if (!reader) return end(reader.error());
-      readers_[order.at("number")] = std::move(*reader);
+      readers_[number] = std::move(*reader);
     } else if (what == "leave") {
-      readers_.erase(order.at("number").get<std::int64_t>());
-    } else if (what == "over") {
-      if (const auto found = children_.find(order.at("number")); found != children_.end()) {
-        found->second.is_over = true;
-        forget_if_over(found->first);
-      }
+      readers_.erase(number);
     } else if (what == "release") {
       ports_.erase(order.at("port").get<std::int64_t>());
     } else if (what == "hold") {
@@ -164,8 +155,7 @@ class Agent {
     end(Error{Code::Malformed, std::string("an order: ") + error.what()});
   }
 
-  void start(const Json& order) {
-    const std::int64_t number = order.at("number");
+  void start(std::int64_t number, const Json& order) {
     auto started = start_child(number, order);
     if (started)
       send({{"what", "started"}, {"number", number}, {"process", find(number)->number()}});
@@ -177,9 +167,7 @@ class Agent {
   }
 
   Status start_child(std::int64_t number, const Json& order) {
-    auto& child = children_[number];
-    child.is_over = false;
-    if (!child.process) {
+    if (find(number) == nullptr) {
       ModuleCallbacks callbacks{
           [this, number](std::string_view bytes) { return pass_on_log(number, bytes); },
           [this, number](const Message& message) { report(number, message); },
@@ -192,13 +180,11 @@ class Agent {
             // Later, since the child calls this.
             loop_->post([this, number] { forget_if_over(number); });
           }};
-      auto made = make_process_here(*loop_, order.at("manage"), key_.get(), std::move(callbacks));
-      if (!made) {
-        children_.erase(number);
-        return made.error();
-      }
-      child.process = std::move(*made);
+      children_[number].process =
+          HC_TRY(make_process_here(*loop_, order.at("manage"), key_.get(), std::move(callbacks)));
     }
+    auto& child = children_.at(number);
+    child.is_over = false;
     return child.process->start(order.at("command"), order.at("control"));
   }
 
@@ -237,17 +223,14 @@ class Agent {
 
   void send_usage() {
     const bool with_memory = usages_++ % kUsagesOfMemory == 0;
-    std::vector<std::int64_t> numbers;
+    std::vector<UsageRow> rows;
     for (auto& [number, child] : children_) {
       if (!child.process->runs()) continue;
       const auto usage = child.process->usage(with_memory);
-      for (const std::int64_t each :
-           {number, std::int64_t{child.process->number()}, std::int64_t{usage.processor.count()},
-            static_cast<std::int64_t>(usage.memory), std::int64_t{usage.is_stopped}})
-        numbers.push_back(each);
+      rows.push_back({number, child.process->number(), usage.processor.count(),
+                      static_cast<std::int64_t>(usage.memory), std::int64_t{usage.is_stopped}});
     }
-    constexpr std::size_t kColumns = 5;
-    if (!numbers.empty()) conversation_->say(make_numbers(Usage, numbers, kColumns));
+    if (!rows.empty()) send({{"what", "usage"}, {"modules", rows}});
   }
 
   /// Holds a port, of a number if one is given.

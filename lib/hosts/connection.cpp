@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include <graph/held_port.h>
+#include <graph/module_process.h>
 #include <hc/base/clock.h>
 #include <hc/base/format.h>
-#include <hosts/answer.h>
 
 namespace hc::hosts {
 namespace {
@@ -25,7 +25,6 @@ constexpr int kFirstExchanges = 8;            // of the clock, unless they take 
 constexpr milliseconds kLongestFirst{300};
 constexpr std::size_t kSpares = 4;
 constexpr std::size_t kMaxErrorText = 4096;  // [byte]
-constexpr std::size_t kUsageColumns = 5;
 
 /// A word of a command line that a shell is to take as it is, but for ~/ at its begin.
 std::string quoted(const std::string& word) {
@@ -44,14 +43,6 @@ std::vector<std::string> ssh_command(const GraphHost& host) {
   for (const auto& word : host.ssh) words.push_back(word.value);
   words.push_back("exec " + quoted(host.program.value) + " agent");
   return words;
-}
-
-/// The port in an answer; 0: there is none.
-std::uint16_t port_in(const Json& answer) {
-  const auto port = answer.find("port");
-  if (port == answer.end() || !port->is_number_unsigned()) return 0;
-  const auto number = port->get<std::uint64_t>();
-  return number <= UINT16_MAX ? static_cast<std::uint16_t>(number) : std::uint16_t{0};
 }
 
 /// An address that an agent tells; empty where links cannot use it, such as a link-local one.
@@ -81,6 +72,94 @@ constexpr std::string_view kHowToInstall =
     R"(; install Hypercolumn there, or say where its hc is: hc = "PATH")";
 
 }  // namespace
+
+/// Runs the processes of a module there.
+class Connection::Module final : public ModuleProcess {
+ public:
+  /// @param number  the module's number in the conversation.
+  Module(std::shared_ptr<Connection> host, std::int64_t number, std::string manage_uri,
+         ModuleCallbacks callbacks)
+      : host_(std::move(host)),
+        number_(number),
+        manage_uri_(std::move(manage_uri)),
+        callbacks_(std::move(callbacks)) {
+    host_->modules_[number_] = this;
+  }
+  Module(const Module&) = delete;
+  Module& operator=(const Module&) = delete;
+  ~Module() override {
+    send("kill");
+    send("over");
+    host_->modules_.erase(number_);
+  }
+
+  Status start(const std::vector<std::string>& command, const std::string& control_uri) override {
+    if (!host_->state_.is_connected) return Error{Code::Closed, "its host is not connected"};
+    runs_ = true;
+    host_->send({{"what", "start"},
+                 {"number", number_},
+                 {"command", command},
+                 {"manage", manage_uri_},
+                 {"control", control_uri}});
+    return {};
+  }
+  [[nodiscard]] bool runs() const override { return runs_; }
+  void ask_to_end() override { send("end"); }
+  void kill() override { send("kill"); }
+  void look() override {}  // its end comes over the connection
+  void let_names_go() override { send("over"); }
+  [[nodiscard]] bool is_listening() const override { return is_listening_; }
+  bool send(const Message& command) override {
+    Message handed_on = command;
+    handed_on.header.src = Commands;
+    handed_on.header.dst = static_cast<std::int32_t>(number_);
+    host_->say(handed_on);
+    return true;
+  }
+  [[nodiscard]] pid_t number() const override { return process_; }
+  internal::Usage usage(bool) override { return usage_; }
+
+  // Events that the agent reports.
+
+  void said(std::string_view bytes) const { callbacks_.said(bytes); }
+  void reported(Message report) const {
+    report.header.src -= Report;
+    report.header.dst = 0;
+    callbacks_.reported(report);
+  }
+  void obey(const std::string& what, const Json& order) {
+    if (what == "started") process_ = order.at("process");
+    if (what == "listens") {
+      is_listening_ = runs_;
+      for (const auto& command : callbacks_.listens()) send(command);
+    }
+    if (what != "ended") return;
+    if (order.contains("error")) said(order.at("error").get<std::string>() + "\n");
+    ended(std::clamp(order.at("status").get<int>(), 0, kHostLost - 1));
+  }
+  void used(const UsageRow& row) {
+    process_ = static_cast<pid_t>(row[1]);
+    usage_ = {std::chrono::nanoseconds(row[2]), static_cast<std::uint64_t>(row[3]), row[4] != 0};
+  }
+  void ended(int status) {
+    if (!std::exchange(runs_, false)) return;
+    is_listening_ = false;
+    process_ = 0;
+    usage_ = {};
+    callbacks_.ended(status);
+  }
+
+ private:
+  void send(const char* what) const { host_->send({{"what", what}, {"number", number_}}); }
+
+  const std::shared_ptr<Connection> host_;
+  const std::int64_t number_;
+  const std::string manage_uri_;
+  const ModuleCallbacks callbacks_;
+  bool runs_ = false, is_listening_ = false;
+  pid_t process_ = 0;
+  internal::Usage usage_;
+};
 
 bool Connection::is_of(const GraphHost& declared) const {
   auto words = [](const GraphHost& host) {
@@ -145,17 +224,24 @@ Result<std::string> Connection::examine(const std::string& question, int stop) {
 Result<std::shared_ptr<const HeldPort>> Connection::hold_port(bool of_all_addresses, int stop) {
   return answer_of<std::shared_ptr<const HeldPort>>(
       loop_, stop, kAnswerTime, [self = shared_from_this(), of_all_addresses](const auto& give) {
-        self->ask({{"what", "hold"}, {"of_all", of_all_addresses}, {"port", 0}},
-                  [self, of_all_addresses, give](const Result<Json>& answer) {
-                    const auto port = answer ? port_in(*answer) : std::uint16_t{0};
-                    if (!answer) return give(answer.error());
-                    if (port == 0) return give(Error{Code::Malformed, "no port"});
-                    give(self->held(port, of_all_addresses));
-                  });
+        self->ask_for_port(
+            of_all_addresses, 0, [self, of_all_addresses, give](const Result<std::uint16_t>& port) {
+              give(port ? Result(self->held(*port, of_all_addresses)) : port.error());
+            });
       });
 }
 
 // On the loop's thread.
+
+void Connection::ask_for_port(bool of_all, std::uint16_t number, Give<std::uint16_t> give) {
+  ask({{"what", "hold"}, {"of_all", of_all}, {"port", number}},
+      [give = std::move(give)](const Result<Json>& answer) {
+        const auto port = answer ? answer->value("port", 0U) : 0U;
+        if (!answer) return give(answer.error());
+        if (port == 0 || port > UINT16_MAX) return give(Error{Code::Malformed, "no port"});
+        give(static_cast<std::uint16_t>(port));
+      });
+}
 
 /// A port there, released when its last owner ends, on whichever thread.
 std::shared_ptr<const HeldPort> Connection::held(std::uint16_t number, bool of_all) {
@@ -181,8 +267,8 @@ Result<std::shared_ptr<const HeldPort>> Connection::spare_port() {
 
 std::unique_ptr<ModuleProcess> Connection::make_process(const PlannedModule& module,
                                                         ModuleCallbacks callbacks) {
-  return std::make_unique<RemoteModule>(shared_from_this(), ++numbered_, module.manage_uri,
-                                        std::move(callbacks));
+  return std::make_unique<Module>(shared_from_this(), ++numbered_, module.manage_uri,
+                                  std::move(callbacks));
 }
 
 std::shared_ptr<void> Connection::read_in_place(const std::string& reader_uri) {
@@ -226,25 +312,23 @@ void Connection::read_ssh_errors() {
 }
 
 void Connection::take(const Message& message) {
-  const auto received = monotonic_now();
   const auto& header = message.header;
-  if (header.src == Order) return obey(read_order(message));
-  if (header.src == Heartbeat) return take_heartbeat(message, received);
-  if (header.src == Usage) return take_usage(message);
+  if (header.src == Order) return obey(read_order(message), monotonic_now());
   const auto found = modules_.find(header.dst);
   if (found == modules_.end()) return;
-  if (header.src == Log) return found->second->said(message.characters());
-  if (header.src < Report) return;
-  Message report = message;
-  report.header.src -= Report;
-  report.header.dst = 0;
-  found->second->reported(report);
+  if (header.src == Log) found->second->said(message.characters());
+  if (header.src >= Report) found->second->reported(message);
 }
 
-void Connection::obey(const Json& order) try {
+void Connection::obey(const Json& order, std::int64_t received) try {
   if (order.is_null()) return;
   const std::string what = order.at("what");
   if (what == "hello") return greet(order);
+  if (what == "heartbeat") return take_times(order.at("times").get<Moments>(), received);
+  if (what == "usage")
+    for (const auto& row : order.at("modules").get<std::vector<UsageRow>>())
+      if (const auto found = modules_.find(row[0]); found != modules_.end())
+        found->second->used(row);
   if (what == "answer") {
     auto found = questions_.find(order.at("id"));
     if (found == questions_.end()) return;
@@ -255,14 +339,7 @@ void Connection::obey(const Json& order) try {
                       : Result<Json>(order));
   }
   const auto found = modules_.find(order.value("number", std::int64_t{0}));
-  if (found == modules_.end()) return;
-  auto& module = *found->second;
-  if (what == "started") module.started(order.at("process"));
-  if (what == "listens") module.listens();
-  if (what == "ended") {
-    if (order.contains("error")) module.said(order.at("error").get<std::string>() + "\n");
-    module.ended(std::clamp(order.at("status").get<int>(), 0, kHostLost - 1));
-  }
+  if (found != modules_.end()) found->second->obey(what, order);
 } catch (const Json::exception& error) {
   lose(std::string("what it says is wrong: ") + error.what());
 }
@@ -289,13 +366,12 @@ void Connection::greet(const Json& hello) {
 
 /// The first answers to a beat, one right behind the other, make the connection: then its clock is
 /// known, also where one of them was late.
-void Connection::take_heartbeat(const Message& message, std::int64_t received) {
-  const auto moments = read_numbers(message, Moments().size());
-  if (moments.size() != Moments().size() || !is_greeted_) return;
-  const auto there = moments[3];
+void Connection::take_times(const Moments& times, std::int64_t received) {
+  if (!is_greeted_) return;
+  const auto [asked, taken, answered, there] = times;
   look_at_clock(there);
-  if (moments[0] == 0) return;
-  estimate_.add({moments[0], moments[1], moments[2], received});
+  if (asked == 0) return;
+  estimate_.add({asked, taken, answered, received});
   if (!state_.is_connected && ++first_exchanges_ < kFirstExchanges &&
       Clock::now() < greeted_ + kLongestFirst)
     return ask_time();
@@ -313,12 +389,12 @@ void Connection::begin_work() {
   connected_ = Clock::now();
   state_.detail.clear();
   for (const auto& each : ports_)
-    ask({{"what", "hold"}, {"of_all", each.second}, {"port", each.first}},
-        [this, number = each.first](const Result<Json>& answer) {
-          if (!answer)
-            parts_.log(hc::format("host {}: port {} is lost: {}", parts_.declared.name, number,
-                                  answer.error().detail));
-        });
+    ask_for_port(each.second, each.first,
+                 [this, number = each.first](const Result<std::uint16_t>& port) {
+                   if (!port)
+                     parts_.log(hc::format("host {}: port {} is lost: {}", parts_.declared.name,
+                                           number, port.error().detail));
+                 });
   for (const auto& [number, uri] : readers_)
     send({{"what", "read"}, {"number", number}, {"uri", uri}});
   for (std::size_t i = 0; i < kSpares; ++i) want_spare();
@@ -332,33 +408,20 @@ void Connection::begin_work() {
 /// Notices that the clock there was set.
 void Connection::look_at_clock(std::int64_t there_to_wall) {
   if (there_to_wall_ && std::abs(there_to_wall - *there_to_wall_) > kClockSet)
-    parts_.log(hc::format(
-        "host {}: its clock was set by {:.3f} s; times of its messages stay right",
-        parts_.declared.name, static_cast<double>(there_to_wall - *there_to_wall_) * 1e-9));
+    parts_.log(
+        hc::format("host {}: its clock was set by {:.3f} s; times of its messages stay right",
+                   parts_.declared.name, seconds(there_to_wall - *there_to_wall_)));
   there_to_wall_ = there_to_wall;
 }
 
 void Connection::want_spare() {
-  ask({{"what", "hold"}, {"of_all", true}, {"port", 0}}, [this](const Result<Json>& answer) {
-    if (const auto port = answer ? port_in(*answer) : std::uint16_t{0}; port != 0)
-      spares_.push_back(port);
+  ask_for_port(true, 0, [this](const Result<std::uint16_t>& port) {
+    if (port) spares_.push_back(*port);
   });
 }
 
-void Connection::take_usage(const Message& message) {
-  const auto numbers = read_numbers(message, kUsageColumns);
-  for (std::size_t i = 0; i + kUsageColumns <= numbers.size(); i += kUsageColumns) {
-    const auto found = modules_.find(numbers[i]);
-    if (found == modules_.end()) continue;
-    found->second->started(static_cast<pid_t>(numbers[i + 1]));
-    found->second->used({std::chrono::nanoseconds(numbers[i + 2]),
-                         static_cast<std::uint64_t>(numbers[i + 3]), numbers[i + 4] != 0});
-  }
-}
-
 void Connection::ask_time() {
-  const Moments moments{monotonic_now(), 0, 0, 0};
-  conversation_->say(make_numbers(Heartbeat, moments, moments.size()));
+  send({{"what", "heartbeat"}, {"times", Moments{monotonic_now(), 0, 0, 0}}});
 }
 
 void Connection::send_heartbeat() {
@@ -396,7 +459,10 @@ void Connection::lose(const std::string& why) {
   heartbeat_.reset();
   // What calls this may be the conversation, which must not be destroyed then.
   if (conversation_) conversation_->close();
-  again_ = loop_.call_at(Clock::now(), [this] { disconnect(); });
+  again_ = loop_.call_at(Clock::now(), [this] {
+    disconnect();
+    if (!is_closed_) again_ = loop_.call_at(Clock::now() + pause_.next(), [this] { connect(); });
+  });
   if (const auto opened = std::exchange(opened_, {})) {
     is_closed_ = true;
     return opened(Error{Code::Closed, reason});
@@ -406,10 +472,6 @@ void Connection::lose(const std::string& why) {
   if (was_connected)
     parts_.log("host " + parts_.declared.name + ": lost: " + reason + "; connecting again");
   parts_.changed();
-  again_ = loop_.call_at(Clock::now(), [this] {
-    disconnect();
-    again_ = loop_.call_at(Clock::now() + pause_.next(), [this] { connect(); });
-  });
 }
 
 void Connection::disconnect() {

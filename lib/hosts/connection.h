@@ -13,9 +13,9 @@
 #include <graph/hosts.h>
 #include <graph/process.h>
 #include <hc/base/backoff.h>
+#include <hosts/answer.h>
 #include <hosts/clock_estimate.h>
 #include <hosts/conversation.h>
-#include <hosts/remote_module.h>
 
 namespace hc::hosts {
 
@@ -55,32 +55,29 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   Result<std::shared_ptr<const HeldPort>> spare_port() override;
   [[nodiscard]] std::int64_t wall_offset() const override { return wall_offset_; }
 
-  // For RemoteModule.
+ private:
+  class Module;
+  using Answered = std::function<void(Result<Json>)>;
 
   /// Sends to the agent, if it is connected.
   void send(const Json& order) { say(make_order(order)); }
   void say(const Message& message) {
     if (conversation_) conversation_->say(message);
   }
-  void add(std::int64_t number, RemoteModule& module) { modules_[number] = &module; }
-  void remove(std::int64_t number) { modules_.erase(number); }
-
- private:
-  using Answered = std::function<void(Result<Json>)>;
-
   void ask(Json question, Answered answered);
+  /// Has a port held there, of a number if that is not 0.
+  void ask_for_port(bool of_all, std::uint16_t number, Give<std::uint16_t> give);
   Result<std::string> ask_text(const char* what, const std::string& subject, int stop);
   std::shared_ptr<const HeldPort> held(std::uint16_t number, bool of_all);
 
   void connect();
   void read_ssh_errors();
   void take(const Message& message);
-  void obey(const Json& order);
+  void obey(const Json& order, std::int64_t received);
   void greet(const Json& hello);
-  void take_heartbeat(const Message& message, std::int64_t received);
+  void take_times(const Moments& times, std::int64_t received);
   void begin_work();
   void look_at_clock(std::int64_t there_to_wall);
-  void take_usage(const Message& message);
   void want_spare();
   void ask_time();
   void send_heartbeat();
@@ -112,7 +109,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   std::int64_t asked_ = 0, numbered_ = 0;
   std::map<std::int64_t, Answered> questions_;
   std::map<std::string, Json> answers_;  // to questions of ask_text()
-  std::map<std::int64_t, RemoteModule*> modules_;
+  std::map<std::int64_t, Module*> modules_;
   std::map<std::int64_t, std::string> readers_;  // in place of those that are over
   std::map<std::uint16_t, bool> ports_;          // and whether they are of all addresses
 };

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include <hc/base/clock.h>
 #include <hc/mtp/codec.h>
 #include <hc/mtp/rows.h>
 #include <hc/os/descriptor.h>
@@ -19,24 +20,17 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kMostInATurn = 64;  // pieces, so that a busy peer does not keep us from all else
 
-std::int64_t wall_now() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 }  // namespace
 
 std::int64_t monotonic_now() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch())
-      .count();
+  return SystemClock().monotonic().count();
 }
 
 /// Two clocks cannot be read at once; of a few tries the quickest counts.
 std::int64_t monotonic_to_wall() {
   std::int64_t best = 0, best_width = std::numeric_limits<std::int64_t>::max();
   for (int i = 0; i < 3; ++i) {
-    const auto before = monotonic_now(), wall = wall_now(), after = monotonic_now();
+    const auto before = monotonic_now(), wall = SystemClock().wall(), after = monotonic_now();
     if (after - before >= best_width) continue;
     best_width = after - before;
     best = wall - (before + best_width / 2);
@@ -65,22 +59,6 @@ Message make_bytes(std::string_view bytes, std::int64_t process) {
   draft.header.src = Log;
   draft.header.dst = static_cast<std::int32_t>(process);
   return std::move(draft).finish();
-}
-
-Message make_numbers(MessageKind kind, std::span<const std::int64_t> numbers, std::size_t columns) {
-  Draft draft = Draft::make(
-      {MatrixType::Table, static_cast<std::uint8_t>(columns), Scalar::I64, Encoding::Binary}, 1,
-      static_cast<std::int32_t>(numbers.size() / columns));
-  std::memcpy(draft.elements().data(), numbers.data(), draft.elements().size());
-  draft.header.src = kind;
-  return std::move(draft).finish();
-}
-
-std::vector<std::int64_t> read_numbers(const Message& message, std::size_t columns) {
-  const auto table = message.view<std::int64_t>();
-  if (!table || table->width() != 1 || table->components() != columns) return {};
-  const auto numbers = table->numbers();
-  return {numbers.begin(), numbers.end()};
 }
 
 Result<std::unique_ptr<Conversation>> Conversation::make(internal::Loop& loop, int in, int out,

@@ -6,13 +6,9 @@
 // and reports are those of the module (spec/module.md), as they are.
 //
 // src      from    what
-// 1        both    an order, an answer or an event: a string, one line of JSON
-// 2        both    a heartbeat, twice a second: the times of an exchange, i64 [ns]
-// 3        runner  commands for a module
-// 4        agent   what a module has written to its standard error: bytes
-// 5        agent   what modules use, i64, a row each: number, process, processor [ns], memory
-// [byte],
-//                  whether it is stopped by a signal
+// 1        both    an order, an answer, an event, or a heartbeat: a string, one line of JSON
+// 2        runner  commands for a module
+// 3        agent   what a module has written to its standard error: bytes
 // 100 + s  agent   a module's report with src s
 
 #include <array>
@@ -20,10 +16,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -35,7 +29,7 @@ namespace hc::hosts {
 
 using Json = nlohmann::json;
 
-enum MessageKind : std::int32_t { Order = 1, Heartbeat, Commands, Log, Usage, Report = 100 };
+enum MessageKind : std::int32_t { Order = 1, Commands, Log, Report = 100 };
 
 /// How often each end speaks, and how long it may be silent before the other gives up.
 inline constexpr std::chrono::milliseconds kHeartbeat{500}, kSilence{3000};
@@ -44,19 +38,18 @@ inline constexpr std::int64_t kClockSet = 10'000'000;
 /// What may wait to go before what can be spared is dropped, and before the other end is given up.
 inline constexpr std::size_t kCrowded = std::size_t{256} << 10, kTooMuch = std::size_t{16} << 20;
 
-/// A beat: of the runner the moment when it was sent; of the agent that moment again, when it came,
-/// when the answer was sent (monotonic), and what to add to that for the wall clock. What the agent
-/// says of its own accord has 0 for the first two.
+/// The times of a heartbeat [ns]: of the runner the moment when it was sent; of the agent that
+/// moment again, when it came, when the answer was sent (monotonic), and what to add to that for
+/// the wall clock. What the agent says of its own accord has 0 for the first two.
 using Moments = std::array<std::int64_t, 4>;
+/// What the processes of a module use: its number, process, processor time [ns], memory [byte], and
+/// whether it is stopped by a signal.
+using UsageRow = std::array<std::int64_t, 5>;
 
 Message make_order(const Json& order);
 /// An object with a string "what"; null where the message is no such order.
 Json read_order(const Message& message);
 Message make_bytes(std::string_view bytes, std::int64_t process);
-/// A table of i64, `columns` numbers a row, all rows one after the other.
-Message make_numbers(MessageKind kind, std::span<const std::int64_t> numbers, std::size_t columns);
-/// The numbers of such a table; empty where it is none.
-std::vector<std::int64_t> read_numbers(const Message& message, std::size_t columns);
 
 /// Monotonic clock, and what to add to it for the wall clock [ns].
 std::int64_t monotonic_now();
