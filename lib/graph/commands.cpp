@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <graph/commands.h>
+#include <graph/graph_file.h>
 
 #include <algorithm>
 
@@ -11,18 +11,20 @@
 namespace hc {
 namespace {
 
-/// Takes a word "KEY=VALUE" apart; nothing where it is none.
-std::optional<std::pair<std::string, std::string>> pair_of(const std::string& word,
-                                                           Problems& problems) {
-  auto equals = word.find('=');
-  if (equals != std::string::npos && equals > 0)
-    return std::pair(word.substr(0, equals), word.substr(equals + 1));
-  problems.add({}, "\"" + word + "\" is not KEY=VALUE");
-  return std::nullopt;
-}
+using Pairs = std::vector<std::pair<std::string, std::string>>;
 
-void add_no_module(const Graph& graph, const std::string& name, Problems& problems) {
-  problems.add({}, "no module \"" + name + "\"" + suggestion(name, graph.module_names()));
+/// The words "KEY=VALUE" behind the first two.
+Pairs pairs_of(const GraphCommand& command, Problems& problems) {
+  Pairs pairs;
+  for (std::size_t i = 2; i < command.words.size(); ++i) {
+    const std::string& word = command.words[i];
+    const auto equals = word.find('=');
+    if (equals == std::string::npos || equals == 0)
+      problems.add({}, "\"{}\" is not KEY=VALUE", word);
+    else
+      pairs.emplace_back(word.substr(0, equals), word.substr(equals + 1));
+  }
+  return pairs;
 }
 
 void add_module(Graph& graph, const GraphCommand& command, Problems& problems) {
@@ -31,25 +33,23 @@ void add_module(Graph& graph, const GraphCommand& command, Problems& problems) {
   module.program.value = command.words[1];
   if (module.name != command.words[0]) {
     module.host.value = command.words[0].substr(module.name.size() + 1);
-    const auto hosts = graph.host_names();
-    if (std::find(hosts.begin(), hosts.end(), module.host.value) == hosts.end())
-      return problems.add(
-          {}, "no host \"" + module.host.value + "\"" + suggestion(module.host.value, hosts));
+    if (find_named(graph.hosts, module.host.value) == nullptr)
+      return problems.add({}, "no host \"{}\"{}", module.host.value,
+                          suggestion(module.host.value, names_of(graph.hosts)));
   }
   if (!is_name(module.name))
-    return problems.add({}, "module name \"" + module.name + "\" is not snake_case");
+    return problems.add({}, "module name \"{}\" is not snake_case", module.name);
   if (graph.find(module.name) != nullptr)
-    return problems.add({}, "module \"" + module.name + "\" already exists");
+    return problems.add({}, "module \"{}\" already exists", module.name);
   if (graph.modules.size() >= kMaxModules)
-    return problems.add({}, "a graph has at most " + std::to_string(kMaxModules) + " modules");
-  for (std::size_t i = 2; i < command.words.size(); ++i)
-    if (auto pair = pair_of(command.words[i], problems))
-      module.parameters[pair->first] = {pair->second, {}};
+    return problems.add({}, "a graph has at most {} modules", kMaxModules);
+  for (const auto& [key, value] : pairs_of(command, problems)) module.parameters[key] = {value, {}};
   graph.modules.push_back(std::move(module));
 }
 
 void remove_module(Graph& graph, const std::string& name, Problems& problems) {
-  if (graph.find(name) == nullptr) return add_no_module(graph, name, problems);
+  if (graph.find(name) == nullptr)
+    return problems.add({}, "no module \"{}\"{}", name, suggestion(name, names_of(graph.modules)));
   std::erase_if(graph.modules, [&](const auto& module) { return module.name == name; });
   std::erase_if(graph.links, [&](const auto& link) {
     return link.from.module == name || link.to.module == name;
@@ -59,14 +59,11 @@ void remove_module(Graph& graph, const std::string& name, Problems& problems) {
 void add_policy(GraphLink& link, const GraphCommand& command, Problems& problems) {
   static const std::vector<std::string> kKeys(kPolicyKeys.begin(), kPolicyKeys.end());
   Uri policy;
-  for (std::size_t i = 2; i < command.words.size(); ++i) {
-    auto pair = pair_of(command.words[i], problems);
-    if (!pair) continue;
-    if (std::find(kKeys.begin(), kKeys.end(), pair->first) == kKeys.end())
-      problems.add(
-          {}, "unknown key \"" + pair->first + "\" in a link" + suggestion(pair->first, kKeys));
-    policy.options.push_back(*pair);
-    link.policy[pair->first] = {pair->second, {}};
+  policy.options = pairs_of(command, problems);
+  for (const auto& [key, value] : policy.options) {
+    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
+      problems.add({}, "unknown key \"{}\" in a link{}", key, suggestion(key, kKeys));
+    link.policy[key] = {value, {}};
   }
   if (auto valid = check_policy(policy); !valid) problems.add({}, valid.error().detail);
 }
@@ -107,7 +104,7 @@ void remove_link(Graph& graph, const GraphCommand& command, Problems& problems) 
   auto count = std::erase_if(graph.links, [&](const auto& link) {
     return link.from.text() == command.words[0] && link.to.text() == command.words[1];
   });
-  if (count == 0) problems.add({}, "no link from " + command.words[0] + " to " + command.words[1]);
+  if (count == 0) problems.add({}, "no link from {} to {}", command.words[0], command.words[1]);
 }
 
 }  // namespace

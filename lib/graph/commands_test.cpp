@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <graph/commands.h>
+#include <graph/graph_file.h>
 
 #include <gtest/gtest.h>
 

@@ -50,30 +50,16 @@ std::vector<Edge> edges_in(const Plan& plan, const Focus& focus) {
   return edges;
 }
 
-using Neighbours = std::multimap<std::string, std::string>;
-
-/// All that can be reached from `begin`, itself included.
-std::set<std::string> reach(const Neighbours& neighbours, std::set<std::string> begin) {
-  std::vector<std::string> next(begin.begin(), begin.end());
-  while (!next.empty()) {
-    auto [first, last] = neighbours.equal_range(next.back());
-    next.pop_back();
-    for (; first != last; ++first)
-      if (begin.insert(first->second).second) next.push_back(first->second);
-  }
-  return begin;
-}
-
 }  // namespace
 
 GlobalWorkspace global_workspace(const Plan& plan, const Focus& focus) {
   GlobalWorkspace workspace;
   const std::vector<Edge> edges = edges_in(plan, focus);
-  Neighbours forward, backward;
+  Ways forward, backward;
   std::set<std::string> senders;  // of what exclusive inputs take
   for (const Edge& edge : edges) {
-    forward.emplace(edge.from, edge.to);
-    backward.emplace(edge.to, edge.from);
+    forward[edge.from].insert(edge.to);
+    backward[edge.to].insert(edge.from);
     if (edge.is_exclusive) senders.insert(edge.from);
   }
   const std::set<std::string> leads_to_action = reach(backward, senders);

@@ -35,15 +35,13 @@ class GraphReader {
     including_.push_back(std::filesystem::path(graph.file).lexically_normal().string());
     Restart restart = Restart::Failure;
     Lined<std::int64_t> timeout, hang;
-    auto module = [&](const Node& node) { add_module(graph, node); };
-    auto included = [&](const Node& node) { include(graph, node); };
     const std::size_t before = problems_.size();
     fields_.read(*root, "at the top of the file",
                  {{"version", [](const Node&) {}},
                   {"restart", internal::read_restart(fields_, restart)},
                   {"timeout", fields_.integer(timeout, 0, internal::kMaxSeconds)},
                   {"hang", fields_.integer(hang, 0, internal::kMaxSeconds)},
-                  {"modules", fields_.each(module)},
+                  {"modules", fields_.each([&](const Node& node) { add_module(graph, node); })},
                   {"hosts", internal::read_hosts(fields_, graph)},
                   {"modes", internal::read_modes(fields_, graph)},
                   {"workspace", internal::read_workspace(fields_, graph)},
@@ -52,17 +50,18 @@ class GraphReader {
     const bool has_modules = root->find("modules") != nullptr || root->find("graphs") != nullptr;
     if (!has_modules && problems_.size() == before)
       fields_.add(*root, "a graph needs a table [modules.NAME] for each of its modules");
-    for (auto& each : graph.modules)  // of those that do not say it themselves
-      if (const Node* table = root->find("modules")->find(each.name); !table->find("restart"))
+    for (auto& each : graph.modules) {  // of those that do not say it themselves
+      if (root->find("modules")->find(each.name)->find("restart") == nullptr)
         each.restart = restart;
-    for (auto& each : graph.modules)
       if (each.hang.place.line == 0) each.hang = hang;
+    }
     if (timeout.place.line != 0)
       for (auto& link : graph.links)
         if (link.from.uri.empty())
           link.policy.try_emplace("timeout",
                                   Lined<std::string>{std::to_string(timeout.value), timeout.place});
-    if (const Node* graphs = root->find("graphs")) fields_.each(included)(*graphs);
+    if (const Node* graphs = root->find("graphs"))
+      fields_.each([&](const Node& node) { include(graph, node); })(*graphs);
     including_.pop_back();
     if (root->find("workspace") != nullptr)
       for (auto& each : graph.modules)
@@ -80,8 +79,8 @@ class GraphReader {
     if (version == nullptr)
       fields_.add(root, "a graph file begins with \"" + known + "\"");
     else if (number != nullptr && *number > kGraphVersion)
-      fields_.add(*version, "this file has version " + std::to_string(*number) + ", and this hc " +
-                                "reads version " + std::to_string(kGraphVersion) + ": update hc");
+      fields_.add(*version, "this file has version {}, and this hc reads version {}: update hc",
+                  *number, kGraphVersion);
     else
       fields_.add(*version, "a graph file has \"" + known + "\"");
     return false;
@@ -98,8 +97,8 @@ class GraphReader {
 
   void limit(Graph& graph) {
     if (including_.empty() && graph.modules.size() > kMaxModules)
-      problems_.add(graph.modules[kMaxModules].place,
-                    "a graph has at most " + std::to_string(kMaxModules) + " modules");
+      problems_.add(graph.modules[kMaxModules].place, "a graph has at most {} modules",
+                    kMaxModules);
     const std::size_t most = including_.empty() ? kMaxModules : kMaxModules + 1;
     if (graph.modules.size() > most) graph.modules.resize(most);
   }
@@ -128,7 +127,7 @@ class GraphReader {
           *overrides);
     for (const auto& module : included.modules)
       if (is_name(name) && !is_name(module.name) && module.name.size() > 64)
-        fields_.add(node, "the name " + module.name + " has more than 64 letters");
+        fields_.add(node, "the name {} has more than 64 letters", module.name);
     internal::append(graph, std::move(included), problems_);
   }
 
@@ -136,10 +135,10 @@ class GraphReader {
     const std::string name = prefix + "_" + node.key;
     if (included.find(name) != nullptr) return internal::read_module(fields_, node, name, included);
     if (included.modules.empty() && !problems_.empty()) return;  // nothing was read
-    auto known = included.module_names();
+    auto known = names_of(included.modules);
     for (auto& each : known) each.erase(0, prefix.size() + 1);
-    fields_.add(node, "graph " + prefix + " has no module " + quoted_name(node.key) +
-                          suggestion(node.key, known));
+    fields_.add(node, "graph {} has no module \"{}\"{}", prefix, node.key,
+                suggestion(node.key, known));
   }
 
   static std::string path_of(const std::string& from, const std::string& file) {
@@ -193,18 +192,6 @@ GraphModule* Graph::find(std::string_view name) {
   return found == modules.end() ? nullptr : &*found;
 }
 
-std::vector<std::string> Graph::module_names() const {
-  std::vector<std::string> names;
-  for (const auto& module : modules) names.push_back(module.name);
-  return names;
-}
-
-std::vector<std::string> Graph::host_names() const {
-  std::vector<std::string> names;
-  for (const auto& host : hosts) names.push_back(host.name);
-  return names;
-}
-
 Status check_policy(Uri policy) {
   HC_TRY(take_conversion(policy));
   auto valid = internal::parse_policy(policy);
@@ -216,11 +203,10 @@ Graph parse_graph(std::string_view text, const Environment& environment, Problem
   Graph graph = GraphReader(environment, problems, read_file).read(text, 0);
   graph.files = problems.files();
   // Any of the files may declare a host, so this is known when all have been read.
-  const auto hosts = graph.host_names();
   for (const auto& module : graph.modules)
     if (const auto& [host, place] = module.host;
-        !host.empty() && std::find(hosts.begin(), hosts.end(), host) == hosts.end())
-      problems.add(place, "no host " + quoted_name(host) + suggestion(host, hosts));
+        !host.empty() && find_named(graph.hosts, host) == nullptr)
+      problems.add(place, "no host \"{}\"{}", host, suggestion(host, names_of(graph.hosts)));
   return graph;
 }
 
@@ -285,8 +271,8 @@ void set_parameter(Graph& graph, const Assignment& assignment, Problems& problem
   GraphModule* module = graph.find(assignment.module);
   if (module == nullptr && graph.modules.empty() && !problems.empty()) return;  // nothing was read
   if (module == nullptr)
-    return problems.add(place, "no module " + quoted_name(assignment.module) + " in " + graph.file +
-                                   suggestion(assignment.module, graph.module_names()));
+    return problems.add(place, "no module \"{}\" in {}{}", assignment.module, graph.file,
+                        suggestion(assignment.module, names_of(graph.modules)));
   module->parameters[assignment.parameter] = {assignment.value, place};
 }
 

@@ -122,8 +122,6 @@ struct Graph {
 
   /// The module of that name; null where there is none.
   [[nodiscard]] GraphModule* find(std::string_view name);
-  [[nodiscard]] std::vector<std::string> module_names() const;
-  [[nodiscard]] std::vector<std::string> host_names() const;
 };
 
 /// Looks a variable of the environment up; null where it is not set.
@@ -176,5 +174,8 @@ std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::strin
 /// @param place  where that is from.
 void set_parameter(Graph& graph, const Assignment& assignment, Problems& problems,
                    const Place& place = {});
+
+/// Changes a graph as an edit says. Problems: what it names does not exist, or exists already.
+void apply_command(Graph& graph, const GraphCommand& command, Problems& problems);
 
 }  // namespace hc

@@ -14,7 +14,6 @@
 #include <set>
 #include <system_error>
 
-#include <graph/commands.h>
 #include <graph/held_port.h>
 #include <graph/programs.h>
 #include <hc/base/suggestion.h>

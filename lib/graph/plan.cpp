@@ -36,9 +36,10 @@ class ModulePlanner {
     planned_.ends_graph = module_.ends_graph;
     planned_.manage_uri = "unix-listen:@" + planning_.plan.token + "." + module_.name + ".manage";
     if (description.control && !description.knows("unix"))
-      problems_.add(module_.place, "module " + module_.name +
-                                       " supports --control, which takes unix: URIs, but its "
-                                       "program does not list unix in \"transports\"");
+      problems_.add(module_.place,
+                    "module {} supports --control, which takes unix: URIs, but its program does "
+                    "not list unix in \"transports\"",
+                    module_.name);
     if (description.control)
       planned_.control_uri = "unix-listen:@" + planning_.plan.token + "." + module_.name +
                              ".control?readers=0&keep=64";
@@ -67,9 +68,8 @@ class ModulePlanner {
       const auto* output = find_port(planning_, encoding.place, {module_.name, port, {}}, false);
       if (output != nullptr && !output->types.empty())
         if (auto broken = find_error(info_with(output->types.front(), encoding.value)))
-          problems_.add(encoding.place, "module " + module_.name + ": R" +
-                                            std::to_string(broken->rule) + " " + port + ": " +
-                                            broken->what);
+          problems_.add(encoding.place, "module {}: R{} {}: {}", module_.name, broken->rule, port,
+                        broken->what);
       planned_.add_option("--encoding", port + "=" + std::string(name(encoding.value)));
     }
   }
@@ -77,18 +77,16 @@ class ModulePlanner {
   /// What a program that does not say "control" would ignore.
   void check_needs_no_control(const Description& description) {
     auto refuse = [&](const Place& place, const std::string& key) {
-      problems_.add(
-          place,
-          "module " + module_.name + " cannot have \"" + key +
-              "\": its program does not support --control; see spec/module.md, sections 3 and 6");
+      problems_.add(place, kNeedsControl, module_.name, key);
     };
     for (const auto& [port, to] : module_.to) refuse(to.place, "to");
     if (module_.mode) refuse(module_.mode->place, "mode");
     if (!module_.modes.empty()) refuse(module_.modes.front().place, "modes");
     if (!module_.exclusive.empty()) refuse(module_.exclusive.front().place, "exclusive");
     if (description.routes)
-      problems_.add(module_.place, "module " + module_.name +
-                                       " is a router, but its program does not support --control");
+      problems_.add(module_.place,
+                    "module {} is a router, but its program does not support --control",
+                    module_.name);
   }
 
   Planning& planning_;
@@ -103,17 +101,15 @@ void plan_module(Planning& planning, const Describe& describe, const GraphModule
   if (program.empty()) return;
   auto text = describe(program, module.host.value);
   if (!text)
-    return planning.problems.add(module.place,
-                                 "module " + module.name + ": " + text.error().detail);
+    return planning.problems.add(module.place, "module {}: {}", module.name, text.error().detail);
   auto description = parse_description(*text);
   if (!description)
     return planning.problems.add(module.place,
-                                 "module " + module.name + ": " + program +
-                                     " --describe does not print the description of a module; "
-                                     "see spec/module.md");
+                                 "module {}: {} --describe does not print the description of a "
+                                 "module; see spec/module.md",
+                                 module.name, program);
   if (auto named = check_names(*description); !named)
-    return planning.problems.add(module.place,
-                                 "module " + module.name + ": " + named.error().detail);
+    return planning.problems.add(module.place, "module {}: {}", module.name, named.error().detail);
   if (planning.index.contains(module.name)) return;  // a duplicate, which has been reported
   ModulePlanner(planning, module).plan(planning.described[module.name] = std::move(*description));
 }
@@ -132,8 +128,8 @@ std::string suggest(const Planning& planning, std::string_view name,
 
 void add_no_port(Planning& planning, const Place& place, const GraphPort& port,
                  const std::string& kind, const std::vector<PortDescription>& ports) {
-  planning.problems.add(place, "module " + port.module + " has no " + kind + " \"" + port.port +
-                                   "\"" + suggest(planning, port.port, names_of(ports)));
+  planning.problems.add(place, "module {} has no {} \"{}\"{}", port.module, kind, port.port,
+                        suggest(planning, port.port, names_of(ports)));
 }
 
 const PortDescription* find_port(Planning& planning, const Place& place, const GraphPort& port,
@@ -163,8 +159,8 @@ Status PlannedModule::check_parameter(const std::string& parameter,
   if (found == known.end()) {
     std::vector<std::string> names;
     for (const auto& [each, state] : known) names.push_back(each);
-    return Error{Code::Invalid, "module " + name + " has no parameter \"" + parameter + "\"" +
-                                    suggestion(parameter, names)};
+    return Error{Code::Invalid, hc::format("module {} has no parameter \"{}\"{}", name, parameter,
+                                           suggestion(parameter, names))};
   }
   ParameterState state = found->second;
   if (auto set = state.set(value); !set)
@@ -190,6 +186,18 @@ std::vector<std::string> PlannedModule::command() const {
   for (const auto& end : ends)
     if (!end.route.empty()) add("--route", end.port + "=" + end.uri + " " + end.route);
   return words;
+}
+
+std::set<std::string> reach(const Ways& ways, std::set<std::string> modules) {
+  std::vector<std::string> next(modules.begin(), modules.end());
+  while (!next.empty()) {
+    const auto found = ways.find(next.back());
+    next.pop_back();
+    if (found == ways.end()) continue;
+    for (const auto& module : found->second)
+      if (modules.insert(module).second) next.push_back(module);
+  }
+  return modules;
 }
 
 Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems,

@@ -91,6 +91,12 @@ struct Plan {
   std::string frames;  ///< as text (G31), by the names of the file
 };
 
+/// From a module to those that its messages lead to.
+using Ways = std::map<std::string, std::set<std::string>>;
+
+/// All modules that ways lead to from some, these included.
+std::set<std::string> reach(const Ways& ways, std::set<std::string> modules);
+
 /// Gives what `program --describe` prints on a host (empty: that of `hc run`).
 using Describe =
     std::function<Result<std::string>(const std::string& program, const std::string& host)>;

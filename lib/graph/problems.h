@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <hc/base/format.h>
 #include <hc/base/result.h>
 #include <hc/base/visible.h>
 
@@ -37,6 +38,11 @@ class Problems {
   }
 
   void add(const Place& place, std::string what) { found_.push_back({place, std::move(what)}); }
+  /// The same with values in it, as format() puts them there.
+  template <typename First, typename... Rest>
+  void add(const Place& place, std::string_view what, const First& first, const Rest&... rest) {
+    add(place, format(what, first, rest...));
+  }
   /// Notes what is not wrong, and may not be meant.
   void warn(const Place& place, std::string what) { warnings_.push_back({place, std::move(what)}); }
 

@@ -28,16 +28,14 @@ Result<GraphPort> parse_port(const std::string& text, bool may_be_uri) {
 
 void Fields::read(const Node& table, const std::string& where, const std::vector<Key>& keys) const {
   if (table.table() == nullptr) return add(table, quoted_name(table.key) + " must be a table");
-  std::vector<std::string> known;
-  known.reserve(keys.size());
-  for (const Key& key : keys) known.emplace_back(key.name);
+  const auto known = names_of(keys);
   std::string misspelled;
   for (const Node& value : table.nodes) {
     auto key = std::find(known.begin(), known.end(), value.key);
     if (key == known.end()) {
       const std::string hint = suggestion(value.key, known);
       misspelled += hint;
-      add(value, "unknown key " + quoted_name(value.key) + " " + where + hint);
+      add(value, "unknown key \"{}\" {}{}", value.key, where, hint);
     } else if (value.as<Node::Wrong>() == nullptr) {
       keys[static_cast<std::size_t>(key - known.begin())].take(value);
     }
@@ -50,7 +48,7 @@ void Fields::read(const Node& table, const std::string& where, const std::vector
 
 bool Fields::check_name(const Node& node, const std::string& what, std::string_view name) const {
   if (is_name(name)) return true;
-  add(node, what + " name " + quoted_name(name) + " is not snake_case");
+  add(node, "{} name \"{}\" is not snake_case", what, name);
   return false;
 }
 
@@ -94,8 +92,7 @@ Fields::Take Fields::integer(Lined<std::int64_t>& to, std::int64_t min, std::int
   return [this, &to, min, max](const Node& value) {
     const auto* number = value.as<std::int64_t>();
     if (number == nullptr || *number < min || *number > max)
-      return add(value, quoted_name(value.key) + " must be a whole number from " +
-                            std::to_string(min) + " to " + std::to_string(max));
+      return add(value, "\"{}\" must be a whole number from {} to {}", value.key, min, max);
     to = {*number, value.place};
   };
 }
@@ -131,8 +128,8 @@ Fields::Take Fields::choice(std::vector<std::string> words,
     std::string all;
     for (std::size_t i = 0; i < words.size(); ++i)
       all += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + quoted_name(words[i]);
-    add(value, quoted_name(value.key) + " must be " + all +
-                   (text == nullptr ? "" : suggestion(*text, words)));
+    add(value, "\"{}\" must be {}{}", value.key, all,
+        text == nullptr ? "" : suggestion(*text, words));
   };
 }
 

@@ -25,14 +25,18 @@ class Fields {
  public:
   using Take = std::function<void(const Node& value)>;
   struct Key {
-    std::string_view name;
+    std::string name;
     Take take;
     bool is_required = false;
   };
 
   explicit Fields(Problems& problems) : problems_(problems) {}
 
-  void add(const Node& node, std::string what) const { problems_.add(node.place, std::move(what)); }
+  /// Adds a problem, as Problems::add().
+  template <typename... Values>
+  void add(const Node& node, std::string what, const Values&... values) const {
+    problems_.add(node.place, std::move(what), values...);
+  }
 
   /// Hands the values of a table to their keys. Problems: it is no table, has another key, or lacks
   /// one that is required.

@@ -52,8 +52,7 @@ class ModuleReader {
     if (auto text = Fields::scalar(value))
       module_.parameters[value.key] = {*text, value.place};
     else
-      fields_.add(value, "parameter " + quoted_name(value.key) +
-                             " must be a string, a number, true or false");
+      fields_.add(value, "parameter \"{}\" must be a string, a number, true or false", value.key);
   }
 
   void read_addressee(const Node& value) {
@@ -64,7 +63,7 @@ class ModuleReader {
     else if (text != nullptr && !text->empty())
       module_.to[value.key] = {{*text, 0}, value.place};
     else
-      fields_.add(value, quoted_name(value.key) + " must be an address, an input or \"all\"");
+      fields_.add(value, "\"{}\" must be an address, an input or \"all\"", value.key);
   }
 
   /// The links of an input, or of an output to the outside, in the place of those that it had.
@@ -83,22 +82,15 @@ class ModuleReader {
       if (value.table() == nullptr) return add_link(value, link, other, port.key);
       auto policy = [&](const Node& option) { read_policy(option, link); };
       std::vector<const Node*> ends;
-      fields_.read(
-          value, "in a link of " + ours.text(),
-          {{other, Fields::one_or_more([&](const Node& end) { ends.push_back(&end); }), true},
-           {"keep", policy},
-           {"rate", policy},
-           {"burst", policy},
-           {"memory", policy},
-           {"timeout", policy},
-           {"as", policy},
-           {"quality", policy},
-           {"scale", policy},
-           {"via", fields_.choice({"tls", "tcp", "dds"},
-                                  [&](const Node& via, std::size_t) {
-                                    link.via = {*via.as<std::string>(), via.place};
-                                  })},
-           {"route", [&](const Node& route) { read_route(route, link); }}});
+      std::vector<Fields::Key> keys = {
+          {other, Fields::one_or_more([&](const Node& end) { ends.push_back(&end); }), true},
+          {"via", fields_.choice({"tls", "tcp", "dds"},
+                                 [&](const Node& via, std::size_t) {
+                                   link.via = {*via.as<std::string>(), via.place};
+                                 })},
+          {"route", [&](const Node& route) { read_route(route, link); }}};
+      for (const auto key : kPolicyKeys) keys.push_back({std::string(key), policy});
+      fields_.read(value, "in a link of " + ours.text(), keys);
       check_policy(link);
       for (const Node* end : ends) add_link(*end, link, other, other);
     })(port);
@@ -110,9 +102,10 @@ class ModuleReader {
     auto port = parse_port(*text, true);
     if (!port) return fields_.add(end, port.error().detail);
     if (other == "to" && port->uri.empty())
-      return fields_.add(end, quoted_name(*text) +
-                                  " is not a URI: an output's link to a module is declared there, "
-                                  "as inputs.PORT");
+      return fields_.add(end,
+                         "\"{}\" is not a URI: an output's link to a module is declared there, as "
+                         "inputs.PORT",
+                         *text);
     (other == "from" ? link.from : link.to) = *port;
     graph_.links.push_back(std::move(link));
   }
@@ -125,8 +118,8 @@ class ModuleReader {
         (is_scale && option.as<double>() != nullptr))
       text = *Fields::scalar(option);
     if (text.empty())
-      fields_.add(option, quoted_name(option.key) + " must be a " +
-                              (is_scale ? "number" : "whole number") + " or a string");
+      fields_.add(option, "\"{}\" must be a {} or a string", option.key,
+                  is_scale ? "number" : "whole number");
   }
 
   /// Problems: the first option that is wrong, which is empty then.

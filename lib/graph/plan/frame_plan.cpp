@@ -48,12 +48,11 @@ class Frames {
       auto [other, is_new] = names.emplace(frame.coord.value, frame.name);
       auto standard = kStandard.find(frame.name);
       if (standard != kStandard.end() && standard->second != frame.coord.value)
-        planning_.problems.add(frame.coord.place, "frame " + frame.name + " has the number " +
-                                                      std::to_string(standard->second));
+        planning_.problems.add(frame.coord.place, "frame {} has the number {}", frame.name,
+                               standard->second);
       else if (!is_new && other->second != frame.name)
-        planning_.problems.add(
-            frame.coord.place,
-            "coordinate system " + std::to_string(frame.coord.value) + " is " + other->second);
+        planning_.problems.add(frame.coord.place, "coordinate system {} is {}", frame.coord.value,
+                               other->second);
     }
   }
 
@@ -68,9 +67,8 @@ class Frames {
       if (root.empty()) root = parent;
       if (parent == root) continue;
       known.push_back(root);
-      planning_.problems.add(frame.parent.place, "no frame \"" + parent + "\"" +
-                                                     suggest(planning_, parent, known) +
-                                                     "; the root is " + root);
+      planning_.problems.add(frame.parent.place, "no frame \"{}\"{}; the root is {}", parent,
+                             suggest(planning_, parent, known), root);
       known.pop_back();
     }
     std::map<const GraphFrame*, const GraphFrame*> met;  // each on the way up from which first
@@ -102,8 +100,8 @@ class Frames {
              (type.width == 0 || type.width == 4) && (type.height == 0 || type.height == 4);
     };
     if (planning_.problems.empty() && !output->types.empty() && !is_pose(output->types.front()))
-      planning_.problems.add(mover.place, mover.value.text() + " sends " + in_words(output->types) +
-                                              ", not a pose, transformation 4 x 4");
+      planning_.problems.add(mover.place, "{} sends {}, not a pose, transformation 4 x 4",
+                             mover.value.text(), in_words(output->types));
   }
 
   /// Of frames that one output moves, its messages tell which is meant by their numbers.
@@ -115,9 +113,8 @@ class Frames {
       auto [other, is_new] = unnumbered.emplace(frame.moved_by->value.text(), &frame);
       if (!is_new)
         planning_.problems.add(frame.moved_by->place,
-                               frame.moved_by->value.text() + " moves " + other->second->name +
-                                   " and " + frame.name +
-                                   ", so they and their parents need a \"coord\"");
+                               "{} moves {} and {}, so they and their parents need a \"coord\"",
+                               frame.moved_by->value.text(), other->second->name, frame.name);
     }
   }
 

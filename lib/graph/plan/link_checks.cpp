@@ -21,8 +21,7 @@ class LinkCheck {
   /// Whether more may be said of it.
   bool check(const GraphLink& link) {
     if (!linked_.insert(link.from.text() + " " + link.to.text()).second) {
-      problems_.add(link.place,
-                    "duplicate link from " + link.from.text() + " to " + link.to.text());
+      problems_.add(link.place, "duplicate link from {} to {}", link.from.text(), link.to.text());
       return false;
     }
     const PortDescription* from = end(link, link.from, false);
@@ -33,18 +32,20 @@ class LinkCheck {
     if (from == nullptr || to == nullptr) return true;
     bool right = fits(from->types, to->types);
     if (!right)
-      problems_.add(link.place, link.from.text() + " sends " + in_words(from->types) + ", " +
-                                    link.to.text() + " takes " + in_words(to->types));
+      problems_.add(link.place, "{} sends {}, {} takes {}", link.from.text(), in_words(from->types),
+                    link.to.text(), in_words(to->types));
     if (!link.via.value.empty() && !planning_.is_between_hosts(link))
-      problems_.add(link.via.place, "\"via\" is for a link between hosts, and " + link.from.module +
-                                        " and " + link.to.module + " run on the same");
-    const auto transport = transport_of(planning_, link);
-    if (transport.empty()) {
+      problems_.add(link.via.place,
+                    "\"via\" is for a link between hosts, and {} and {} run on the same",
+                    link.from.module, link.to.module);
+    const auto* transport = transport_of(planning_, link);
+    if (transport == nullptr) {
       right = false;
       add_no_transport(link);
     }
-    if (auto memory = link.policy.find("memory");
-        memory != link.policy.end() && !memory->second.value.empty() && transport == "shm")
+    if (auto memory = link.policy.find("memory"); memory != link.policy.end() &&
+                                                  !memory->second.value.empty() &&
+                                                  transport != nullptr && transport->name == "shm")
       if (auto enough = check_shm_memory({"shm", "", {{"memory", memory->second.value}}}); !enough)
         problems_.add(memory->second.place, enough.error().detail);
     check_conversion(link, from->types, to->types);
@@ -62,25 +63,25 @@ class LinkCheck {
 
   void add_no_transport(const GraphLink& link) {
     auto supported = [this](const std::string& module) {
-      std::string list;
-      for (const auto& scheme : schemes_of(*planning_.description_of(module)))
-        list += (list.empty() ? "" : ", ") + scheme;
+      const auto list = joined(schemes_of(*planning_.description_of(module)), ", ");
       return "module " + module + " supports " + (list.empty() ? "none" : list);
     };
-    const std::string &from = link.from.module, &to = link.to.module;
-    std::string takes = "shm at both ends, or tcp-listen at " + from + " and tcp at " + to +
-                        ", or unix-listen and unix";
-    if (planning_.is_between_hosts(link)) {
-      const bool is_plain = link.via.value == "tcp", is_dds = link.via.value == "dds";
-      const std::string scheme = is_plain ? "tcp" : "tls";
-      takes = is_dds ? "dds at both ends"
-                     : scheme + "-listen at " + from + " and " + scheme + " at " + to;
-      if (!is_plain && !is_dds)
-        takes += "; via = \"tcp\" would be neither encrypted nor authenticated";
-    }
-    problems_.add(link.place, "no transport from " + link.from.text() + " to " + link.to.text() +
-                                  ": " + supported(from) + ", " + supported(to) + "; it takes " +
-                                  takes);
+    const std::string &from = link.from.module, &to = link.to.module, &via = link.via.value;
+    std::string takes;
+    if (!planning_.is_between_hosts(link))
+      takes = hc::format(
+          "shm at both ends, or tcp-listen at {} and tcp at {}, or unix-listen and unix", from, to);
+    else if (via == "dds")
+      takes = "dds at both ends";
+    else if (via == "tcp")
+      takes = hc::format("tcp-listen at {} and tcp at {}", from, to);
+    else
+      takes = hc::format(
+          "tls-listen at {} and tls at {}; via = \"tcp\" would be neither encrypted "
+          "nor authenticated",
+          from, to);
+    problems_.add(link.place, "no transport from {} to {}: {}, {}; it takes {}", link.from.text(),
+                  link.to.text(), supported(from), supported(to), takes);
   }
 
   /// Null where there is none, or where nobody knows since the module is not described.
@@ -98,8 +99,8 @@ class LinkCheck {
     // In shared memory, it is the writer whose name others find.
     const bool is_writer = is_input && uri.scheme == "shm";
     if ((is_writer || uri.scheme.ends_with("-listen")) && !may_listen(uri))
-      problems_.add(link.place, hc::format("another link {} {} too",
-                                           is_writer ? "writes to" : "listens at", outside.uri));
+      problems_.add(link.place, "another link {} {} too", is_writer ? "writes to" : "listens at",
+                    outside.uri);
     for (const auto& [key, value] : link.policy)
       if (!uri.option(key, "").empty() && !value.value.empty())
         problems_.add(value.place, key + " is also given in " + outside.uri);
@@ -108,8 +109,8 @@ class LinkCheck {
     if (description == nullptr) return;
     const auto known = schemes_of(*description);
     if (std::find(known.begin(), known.end(), uri.scheme) == known.end())
-      problems_.add(link.place, "module " + module + " does not support " + uri.scheme + ": links" +
-                                    suggest(planning_, uri.scheme, known));
+      problems_.add(link.place, "module {} does not support {}: links{}", module, uri.scheme,
+                    suggest(planning_, uri.scheme, known));
     else if (auto checked = is_input ? check_outlet(uri) : check_source(uri);
              !checked && is_ours(uri))
       problems_.add(link.place, outside.uri + ": " + checked.error().detail);
@@ -175,23 +176,18 @@ class LinkCheck {
     }
     if (first == nullptr) return;
     if (!planning_.description_of(link.from.module)->control)
-      return problems_.add(first->place, "module " + link.from.module + " cannot have \"" +
-                                             options.options.front().first + needs_control());
+      return problems_.add(first->place, kNeedsControl, link.from.module,
+                           options.options.front().first);
     const auto conversion = take_conversion(options);
     if (!conversion) return;  // it has been reported
     if (const auto what = hindrance(*conversion, given, taken); !what.empty())
       problems_.add(first->place, link.from.text() + ": " + what);
   }
 
-  static std::string needs_control() {
-    return "\": its program does not support --control; see spec/module.md, sections 3 and 6";
-  }
-
   void check_route(const GraphLink& link) {
     const Description* sender = planning_.description_of(link.from.module);
     if (sender != nullptr && !sender->control)
-      problems_.add(link.route->place,
-                    "module " + link.from.module + " cannot have \"route" + needs_control());
+      problems_.add(link.route->place, kNeedsControl, link.from.module, "route");
     else if (!link.from.uri.empty())
       problems_.add(link.route->place,
                     "a link from outside cannot have a route: its sender sets it");
@@ -203,16 +199,13 @@ class LinkCheck {
   std::map<std::string, std::set<std::string>> tcp_hosts_;  // by port, where a link listens
 };
 
-bool is_paced(const GraphLink& link) {
-  return link.policy.contains("rate");
-}
-
-std::string way_in_words(const std::vector<const GraphLink*>& way, const std::string& last) {
-  std::string text = last;
+/// The end of a way, from where it was in `module` before.
+std::string loop_in_words(const std::vector<const GraphLink*>& way, const std::string& module) {
+  std::string text = module;
   auto begin = std::find_if(way.begin(), way.end(),
-                            [&](const GraphLink* link) { return link->from.module == last; });
+                            [&](const GraphLink* link) { return link->from.module == module; });
   for (auto link = begin; link != way.end(); ++link) text += " -> " + (*link)->to.module;
-  return text + " -> " + last;
+  return text;
 }
 
 }  // namespace
@@ -236,40 +229,28 @@ void check_loops(Planning& planning) {
       continue;
     const bool is_focus = to != nullptr && find_input(*to, link.to.port) == &focus_input();
     const bool is_frames = link.to.port == "frames" && takes_frames(planning, link.to.module);
-    if (link.from.uri.empty() && link.to.uri.empty() && !is_paced(link) && !is_focus &&
-        !is_frames && !planning.routes(link.from))
+    if (link.from.uri.empty() && link.to.uri.empty() && !link.policy.contains("rate") &&
+        !is_focus && !is_frames && !planning.routes(link.from))
       leaving[link.from.module].push_back(&link);
   }
-  enum class Visit { Begun = 1, Done };
-  std::map<std::string, Visit> visits;
+  std::set<std::string> begun, done;
   std::vector<const GraphLink*> way;
-  // Depth first, without recursion: each step of the way, and which of its links is next.
-  for (const auto& module : planning.graph.modules) {
-    if (visits.contains(module.name)) continue;
-    std::vector<std::pair<std::string, std::size_t>> steps = {{module.name, 0}};
-    visits[module.name] = Visit::Begun;
-    while (!steps.empty()) {
-      auto& [name, next] = steps.back();
-      const auto& links = leaving[name];
-      if (next == links.size()) {
-        visits[name] = Visit::Done;
-        steps.pop_back();
-        if (!way.empty()) way.pop_back();
-        continue;
-      }
-      const GraphLink* link = links[next++];
-      auto visit = visits.find(link->to.module);
-      if (visit == visits.end()) {
-        visits[link->to.module] = Visit::Begun;
-        way.push_back(link);
-        steps.emplace_back(link->to.module, 0);
-      } else if (visit->second == Visit::Begun) {
-        planning.problems.add(link->place,
-                              "loop without a rate: " + way_in_words(way, link->to.module) +
-                                  "; give one of its links a rate, for example rate = 30");
-      }
+  // Depth first; kMaxModules bounds the depth.
+  const std::function<void(const std::string&)> visit = [&](const std::string& module) {
+    if (done.contains(module)) return;
+    if (!begun.insert(module).second)
+      return planning.problems.add(way.back()->place,
+                                   "loop without a rate: {}; give one of its links a rate, for "
+                                   "example rate = 30",
+                                   loop_in_words(way, module));
+    for (const auto* link : leaving[module]) {
+      way.push_back(link);
+      visit(link->to.module);
+      way.pop_back();
     }
-  }
+    done.insert(module);
+  };
+  for (const auto& module : planning.graph.modules) visit(module.name);
 }
 
 /// Of inputs whose messages are taken together, all are linked or none. Commands link one after the
@@ -282,15 +263,13 @@ void check_together(Planning& planning) {
     const Description* description = planning.description_of(module.name);
     if (description == nullptr) continue;
     for (const auto& group : description->together) {
-      std::string there, missing;
-      for (const auto& input : group) {
-        auto& list = linked.contains(module.name + "." + input) ? there : missing;
-        list += (list.empty() ? "" : ", ") + input;
-      }
+      std::vector<std::string> there, missing;
+      for (const auto& input : group)
+        (linked.contains(module.name + "." + input) ? there : missing).push_back(input);
       if (!there.empty() && !missing.empty())
-        planning.problems.add(module.place, "module " + module.name + " takes " + there +
-                                                " together with " + missing +
-                                                ", which has no link");
+        planning.problems.add(module.place,
+                              "module {} takes {} together with {}, which has no link", module.name,
+                              joined(there, ", "), joined(missing, ", "));
     }
   }
 }
@@ -307,10 +286,10 @@ void check_actors(Planning& planning) {
     if (input == nullptr || !input->actor || planned->exclusive.contains(link.to.port)) continue;
     auto [first, is_first] = writers.emplace(link.to.text(), link.from.text());
     if (!is_first)
-      planning.problems.add(link.place, link.to.text() +
-                                            " is an actor's input and gets commands from " +
-                                            first->second + " and " + link.from.text() +
-                                            "; make it exclusive, or put a router before it");
+      planning.problems.add(link.place,
+                            "{} is an actor's input and gets commands from {} and {}; make it "
+                            "exclusive, or put a router before it",
+                            link.to.text(), first->second, link.from.text());
   }
 }
 

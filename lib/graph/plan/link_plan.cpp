@@ -27,44 +27,67 @@ std::string digest(std::string_view text) {
   return digits;
 }
 
-/// Keys of a policy that need a sending end of the link's own, over sockets or shared memory and
-/// over DDS; one that links with an end in common have in common; and those that a reader of shared
-/// memory, and of a topic, keeps.
-constexpr std::array<std::string_view, 4> kOfSender = {"memory", "as", "quality", "scale"};
-constexpr auto kConversion = std::span(kOfSender).subspan<1>();
-constexpr std::array<std::string_view, 1> kTimeout = {"timeout"};
-constexpr std::array<std::string_view, 3> kOfTopicReader = {"rate", "burst", "memory"};
-constexpr auto kPace = std::span(kOfTopicReader).first<2>();
+using Keys = std::span<const std::string_view>;
 
-/// Some options of a link's policy, as they are in a URI.
-std::string options_of(const GraphLink& link, std::span<const std::string_view> keys) {
-  std::string options;
+/// Keys of a policy that need a sending end of the link's own: over sockets or shared memory, and
+/// the last three over DDS; and those that its reader keeps: of shared memory the first two.
+constexpr std::array<std::string_view, 4> kOfSender = {"memory", "as", "quality", "scale"};
+constexpr std::array<std::string_view, 3> kOfReader = {"rate", "burst", "memory"};
+constexpr Keys kConversion = Keys(kOfSender).last<3>(), kPace = Keys(kOfReader).first<2>();
+constexpr std::array<std::string_view, 1> kTimeout = {"timeout"};
+
+bool has(Keys keys, const std::string& key) {
+  return std::ranges::find(keys, key) != keys.end();
+}
+
+/// Adds some options of a link's policy.
+void add_policy(Uri& uri, const GraphLink& link, Keys keys) {
   for (const auto& [key, value] : link.policy)
-    if (std::find(keys.begin(), keys.end(), key) != keys.end())
-      options.append("&").append(key).append("=").append(value.value);
-  return options;
+    if (has(keys, key)) uri.options.emplace_back(key, value.value);
+}
+
+void add_keep(Uri& uri, const std::string& keep) {
+  if (keep != "all") uri.options.emplace_back("keep", keep);
+}
+
+bool is_v4(const std::string& address) {
+  in_addr read{};
+  return ::inet_pton(AF_INET, address.c_str(), &read) == 1;
 }
 
 class LinkPlanner {
  public:
-  explicit LinkPlanner(Planning& planning) : planning_(planning), graph_(planning.graph) {}
+  explicit LinkPlanner(Planning& planning)
+      : planning_(planning), graph_(planning.graph), drafts_(graph_.links.size()) {}
 
   void run() {
     find_routes();
-    for (std::size_t i = 0; i < graph_.links.size(); ++i) {
-      names_.push_back(is_inside(graph_.links[i]) ? name_of(i) : "");
-      if (!names_[i].empty()) ++senders_[names_[i]].readers;
+    for (std::size_t i = 0; i < drafts_.size(); ++i) {
+      drafts_[i].keep = keep_of(graph_.links[i]);
+      if (is_inside(graph_.links[i])) name_link(graph_.links[i], drafts_[i]);
     }
-    for (std::size_t i = 0; i < graph_.links.size(); ++i) {
-      PlannedLink planned = is_inside(graph_.links[i]) ? plan_inside(i) : plan_outside(i);
-      for (const auto& [key, value] : graph_.links[i].policy)
+    for (std::size_t i = 0; i < drafts_.size(); ++i) {
+      const GraphLink& link = graph_.links[i];
+      PlannedLink planned =
+          is_inside(link) ? plan_inside(link, drafts_[i]) : plan_outside(link, drafts_[i]);
+      for (const auto& [key, value] : link.policy)
         if (key != "keep") planned.policy[key] = value.value;
       planning_.plan.links.push_back(std::move(planned));
     }
   }
 
  private:
-  /// The sending end of a link, or of several that share its memory.
+  /// What is known of a link before its ends.
+  struct Draft {
+    std::string sender_route, reader_route;  // the words of --route
+    std::string keep;
+    // Of a link inside the graph:
+    const LinkTransport* transport = nullptr;
+    std::string name;
+    bool is_common = false;  // other links of its output have the same sending end, and name
+  };
+
+  /// The sending end of a link, or of several.
   struct Sender {
     std::size_t readers = 0;
     std::string uri;
@@ -95,38 +118,21 @@ class LinkPlanner {
     constexpr std::size_t kMostRouters = 7;  // R42: the eighth would leave a ttl of 8 with 0
     const Routes routes = compute_routes(links, is_router);
     if (routes.longest > kMostRouters)
-      planning_.problems.add({1, 0}, "a message passes " + std::to_string(routes.longest) +
-                                         " routers on a way of this graph, and its ttl is for " +
-                                         std::to_string(kMostRouters));
-    for (std::size_t i = 0; i < graph_.links.size(); ++i)
-      routes_.push_back(words_of(graph_.links[i], routes.passed[i]));
-  }
-
-  struct RouteWords {
-    std::string sender, reader;
-  };
-
-  [[nodiscard]] RouteWords words_of(const GraphLink& link,
-                                    const std::vector<std::int64_t>& passed) const {
-    const bool leaves_router = planning_.routes(link.from);
-    RouteWords words;
-    std::string addresses;
-    for (auto address : link.route ? link.route->value : passed)
-      addresses += (addresses.empty() ? "" : ",") + std::to_string(address);
-    if (link.routes_all) addresses = "*";
-    if (link.route || leaves_router) words.sender = "to=" + addresses;
-    if (leaves_router && link.to.uri.empty()) words.sender += " peer=" + link.to.module;
-    if (link.from.uri.empty() && link.to.uri.empty() && planning_.is_router(link.to.module))
-      words.reader = "peer=" + link.from.module;
-    return words;
-  }
-
-  /// A link's name: the same in every plan of this graph, and no other's.
-  [[nodiscard]] std::string link_name(std::initializer_list<std::string> words) const {
-    std::string name = planning_.plan.token;
-    for (const auto& word : words) name += "." + word;
-    if (name.size() <= kMaxLinkName) return name;
-    return planning_.plan.token + "." + digest(name);
+      planning_.problems.add(
+          {1, 0}, "a message passes {} routers on a way of this graph, and its ttl is for {}",
+          routes.longest, kMostRouters);
+    for (std::size_t i = 0; i < drafts_.size(); ++i) {
+      const GraphLink& link = graph_.links[i];
+      const bool leaves_router = planning_.routes(link.from);
+      auto& words = drafts_[i].sender_route;
+      if (link.route || leaves_router)
+        words = "to=" + (link.routes_all
+                             ? "*"
+                             : joined(link.route ? link.route->value : routes.passed[i], ","));
+      if (leaves_router && link.to.uri.empty()) words += " peer=" + link.to.module;
+      if (is_inside(link) && planning_.is_router(link.to.module))
+        drafts_[i].reader_route = "peer=" + link.from.module;
+    }
   }
 
   /// Whether a reader waits for the next process of its writer. One without `control` could not be
@@ -135,80 +141,72 @@ class LinkPlanner {
     return !planning_.planned(link.to.module)->control_uri.empty();
   }
 
-  /// Whether links of an output have an end in common with this one: by memory, or a topic.
-  bool is_common(std::size_t number) const {
-    const GraphLink& link = graph_.links[number];
-    const auto transport = transport_of(planning_, link);
-    const bool by_topic = transport == "dds";
-    const auto own = by_topic ? std::span<const std::string_view>(kConversion) : kOfSender;
-    const bool is_own = std::ranges::any_of(
-        own, [&](const auto key) { return link.policy.contains(std::string(key)); });
-    return (transport == "shm" || by_topic) && !is_own && routes_[number].sender.empty();
-  }
-
-  std::string name_of(std::size_t number) const {
-    const GraphPort& from = graph_.links[number].from;
-    const GraphPort& to = graph_.links[number].to;
-    std::string name;
-    if (!is_common(number))
-      name = link_name({from.module, from.port, to.module, to.port});
-    else if (const auto& policy = graph_.links[number].policy; policy.contains("timeout"))
-      name = link_name({from.module, from.port, "timeout_" + policy.at("timeout").value});
-    else
-      name = link_name({from.module, from.port});
-    return transport_of(planning_, graph_.links[number]) == "dds" ? topic_of(name) : name;
-  }
-
-  /// A name as a topic of DDS, whose letters are fewer.
-  static std::string topic_of(std::string name) {
-    std::ranges::replace(name, '.', '/');
-    std::ranges::replace(name, '-', '_');
-    return name;
+  /// Gives a link its transport and its name: the same in every plan of this graph, and no other's.
+  /// All links of an output by shared memory, or by DDS, have one sending end and name, except for
+  /// those with a policy that needs their own, and one for each time-out.
+  void name_link(const GraphLink& link, Draft& draft) {
+    draft.transport = transport_of(planning_, link);
+    const bool is_topic = draft.transport->name == "dds";
+    const Keys own = is_topic ? kConversion : Keys(kOfSender);
+    draft.is_common =
+        (is_topic || draft.transport->name == "shm") && draft.sender_route.empty() &&
+        std::ranges::none_of(link.policy, [&](const auto& each) { return has(own, each.first); });
+    const std::string& token = planning_.plan.token;
+    std::string& name = draft.name = token + "." + link.from.text();
+    if (!draft.is_common)
+      name += "." + link.to.text();
+    else if (const auto timeout = link.policy.find("timeout"); timeout != link.policy.end())
+      name += ".timeout_" + timeout->second.value;
+    if (name.size() > kMaxLinkName) name = token + "." + digest(name);
+    if (is_topic) {  // whose letters are fewer
+      std::ranges::replace(name, '.', '/');
+      std::ranges::replace(name, '-', '_');
+    }
+    ++senders_[name].readers;
   }
 
   /// What all readers of a topic let their writer do: it waits for none where each of them drops.
   std::string keep_of_all(const std::string& name) const {
     std::uint64_t most = 1;
-    for (std::size_t i = 0; i < graph_.links.size(); ++i) {
-      if (names_[i] != name) continue;
-      std::string keep = keep_of(graph_.links[i]);
-      if (keep == "all") return keep;
-      if (keep != "latest") most = std::max<std::uint64_t>(most, std::stoull(keep));
+    for (const auto& draft : drafts_) {
+      if (draft.name != name) continue;
+      if (draft.keep == "all") return draft.keep;
+      if (draft.keep != "latest") most = std::max<std::uint64_t>(most, std::stoull(draft.keep));
     }
     return most == 1 ? "latest" : std::to_string(most);
+  }
+
+  [[nodiscard]] HostPlace place_of(const std::string& host) const {
+    auto found = planning_.places.find(host);
+    return found == planning_.places.end() ? HostPlace{} : found->second;
+  }
+
+  /// The address of a host for another: that of `hc run` is where each of the others sees it.
+  [[nodiscard]] std::string address_of(const std::string& host, const std::string& other) const {
+    return host.empty() ? place_of(other).runner : place_of(host).address;
   }
 
   /// The addresses by which the two ends of a topic reach each other, of which the host of `hc run`
   /// has one for each of the others.
   std::string interfaces_of(const std::string& name, bool of_writer, const GraphLink& own) {
-    const auto address_of = [&](const GraphLink& link) {
-      const std::string &here = planning_.host_of((of_writer ? link.from : link.to).module),
-                        &there = planning_.host_of((of_writer ? link.to : link.from).module);
-      return here.empty() ? place_of(there).runner : place_of(here).address;
+    const auto hosts_of = [&](const GraphLink& link) {
+      std::pair hosts(planning_.host_of(link.from.module), planning_.host_of(link.to.module));
+      if (!of_writer) std::swap(hosts.first, hosts.second);
+      return hosts;
     };
     std::set<std::string> addresses;
-    for (std::size_t i = 0; i < graph_.links.size(); ++i)
-      if (names_[i] == name && (of_writer || graph_.links[i].to.text() == own.to.text()))
-        addresses.insert(address_of(graph_.links[i]));
-    std::string list;
-    for (const auto& address : addresses) {
-      if (!is_v4(address) && !planning_.places.empty()) {
-        const std::string &from = planning_.host_of(own.from.module),
-                          &to = planning_.host_of(own.to.module);
-        const std::string &here = of_writer ? from : to, &there = of_writer ? to : from;
-        planning_.problems.add(own.place, "dds needs the IPv4 address of host " +
-                                              (here.empty() ? there : here) +
-                                              (address.empty() ? "" : ", not " + address) +
-                                              ": say address = \"…\" in its table");
+    for (std::size_t i = 0; i < drafts_.size(); ++i)
+      if (drafts_[i].name == name && (of_writer || graph_.links[i].to.text() == own.to.text())) {
+        const auto hosts = hosts_of(graph_.links[i]);
+        addresses.insert(address_of(hosts.first, hosts.second));
       }
-      list += (list.empty() ? "" : ",") + address;
-    }
-    return list;
-  }
-
-  static bool is_v4(const std::string& address) {
-    in_addr read{};
-    return ::inet_pton(AF_INET, address.c_str(), &read) == 1;
+    const auto [here, there] = hosts_of(own);
+    for (const auto& address : addresses)
+      if (!is_v4(address) && !planning_.places.empty())
+        planning_.problems.add(
+            own.place, "dds needs the IPv4 address of host {}{}: say address = \"…\" in its table",
+            here.empty() ? there : here, address.empty() ? "" : ", not " + address);
+    return joined(addresses, ",");
   }
 
   /// What the reader says of its input; images are as good as they are new, so that the newest
@@ -241,120 +239,98 @@ class LinkPlanner {
       if (port)
         held = *port;
       else
-        planning_.problems.add(link.place, "no port for the link from " + link.from.text() +
-                                               " to " + link.to.text() + ": " +
-                                               port.error().detail);
+        planning_.problems.add(link.place, "no port for the link from {} to {}: {}",
+                               link.from.text(), link.to.text(), port.error().detail);
     }
     return held == nullptr ? 0 : held->number;
   }
 
-  /// The URIs of a link's two ends, and what each has beside the options of every link in a graph.
-  struct Ends {
-    std::string writer, reader, writer_options, reader_options;
-  };
-
-  /// The links of an output that share memory have one sending end in common, but for those that
-  /// have a bound or a route of their own, and each reader keeps its rate; every other link has a
-  /// socket. All links of an output by DDS have a topic in common, and each reader keeps its rate,
-  /// and drops by its own policy.
-  Ends ends_of(std::size_t number, const std::string& keep) {
-    const GraphLink& link = graph_.links[number];
-    const std::string transport(transport_of(planning_, link));
-    const std::string &name = names_[number], place = transport + ":" + name;
-    const auto and_keep = [](const std::string& kept) {
-      return kept == "all" ? "" : "&keep=" + kept;
-    };
-    const std::string timeout = options_of(link, kTimeout), pace = options_of(link, kPace);
-    if (transport == "shm")
-      return {place, place,
-              (is_common(number) ? "" : and_keep(keep)) + options_of(link, kOfSender) + timeout,
-              and_keep(keep) + pace};
-    if (transport == "dds")
-      return {place, place,
-              "&interface=" + interfaces_of(name, true, link) + and_keep(keep_of_all(name)) +
-                  options_of(link, kConversion) + timeout,
-              "&interface=" + interfaces_of(name, false, link) + and_keep(keep) +
-                  options_of(link, kOfTopicReader)};
-    Ends ends = sockets_of(link, transport, name);
-    ends.writer = transport + "-listen:" + ends.writer;
-    ends.reader = transport + ":" + ends.reader;
-    ends.writer_options += and_keep(keep) + options_of(link, kOfSender) + timeout + pace;
-    return ends;
-  }
-
   /// Where the writer of a link listens, where its reader connects to, and whom each lets in.
-  Ends sockets_of(const GraphLink& link, std::string_view transport, const std::string& name) {
-    if (transport == "unix") return {"@" + name, "@" + name, "", ""};
-    const std::string port = ":" + std::to_string(port_of(link, name));
-    if (!planning_.is_between_hosts(link))
-      return {"127.0.0.1" + port, "127.0.0.1" + port, "&same_user=1", "&same_user=1"};
+  void connect_sockets(const GraphLink& link, const Draft& draft, Uri& writer, Uri& reader) {
+    if (draft.transport->name == "unix") {
+      writer.rest = reader.rest = "@" + draft.name;
+      return;
+    }
+    const std::string port = ":" + std::to_string(port_of(link, draft.name));
+    if (!planning_.is_between_hosts(link)) {
+      writer.rest = reader.rest = "127.0.0.1" + port;
+      for (auto* uri : {&writer, &reader}) uri->options.emplace_back("same_user", "1");
+      return;
+    }
     const std::string &from = planning_.host_of(link.from.module),
                       &to = planning_.host_of(link.to.module);
-    // The host of `hc run` is where each of the others sees it.
-    std::string address = place_of(from.empty() ? to : from).*
-                          (from.empty() ? &HostPlace::runner : &HostPlace::address);
+    const std::string address = address_of(from, to);
     if (address.empty() && !planning_.places.empty())
       planning_.problems.add(
           link.place,
           from.empty()
-              ? "host " + to + " has no address of this one that links can use: connect to it by " +
-                    "another, not a link-local one"
-              : "host " + from +
-                    " has no address that links can use: say address = \"…\" in its table");
+              ? "host {} has no address of this one that links can use: connect to it by another, "
+                "not a link-local one"
+              : "host {} has no address that links can use: say address = \"…\" in its table",
+          from.empty() ? to : from);
     const bool is_v6 = address.find(':') != std::string::npos;
-    if (is_v6) address = "[" + address + "]";
-    Ends ends{(is_v6 ? "[::]" : "0.0.0.0") + port, address + port, "", ""};
-    if (transport == "tls") {
-      const std::string key = "&key=" + std::string(kKeyFile) + "&peer=";
-      ends.writer_options = key + place_of(to).fingerprint;
-      ends.reader_options = key + place_of(from).fingerprint;
+    writer.rest = (is_v6 ? "[::]" : "0.0.0.0") + port;
+    reader.rest = (is_v6 ? "[" + address + "]" : address) + port;
+    if (draft.transport->name != "tls") return;
+    for (auto [uri, peer] : {std::pair(&writer, &to), {&reader, &from}}) {
+      uri->options.emplace_back("key", kKeyFile);
+      uri->options.emplace_back("peer", place_of(*peer).fingerprint);
     }
-    return ends;
   }
 
-  [[nodiscard]] HostPlace place_of(const std::string& host) const {
-    auto found = planning_.places.find(host);
-    return found == planning_.places.end() ? HostPlace{} : found->second;
-  }
-
-  /// Senders wait for their readers, so that it does not matter who starts first.
-  PlannedLink plan_inside(std::size_t number) {
-    const GraphLink& link = graph_.links[number];
-    const std::string keep = keep_of(link);
-    const Ends ends = ends_of(number, keep);
-    Sender& sender = senders_[names_[number]];
+  /// Senders wait for their readers, so that it does not matter who starts first. The readers of
+  /// shared memory and of a topic keep their rate, and drop by their own policy; every other link
+  /// has a socket, whose writer does that.
+  PlannedLink plan_inside(const GraphLink& link, const Draft& draft) {
+    Sender& sender = senders_[draft.name];
+    Uri writer{std::string(draft.transport->writer),
+               draft.name,
+               {{"readers", std::to_string(sender.readers)}, {"stay", "1"}}};
+    Uri reader{std::string(draft.transport->reader), draft.name, {{"wait", "60"}}};
+    if (lasts(link)) reader.options = {{"reconnect", "86400"}};
+    if (draft.transport->name == "shm") {
+      if (!draft.is_common) add_keep(writer, draft.keep);
+      add_policy(writer, link, kOfSender);
+      add_keep(reader, draft.keep);
+      add_policy(reader, link, kPace);
+    } else if (draft.transport->name == "dds") {
+      writer.options.emplace_back("interface", interfaces_of(draft.name, true, link));
+      reader.options.emplace_back("interface", interfaces_of(draft.name, false, link));
+      add_keep(writer, keep_of_all(draft.name));
+      add_policy(writer, link, kConversion);
+      add_keep(reader, draft.keep);
+      add_policy(reader, link, kOfReader);
+    } else {
+      connect_sockets(link, draft, writer, reader);
+      add_keep(writer, draft.keep);
+      add_policy(writer, link, kOfSender);
+      add_policy(writer, link, kPace);
+    }
+    add_policy(writer, link, kTimeout);
     if (sender.uri.empty()) {
-      sender.uri = ends.writer + "?readers=" + std::to_string(sender.readers) + "&stay=1" +
-                   ends.writer_options;
-      add_end(link.from, {false, link.from.port, sender.uri, routes_[number].sender});
+      sender.uri = writer.text();
+      add_end(link.from, {false, link.from.port, sender.uri, draft.sender_route});
     }
-    const std::string reader_uri =
-        ends.reader + (lasts(link) ? "?reconnect=86400" : "?wait=60") + ends.reader_options;
-    add_end(link.to, {true, link.to.port, reader_uri, routes_[number].reader});
-    return {link.from.text(), link.to.text(), sender.uri, reader_uri, keep, {}, lasts(link)};
+    add_end(link.to, {true, link.to.port, reader.text(), draft.reader_route});
+    return {link.from.text(), link.to.text(), sender.uri, reader.text(), draft.keep, {},
+            lasts(link)};
   }
 
   /// A link with the world outside is as the file says.
-  PlannedLink plan_outside(std::size_t number) {
-    const GraphLink& link = graph_.links[number];
+  PlannedLink plan_outside(const GraphLink& link, const Draft& draft) {
     const bool is_input = !link.from.uri.empty();
     Uri uri = *parse_uri(is_input ? link.from.uri : link.to.uri);
-    const std::string keep{uri.option("keep", keep_of(link))};
-    if (keep != "all" && uri.option("keep", "").empty()) uri.options.emplace_back("keep", keep);
+    const std::string keep{uri.option("keep", draft.keep)};
+    if (uri.option("keep", "").empty()) add_keep(uri, keep);
     for (const auto& [key, value] : link.policy)
       if (key != "keep") uri.options.emplace_back(key, value.value);
-    const std::string text = uri.text();
+    PlannedLink planned{link.from.text(), link.to.text(), {}, {}, keep, {}, false};
+    (is_input ? planned.reader_uri : planned.sender_uri) = uri.text();
     if (is_input)
-      add_end(link.to, {true, link.to.port, text, routes_[number].reader});
+      add_end(link.to, {true, link.to.port, uri.text(), draft.reader_route});
     else
-      add_end(link.from, {false, link.from.port, text, routes_[number].sender});
-    return {link.from.text(),
-            link.to.text(),
-            is_input ? "" : text,
-            is_input ? text : "",
-            keep,
-            {},
-            false};
+      add_end(link.from, {false, link.from.port, uri.text(), draft.sender_route});
+    return planned;
   }
 
   void add_end(const GraphPort& port, PlannedEnd end) {
@@ -363,26 +339,27 @@ class LinkPlanner {
 
   Planning& planning_;
   const Graph& graph_;
-  std::vector<RouteWords> routes_;         // by number of a link
-  std::vector<std::string> names_;         // the same; of links inside the graph
+  std::vector<Draft> drafts_;              // by number of a link
   std::map<std::string, Sender> senders_;  // by name
 };
 
 }  // namespace
 
-std::string_view transport_of(const Planning& planning, const GraphLink& link) {
+const LinkTransport* transport_of(const Planning& planning, const GraphLink& link) {
+  static constexpr std::array<LinkTransport, 5> kTransports = {{{"shm", "shm", "shm"},
+                                                                {"unix", "unix-listen", "unix"},
+                                                                {"tcp", "tcp-listen", "tcp"},
+                                                                {"tls", "tls-listen", "tls"},
+                                                                {"dds", "dds", "dds"}}};
   const Description& from = *planning.description_of(link.from.module);
   const Description& to = *planning.description_of(link.to.module);
-  if (planning.is_between_hosts(link)) {
-    if (link.via.value == "dds") return from.knows("dds") && to.knows("dds") ? "dds" : "";
-    const bool is_plain = link.via.value == "tcp";
-    if (is_plain) return from.knows("tcp-listen") && to.knows("tcp") ? "tcp" : "";
-    return from.knows("tls-listen") && to.knows("tls") ? "tls" : "";
+  const std::string_view via = link.via.value.empty() ? "tls" : std::string_view(link.via.value);
+  const bool is_between = planning.is_between_hosts(link);
+  for (const auto& each : kTransports) {
+    const bool may_be = is_between ? each.name == via : each.name != "tls" && each.name != "dds";
+    if (may_be && from.knows(each.writer) && to.knows(each.reader)) return &each;
   }
-  if (from.knows("shm") && to.knows("shm")) return "shm";
-  if (from.knows("unix-listen") && to.knows("unix")) return "unix";
-  if (from.knows("tcp-listen") && to.knows("tcp")) return "tcp";
-  return "";
+  return nullptr;
 }
 
 void plan_links(Planning& planning) {

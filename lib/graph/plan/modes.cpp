@@ -38,13 +38,12 @@ class Modes {
       names_.push_back(mode.name);
       auto [other, is_new] = names.emplace(mode.number, mode.name);
       if (!is_new)
-        problems_.add(mode.place,
-                      "modes " + other->second + " and " + mode.name + " have the same number");
+        problems_.add(mode.place, "modes {} and {} have the same number", other->second, mode.name);
       if (!planning_.plan.modes.emplace(mode.name, mode.number).second)
         problems_.add(mode.place, "mode " + mode.name + " has two numbers");
       else if (!tasks.contains(mode.name))
-        problems_.add(mode.place, "mode " + mode.name + " has no task: no module has mode = \"" +
-                                      mode.name + "\"");
+        problems_.add(mode.place, "mode {} has no task: no module has mode = \"{}\"", mode.name,
+                      mode.name);
     }
   }
 
@@ -55,8 +54,8 @@ class Modes {
     if (output == nullptr) return false;
     const bool is_right = fits(output->types, focus_input().types);
     if (!is_right)
-      problems_.add(place, name + ".focus sends " + in_words(output->types) + ", not " +
-                               in_words(focus_input().types));
+      problems_.add(place, "{}.focus sends {}, not {}", name, in_words(output->types),
+                    in_words(focus_input().types));
     return is_right;
   }
 
@@ -94,8 +93,8 @@ class Modes {
   std::optional<std::int64_t> number_of(const Lined<std::string>& mode) {
     auto found = planning_.plan.modes.find(mode.value);
     if (found != planning_.plan.modes.end()) return found->second;
-    problems_.add(mode.place,
-                  "no mode \"" + mode.value + "\"" + suggest(planning_, mode.value, names_));
+    problems_.add(mode.place, "no mode \"{}\"{}", mode.value,
+                  suggest(planning_, mode.value, names_));
     return std::nullopt;
   }
 
@@ -106,13 +105,12 @@ class Modes {
       if (auto number = number_of(*module.mode))
         planned.add_option("--mode", std::to_string(*number));
     }
-    std::string numbers;
+    std::vector<std::string> numbers;
     for (const auto& mode : module.modes) {
       planned.modes.push_back(mode.value);
-      if (auto number = number_of(mode))
-        numbers += (numbers.empty() ? "" : ",") + std::to_string(*number);
+      if (auto number = number_of(mode)) numbers.push_back(std::to_string(*number));
     }
-    if (!numbers.empty()) planned.add_option("--modes", numbers);
+    if (!numbers.empty()) planned.add_option("--modes", joined(numbers, ","));
     const Description& description = *planning_.description_of(module.name);
     for (const auto& input : module.exclusive) {
       if (find_named(description.inputs, input.value) == nullptr)
@@ -150,26 +148,22 @@ void plan_modes(Planning& planning) {
 void check_bids(Planning& planning) {
   const Graph& graph = planning.graph;
   if (planning.before != nullptr || !planning.problems.empty()) return;
-  std::set<std::string> bidding = planning.plan.workspaces;  // they, and who sends to them
-  if (bidding.empty()) return;
-  for (bool is_more = true; is_more;) {
-    is_more = false;
-    for (const auto& link : graph.links) {
-      const bool passes =
-          planning.plan.workspaces.contains(link.to.module) || planning.is_router(link.to.module);
-      if (!passes || !bidding.contains(link.to.module)) continue;
-      if (!link.from.uri.empty()) return;  // who bids from outside is not known
-      is_more = bidding.insert(link.from.module).second || is_more;
-    }
-  }
+  if (planning.plan.workspaces.empty()) return;
+  Ways back;  // the world outside has no name
+  for (const auto& link : graph.links)
+    if (planning.plan.workspaces.contains(link.to.module) || planning.is_router(link.to.module))
+      back[link.to.module].insert(link.from.module);
+  const auto bidding = reach(back, planning.plan.workspaces);  // they, and who sends to them
+  if (bidding.contains("")) return;                            // who bids from outside is not known
   for (const auto& mode : graph.modes) {
     auto bids = [&](const GraphModule& module) {
       return module.mode && module.mode->value == mode.name && bidding.contains(module.name);
     };
     if (std::none_of(graph.modules.begin(), graph.modules.end(), bids))
-      planning.problems.add(mode.place, "mode " + mode.name +
-                                            " never gets the focus: no module with mode = \"" +
-                                            mode.name + "\" sends bids to a workspace");
+      planning.problems.add(mode.place,
+                            "mode {} never gets the focus: no module with mode = \"{}\" sends bids "
+                            "to a workspace",
+                            mode.name, mode.name);
   }
 }
 

@@ -12,9 +12,6 @@
 namespace hc::internal {
 namespace {
 
-/// From a module to those that its messages lead to.
-using Ways = std::map<std::string, std::set<std::string>>;
-
 /// The shortest way from one module to another over one step at least, with both its ends; empty:
 /// there is none. Cost: linear in the steps there are.
 std::vector<std::string> find_way(const Ways& ways, const std::string& from,
@@ -83,9 +80,7 @@ class MotionCheck {
 
  private:
   [[nodiscard]] const std::string& group_of(const std::string& name) const {
-    static const std::string kNone;
-    const auto* module = planning_.graph.find(name);
-    return module == nullptr ? kNone : module->group;
+    return planning_.graph.find(name)->group;
   }
 
   /// The modules whose messages lead to an actor or a workspace, and these.
@@ -95,14 +90,7 @@ class MotionCheck {
       for (const auto& module : to) back[module].insert(from);
     std::set<std::string> moving = actors_;
     moving.insert(planning_.plan.workspaces.begin(), planning_.plan.workspaces.end());
-    std::deque<std::string> next(moving.begin(), moving.end());
-    while (!next.empty()) {
-      const std::string module = next.front();
-      next.pop_front();
-      for (const auto& from : back[module])
-        if (moving.insert(from).second) next.push_back(from);
-    }
-    return moving;
+    return reach(back, std::move(moving));
   }
 
   /// Of each two modules that a loop leads over, once.
@@ -118,16 +106,11 @@ class MotionCheck {
         for (const auto* way : {&there, &back})
           for (auto module = way->begin() + 1; module != way->end(); ++module)
             text += " -> " + *module;
-        planning_.problems.warn(place_of(*one),
+        planning_.problems.warn(planning_.graph.find(*one)->place,
                                 "loop over two " + what + ": " + text +
                                     "; each disturbs the other, and nothing here says which is the "
                                     "faster: cut it, or let one workspace decide");
       }
-  }
-
-  [[nodiscard]] Place place_of(const std::string& name) const {
-    const auto* module = planning_.graph.find(name);
-    return module == nullptr ? Place{} : module->place;
   }
 
   Planning& planning_;

@@ -29,8 +29,7 @@ class Numbering {
     const Description* description = planning_.description_of(module.name);
     for (const auto& [port, address] : module.addresses) {
       if (address.value != 0 && !taken_.insert(address.value).second)
-        planning_.problems.add(address.place,
-                               "address " + std::to_string(address.value) + " is used twice");
+        planning_.problems.add(address.place, "address {} is used twice", address.value);
       if (description == nullptr) continue;
       if (find_named(description->outputs, port) != nullptr) continue;
       if (find_named(description->inputs, port) != nullptr) {
@@ -112,8 +111,8 @@ class Numbering {
     if (!address) {
       auto known = names_of_inputs();
       known.emplace_back("all");
-      return planning_.problems.add(to.place,
-                                    "no input \"" + name + "\"" + suggest(planning_, name, known));
+      return planning_.problems.add(to.place, "no input \"{}\"{}", name,
+                                    suggest(planning_, name, known));
     }
     planning_.planned(module.name)->add_option("--to", port + "=" + std::to_string(*address));
   }
@@ -144,8 +143,7 @@ void check_destinations(Planning& planning) {
   for (const auto& module : planning.graph.modules)
     for (const auto& [port, to] : module.to)
       if (to.value.name.empty() && to.value.number > 0 && !known.contains(to.value.number))
-        planning.problems.add(to.place,
-                              "no input has the address " + std::to_string(to.value.number));
+        planning.problems.add(to.place, "no input has the address {}", to.value.number);
 }
 
 }  // namespace hc::internal

@@ -62,6 +62,11 @@ struct Planning {
   }
 };
 
+/// What is wrong with a module, {}, that has a key, {}, for which its program is too simple.
+inline constexpr std::string_view kNeedsControl =
+    "module {} cannot have \"{}\": its program does not support --control; see spec/module.md, "
+    "sections 3 and 6";
+
 /// Whether a program has a parameter of that name that is a string.
 bool has_text_parameter(const Description& description, std::string_view name);
 
@@ -103,10 +108,15 @@ void check_together(Planning& planning);
 void check_bids(Planning& planning);
 void check_destinations(Planning& planning);
 
+/// What links go over, and the schemes of their ends.
+struct LinkTransport {
+  std::string_view name, writer, reader;
+};
+
 /// What a link between two modules goes over, the first of shm, unix and tcp that both have, or tls
-/// (or tcp or dds, if that is asked for) to another host; empty where there is none. Both are
+/// (or tcp or dds, if that is asked for) to another host; null where there is none. Both are
 /// described.
-std::string_view transport_of(const Planning& planning, const GraphLink& link);
+const LinkTransport* transport_of(const Planning& planning, const GraphLink& link);
 
 /// Gives each link its two ends.
 void plan_links(Planning& planning);

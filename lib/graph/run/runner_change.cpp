@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a running graph is changed: by its files, and by commands.
-#include <graph/commands.h>
 #include <graph/run/runner.h>
 #include <hc/base/suggestion.h>
 #include <hc/contract/trace.h>

@@ -44,6 +44,20 @@ std::string format(std::string_view pattern, const Values&... values) {
   return internal::format(pattern, {internal::format_value(values)...});
 }
 
+/// Words, or whole numbers, one after the other.
+template <typename Words>
+std::string joined(const Words& words, std::string_view between) {
+  std::string text;
+  for (const auto& word : words) {
+    if (!text.empty()) text += between;
+    if constexpr (std::is_integral_v<std::remove_cvref_t<decltype(word)>>)
+      text += std::to_string(word);
+    else
+      text += word;
+  }
+  return text;
+}
+
 /// Two lower-case hexadecimal digits of each byte.
 std::string hexadecimal(std::span<const unsigned char> bytes);
 
