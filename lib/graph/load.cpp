@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <future>
 #include <map>
 #include <set>
 #include <system_error>
@@ -19,6 +18,7 @@
 #include <hc/base/suggestion.h>
 #include <hc/contract/description.h>
 #include <hc/contract/trace.h>
+#include <hc/os/aside.h>
 
 namespace hc {
 namespace {
@@ -58,20 +58,6 @@ std::string why_no_program(const std::string& program, const std::string& path) 
   if (fs::is_directory(path, missing)) return path + " is a folder, not a program";
   if (fs::exists(path, missing)) return path + " is not executable";
   return "no program \"" + program + "\"";
-}
-
-/// Replaces names of programs by paths; one with a slash is relative to the file that names it.
-void find_programs(Graph& graph, Problems& problems) {
-  for (auto& module : graph.modules) {
-    auto& [given, place] = module.program;
-    if (given.empty() || !module.host.value.empty()) continue;  // what is wrong has been reported
-    std::string name = given;
-    if (name.find('/') != std::string::npos && !name.starts_with('/'))
-      name = (fs::path(problems.file(place.file)).parent_path() / name).string();
-    std::string program = find_program(name);
-    if (program.empty()) problems.add(place, why_no_program(given, name));
-    given = program;
-  }
 }
 
 /// Has a graph serve a page: by its module `web`, or by a new one, which can stop the robot and
@@ -141,8 +127,15 @@ class FileLoader : public GraphLoader {
   }
 
  private:
-  using Answers = std::map<std::pair<std::string, std::string>, Result<std::string>>;
-  using HostsByName = std::map<std::string, std::shared_ptr<Host>>;
+  using Answers = std::map<std::string, Result<std::string>>;  // by program
+
+  /// What is known of another host.
+  struct Elsewhere {
+    Result<Hosts::Connected> connected;
+    Answers found;      // where its programs are,
+    Answers described;  // and what these say of themselves, by their paths
+  };
+  using HostAnswers = std::map<std::string, Elsewhere>;
 
   Result<LoadedGraph> read_and_plan(const Plan* running, int stop) {
     // A graph that runs is read from files again: nobody writes into a pipe once more.
@@ -161,27 +154,25 @@ class FileLoader : public GraphLoader {
   }
 
   LoadedGraph planned(Graph graph, Problems& problems, const Plan* running, int stop) {
-    find_programs(graph, problems);
-    Answers described;
-    HostsByName hosts;
-    const HostPlaces places = find_programs_elsewhere(graph, problems, hosts, described, stop);
+    HostAnswers elsewhere;
+    if (auto asked = ask_hosts(graph, problems, stop, elsewhere); !asked)
+      problems.add({}, asked.error().text());
+    HostPlaces places;
+    if (options_.hosts != nullptr) places[""].fingerprint = options_.hosts->fingerprint();
+    for (const auto& [name, there] : elsewhere) places[name] = there.connected->place;
+    find_programs(graph, elsewhere, problems);
+    Answers described;  // here; a failure is not tried twice
     LoadedGraph loaded{graph, {}, {}, {}};
     const bool has_recorder = !options_.recorder.empty();
     const std::string recorder = has_recorder ? find_program("recorder") : "";
     std::vector<std::string> recorded;
     auto describe = [&](const std::string& program,
                         const std::string& host) -> Result<std::string> {
-      auto known = described.find({host, program});
-      if (known == described.end()) {  // a failure is not tried twice
-        const auto there = hosts.find(host);
-        known = described
-                    .emplace(std::pair(host, program),
-                             there == hosts.end() ? describe_once(program, stop)
-                                                  : there->second->describe_program(program, stop))
-                    .first;
-      }
-      if (program == recorder && host.empty() && !recorder.empty() && known->second)
-        return with_inputs(*known->second, recorded);
+      if (!host.empty()) return elsewhere.at(host).described.at(program);
+      auto known = described.find(program);
+      if (known == described.end())
+        known = described.emplace(program, describe_once(program, stop)).first;
+      if (program == recorder && known->second) return with_inputs(*known->second, recorded);
       return known->second;
     };
     if (has_recorder && recorder.empty()) {
@@ -191,9 +182,8 @@ class FileLoader : public GraphLoader {
       loaded.recorder = graph.modules.back().name;
     }
     auto hold_port = [&](const std::string& host, bool is_for_others) {
-      const auto there = hosts.find(host);
-      return there == hosts.end() ? hc::hold_port(is_for_others)
-                                  : there->second->hold_port(is_for_others, stop);
+      return host.empty() ? hc::hold_port(is_for_others)
+                          : elsewhere.at(host).connected->host->hold_port(is_for_others, stop);
     };
     Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running,
                           options_.holds_ports ? hold_port : HoldPort(), places);
@@ -202,12 +192,26 @@ class FileLoader : public GraphLoader {
     return loaded;
   }
 
-  /// What is known of another host.
-  struct Elsewhere {
-    Result<Hosts::Connected> connected;
-    Answers found;      // where its programs are, by host and name,
-    Answers described;  // and what these say of themselves, by host and path
-  };
+  /// Replaces names of programs by paths; one with a slash is relative to the file that names it.
+  /// Modules on a host that cannot be reached cause no further problems.
+  static void find_programs(Graph& graph, const HostAnswers& elsewhere, Problems& problems) {
+    for (auto& module : graph.modules) {
+      auto& [program, place] = module.program;
+      const std::string given = std::exchange(program, {}), &host = module.host.value;
+      if (given.empty()) continue;  // what is wrong has been reported
+      if (const auto there = elsewhere.find(host); there != elsewhere.end()) {
+        const auto& path = there->second.found.at(given);
+        if (!path) problems.add(place, "host {}: {}", host, path.error().detail);
+        program = path.value_or("");
+      } else if (host.empty()) {
+        std::string name = given;
+        if (name.find('/') != std::string::npos && !name.starts_with('/'))
+          name = (fs::path(problems.file(place.file)).parent_path() / name).string();
+        program = find_program(name);
+        if (program.empty()) problems.add(place, why_no_program(given, name));
+      }
+    }
+  }
 
   static Elsewhere ask_host(Hosts& hosts, const GraphHost& declared,
                             const std::set<std::string>& programs, int stop) {
@@ -216,20 +220,20 @@ class FileLoader : public GraphLoader {
       if (!there.connected) break;
       auto& host = *there.connected->host;
       auto path = host.find_program(program, stop);
-      if (path)
-        there.described.emplace(std::pair(declared.name, *path),
-                                host.describe_program(*path, stop));
-      there.found.emplace(std::pair(declared.name, program), std::move(path));
+      if (path) there.described.emplace(*path, host.describe_program(*path, stop));
+      there.found.emplace(program, std::move(path));
     }
     return there;
   }
 
   /// Connects to the hosts that modules run on, and asks each where its programs are and for their
-  /// descriptions: all at the same time, each on a thread. Modules on a host that cannot be reached
-  /// cause no further problems.
-  HostPlaces find_programs_elsewhere(Graph& graph, Problems& problems, HostsByName& hosts,
-                                     Answers& described, int stop) {
-    std::vector<std::pair<const GraphHost*, std::future<Elsewhere>>> asked;
+  /// descriptions: all at the same time. Problems: one that cannot be reached.
+  ///
+  /// Errors: System.
+  Status ask_hosts(const Graph& graph, Problems& problems, int stop, HostAnswers& elsewhere) {
+    const auto loop = HC_TRY(internal::Loop::make());
+    std::vector<internal::Aside> asked;
+    std::size_t answers = 0;
     for (const auto& declared : graph.hosts) {
       std::set<std::string> programs;
       for (const auto& module : graph.modules)
@@ -240,38 +244,23 @@ class FileLoader : public GraphLoader {
         break;
       }
       programs.erase("");  // what is wrong has been reported
-      asked.emplace_back(
-          &declared, std::async(std::launch::async, ask_host, std::ref(*options_.hosts), declared,
-                                programs, stop));
+      auto answered = [&, &declared = declared](Elsewhere there) {
+        ++answers;
+        if (there.connected)
+          elsewhere.emplace(declared.name, std::move(there));
+        else
+          problems.add(declared.place, "host {}: {}", declared.name,
+                       there.connected.error().detail);
+      };
+      asked.push_back(HC_TRY(internal::run_aside(
+          *loop,
+          [=, &declared = declared, this](int) {
+            return ask_host(*options_.hosts, declared, programs, stop);
+          },
+          answered)));
     }
-    HostPlaces places;
-    Answers found;
-    for (auto& [declared, answer] : asked) {
-      auto there = answer.get();
-      if (!there.connected) {
-        problems.add(declared->place,
-                     "host " + declared->name + ": " + there.connected.error().detail);
-        continue;
-      }
-      hosts[declared->name] = there.connected->host;
-      places[declared->name] = there.connected->place;
-      found.merge(there.found);
-      described.merge(there.described);
-    }
-    if (options_.hosts != nullptr) places[""].fingerprint = options_.hosts->fingerprint();
-    for (auto& module : graph.modules) {
-      auto& [program, place] = module.program;
-      const std::string& name = module.host.value;
-      if (name.empty() || program.empty()) continue;
-      if (!hosts.contains(name)) {
-        program.clear();
-        continue;
-      }
-      const auto& known = found.at({name, program});
-      if (!known) problems.add(place, "host " + name + ": " + known.error().detail);
-      program = known ? *known : "";
-    }
-    return places;
+    while (answers < asked.size()) HC_TRY(loop->turn());
+    return {};
   }
 
   Result<std::string> describe_once(const std::string& program, int stop) {

@@ -74,6 +74,12 @@ struct PlannedLink {
   std::string keep;                           ///< what it does when its reader is slow
   std::map<std::string, std::string> policy;  ///< the rest of it: `rate` and so on
   bool lasts = false;                         ///< its reader waits for its writer's next process
+
+  /// One of its ends, without its route.
+  [[nodiscard]] PlannedEnd end(bool is_input) const {
+    const std::string& name = is_input ? to : from;
+    return {is_input, name.substr(name.find('.') + 1), is_input ? reader_uri : sender_uri, {}};
+  }
 };
 
 struct Plan {

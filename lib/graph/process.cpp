@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include <graph/plan.h>
+#include <hc/base/format.h>
 #include <hc/link/stream/ends.h>
 
 namespace hc {
@@ -141,11 +142,7 @@ std::vector<std::string> environment_with(const std::vector<int>& listeners) {
   std::vector<std::string> words;
   for (char** word = environ; *word != nullptr; ++word)
     if (!std::string_view(*word).starts_with(prefix)) words.emplace_back(*word);
-  if (listeners.empty()) return words;
-  std::string numbers;
-  for (const int listener : listeners)
-    numbers += (numbers.empty() ? "" : " ") + std::to_string(listener);
-  words.push_back(prefix + numbers);
+  if (!listeners.empty()) words.push_back(prefix + joined(listeners, " "));
   return words;
 }
 

@@ -47,7 +47,6 @@ class Process {
                                const Given& given = {});
 
   Process(Process&&) = default;
-  Process& operator=(Process&&) = default;
   ~Process();
 
   /// Of its guard, whose eldest child the process is.
@@ -82,10 +81,6 @@ class Process {
     bool flag = true;
     Owned() = default;
     Owned(Owned&& other) noexcept : flag(std::exchange(other.flag, false)) {}
-    Owned& operator=(Owned&& other) noexcept {
-      std::swap(flag, other.flag);
-      return *this;
-    }
   } owned_;
 };
 

@@ -170,11 +170,6 @@ bool Connection::is_of(const GraphHost& declared) const {
   return words(declared) == words(parts_.declared);
 }
 
-void Connection::open(std::function<void(Status)> opened) {
-  opened_ = std::move(opened);
-  connect();
-}
-
 void Connection::close() {
   is_closed_ = true;
   if (conversation_) lose("closed");
@@ -207,18 +202,6 @@ Result<std::string> Connection::ask_text(const char* what, const std::string& su
   const auto text = answer.find("text");
   if (text == answer.end() || !text->is_string()) return Error{Code::Malformed, "no text"};
   return text->get<std::string>();
-}
-
-Result<std::string> Connection::find_program(const std::string& name, int stop) {
-  return ask_text("find", name, stop);
-}
-
-Result<std::string> Connection::describe_program(const std::string& program, int stop) {
-  return ask_text("describe", program, stop);
-}
-
-Result<std::string> Connection::examine(const std::string& question, int stop) {
-  return ask_text("examine", question, stop);
 }
 
 Result<std::shared_ptr<const HeldPort>> Connection::hold_port(bool of_all_addresses, int stop) {

@@ -37,15 +37,24 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
 
   /// Connects for the first time. If that fails, it is not tried again.
   /// @param opened  gets the outcome. Errors: Closed.
-  void open(std::function<void(Status)> opened);
+  void open(std::function<void(Status)> opened) {
+    opened_ = std::move(opened);
+    connect();
+  }
   /// Ends all there is.
   void close();
 
   [[nodiscard]] bool is_of(const GraphHost& declared) const;
 
-  Result<std::string> find_program(const std::string& name, int stop) override;
-  Result<std::string> describe_program(const std::string& program, int stop) override;
-  Result<std::string> examine(const std::string& question, int stop) override;
+  Result<std::string> find_program(const std::string& name, int stop) override {
+    return ask_text("find", name, stop);
+  }
+  Result<std::string> describe_program(const std::string& program, int stop) override {
+    return ask_text("describe", program, stop);
+  }
+  Result<std::string> examine(const std::string& question, int stop) override {
+    return ask_text("examine", question, stop);
+  }
   Result<std::shared_ptr<const HeldPort>> hold_port(bool of_all_addresses, int stop) override;
   [[nodiscard]] HostPlace place() const override { return place_; }
   [[nodiscard]] HostState state() const override { return state_; }

@@ -13,10 +13,10 @@ constexpr std::size_t kMostKey = 4096;  // of an end [byte]
 
 /// The end of a link without its options: the same while its policy changes, and readers come and
 /// go.
-std::string end_key(bool is_input, const std::string& port, const std::string& uri) {
-  std::string key = (is_input ? "in " : "out ") + port + " ";
-  auto parsed = parse_uri(uri);
-  if (!parsed) return key + uri;
+std::string end_key(const PlannedEnd& end) {
+  std::string key = (end.is_input ? "in " : "out ") + end.port + " ";
+  auto parsed = parse_uri(end.uri);
+  if (!parsed) return key + end.uri;
   parsed->options.clear();
   return key + parsed->text();
 }
@@ -46,7 +46,7 @@ void Reports::set_ends(const std::vector<PlannedEnd>& ends) {
   for (bool is_input : {true, false})
     for (const auto& end : ends) {
       if (end.is_input != is_input) continue;
-      order.push_back(end_key(end.is_input, end.port, end.uri));
+      order.push_back(end_key(end));
       ends_[order.back()] = before[order.back()];
     }
   if (!has_links_) order_ = std::move(order);
@@ -133,7 +133,7 @@ bool Reports::take_links(const Message& message) {
   std::vector<std::string> order;
   for (const auto& link : read_links(message)) {
     if (order.size() == kMostEnds) break;
-    order.push_back(end_key(link.is_input, link.port, link.uri).substr(0, kMostKey));
+    order.push_back(end_key({link.is_input, link.port, link.uri, {}}).substr(0, kMostKey));
   }
   has_links_ = true;
   for (auto& [key, counted] : ends_)
@@ -154,13 +154,12 @@ std::string Reports::blocked_key() const {
 }
 
 std::int64_t Reports::peers_of(const PlannedEnd& end) const {
-  const auto found = peers_.find(end_key(end.is_input, end.port, end.uri));
+  const auto found = peers_.find(end_key(end));
   return found == peers_.end() ? -1 : found->second;
 }
 
 bool Reports::is_blocked_on(const PlannedLink& link) const {
-  const auto port = link.from.substr(link.from.find('.') + 1);
-  return !link.sender_uri.empty() && blocked_key() == end_key(false, port, link.sender_uri);
+  return !link.sender_uri.empty() && blocked_key() == end_key(link.end(false));
 }
 
 std::string Reports::blocked_output() const {
@@ -175,7 +174,7 @@ void Reports::end() {
 }
 
 const EndReport* Reports::find(const PlannedEnd& end) const {
-  auto found = ends_.find(end_key(end.is_input, end.port, end.uri));
+  auto found = ends_.find(end_key(end));
   return found == ends_.end() || !found->second.has_row ? nullptr : &found->second.report;
 }
 

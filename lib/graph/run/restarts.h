@@ -8,8 +8,7 @@
 #include <random>
 #include <vector>
 
-#include <graph/limits.h>
-#include <graph/plan.h>
+#include <graph/run.h>
 #include <hc/base/backoff.h>
 #include <hc/base/clock.h>
 

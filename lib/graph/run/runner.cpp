@@ -244,9 +244,7 @@ void Runner::settle_links() {
     if (writer == nullptr || reader == nullptr) continue;
     if (reader->is_over() && !writer->is_over()) to_read[{link.from, link.to}] = &link;
     if (reader->is_over() || !link.lasts) continue;
-    const std::string port = link.to.substr(link.to.find('.') + 1);
-    reader->finish_input({true, port, link.reader_uri, {}},
-                         writer->status() == ModuleStatus::Ended);
+    reader->finish_input(link.end(true), writer->status() == ModuleStatus::Ended);
   }
   std::erase_if(drains_, [&](const auto& entry) { return !to_read.contains(entry.first); });
   for (const auto& [name, link] : to_read) {

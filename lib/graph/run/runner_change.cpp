@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a running graph is changed: by its files, and by commands.
 #include <graph/run/runner.h>
+#include <hc/base/format.h>
 #include <hc/base/suggestion.h>
 #include <hc/contract/trace.h>
 
@@ -95,11 +96,9 @@ Result<std::string> Runner::observe(const std::string& port) {
     // An input may have an output's name: that output is meant.
     if (link.to == port && !plan_.sources.contains(port)) writers.push_back(link.from);
   }
-  if (writers.size() > 1) {
-    std::string list;
-    for (const auto& writer : writers) list += (list.empty() ? "" : ", ") + writer;
-    return Error{Code::Invalid, port + " has several writers; observe one of them: " + list};
-  }
+  if (writers.size() > 1)
+    return Error{Code::Invalid,
+                 port + " has several writers; observe one of them: " + joined(writers, ", ")};
   const std::string& output = writers.empty() ? port : writers.front();
   const bool is_output =
       plan_.sources.contains(output) || output.ends_with("." + std::string(kTracePort));

@@ -8,6 +8,7 @@
 
 #include <graph/global_workspace.h>
 #include <graph/run/runner.h>
+#include <hc/base/format.h>
 
 namespace hc::internal {
 
@@ -63,9 +64,9 @@ std::string Runner::waited_for(const std::string& name) const {
     const auto* reader = at(link->to);
     return reader != nullptr && reader->status() != ModuleStatus::Running;
   });
-  std::string names;
-  for (const auto* link : links) names += (names.empty() ? "" : " or ") + link->to;
-  return names;
+  std::vector<std::string> inputs;
+  for (const auto* link : links) inputs.push_back(link->to);
+  return joined(inputs, " or ");
 }
 
 LinkState Runner::state_of(const PlannedLink& link) const {
@@ -83,14 +84,11 @@ LinkState Runner::state_of(const PlannedLink& link) const {
     if (!is_up && !is_stopping_)
       state.status = module->plan().name + ": " + std::string(name(status));
   }
-  auto report_of = [&](const std::string& end, bool is_input, const std::string& uri) {
-    const auto* module = at(end);
-    return module == nullptr
-               ? nullptr
-               : module->reports().find({is_input, end.substr(end.find('.') + 1), uri, {}});
+  auto report_of = [&](bool is_input) {
+    const auto* module = at(is_input ? link.to : link.from);
+    return module == nullptr ? nullptr : module->reports().find(link.end(is_input));
   };
-  const auto* sender = report_of(link.from, false, link.sender_uri);
-  const auto* reader = report_of(link.to, true, link.reader_uri);
+  const auto *sender = report_of(false), *reader = report_of(true);
   const auto* counts = sender != nullptr ? sender : reader;
   if (counts != nullptr) state.traffic = counts->traffic;
   // What it carried is what its reader has taken; a sender may count what waits or is lost.
@@ -101,12 +99,10 @@ LinkState Runner::state_of(const PlannedLink& link) const {
   // Of a link between modules, their states show why nothing goes over it.
   const bool is_input = link.sender_uri.empty();
   const bool is_outside = is_input || link.reader_uri.empty();
-  const auto& inner = is_input ? link.to : link.from;
-  if (const auto* module = at(inner); is_outside && state.status.empty() && module != nullptr)
-    if (module->reports().peers_of(
-            {is_input, inner.substr(inner.find('.') + 1), link.reader_uri + link.sender_uri, {}}) ==
-        0)
-      state.status = "not connected";
+  const auto* inner = at(is_input ? link.to : link.from);
+  if (is_outside && state.status.empty() && inner != nullptr &&
+      inner->reports().peers_of(link.end(is_input)) == 0)
+    state.status = "not connected";
   if (reader == nullptr) return state;
   if (counts != reader) {
     Traffic lost = reader->traffic;

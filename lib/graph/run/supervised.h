@@ -12,7 +12,6 @@
 #include <vector>
 
 #include <graph/hosts.h>
-#include <graph/limits.h>
 #include <graph/log_limit.h>
 #include <graph/module_process.h>
 #include <graph/run/change.h>
