@@ -110,7 +110,7 @@ void GraphClient::fail(const Error& error) {
 Result<GraphAnswer> ask(const RunningGraph& graph, std::vector<std::string> commands, int stop) {
   auto loop = HC_TRY(internal::Loop::make());
   std::optional<Result<GraphAnswer>> answer;
-  const auto stopped = HC_TRY(loop->watch(stop, EPOLLIN, [&](auto) {
+  const auto stopped = HC_TRY(loop->watch(stop, stop < 0 ? 0U : EPOLLIN, [&](auto) {
     answer = Error{Code::Stopped, "asked to stop"};
   }));
   GraphClient client(*loop, graph);

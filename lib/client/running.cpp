@@ -12,7 +12,6 @@
 #include <sstream>
 #include <tuple>
 
-#include <hc/os/descriptor.h>
 #include <hc/os/peer_user.h>
 
 namespace hc {

@@ -2,7 +2,6 @@
 #include <graph/global_workspace.h>
 
 #include <algorithm>
-#include <map>
 #include <vector>
 
 namespace hc {

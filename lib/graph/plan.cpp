@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <graph/plan.h>
 
-#include <algorithm>
-
 #include <graph/plan/planning.h>
 #include <hc/base/suggestion.h>
 
@@ -19,99 +17,86 @@ Info info_with(const PortType& type, Encoding encoding) {
   return info;
 }
 
+void add_parameters(Problems& problems, const GraphModule& module, const Description& description,
+                    PlannedModule& planned) {
+  for (const auto& parameter : description.parameters)
+    planned.known.emplace(parameter.name, parameter);
+  for (const auto& [name, value] : module.parameters) {
+    if (auto checked = planned.check_parameter(name, value.value); !checked)
+      problems.add(value.place, checked.error().detail);
+    planned.parameters[name] = value.value;
+  }
+}
+
+void add_encodings(Planning& planning, const GraphModule& module, PlannedModule& planned) {
+  for (const auto& [port, encoding] : module.encodings) {
+    const auto* output = find_port(planning, encoding.place, {module.name, port, {}}, false);
+    if (output != nullptr && !output->types.empty())
+      if (auto broken = find_error(info_with(output->types.front(), encoding.value)))
+        planning.problems.add(encoding.place, "module {}: R{} {}: {}", module.name, broken->rule,
+                              port, broken->what);
+    planned.add_option("--encoding", port + "=" + std::string(name(encoding.value)));
+  }
+}
+
+/// What a program that does not say "control" would ignore.
+void check_needs_no_control(Problems& problems, const GraphModule& module,
+                            const Description& description) {
+  auto refuse = [&](const Place& place, const std::string& key) {
+    problems.add(place, kNeedsControl, module.name, key);
+  };
+  for (const auto& [port, to] : module.to) refuse(to.place, "to");
+  if (module.mode) refuse(module.mode->place, "mode");
+  if (!module.modes.empty()) refuse(module.modes.front().place, "modes");
+  if (!module.exclusive.empty()) refuse(module.exclusive.front().place, "exclusive");
+  if (description.routes)
+    problems.add(module.place, "module {} is a router, but its program does not support --control",
+                 module.name);
+}
+
 /// Plans a module, but for what others have a part in: addresses, modes, links.
-class ModulePlanner {
- public:
-  ModulePlanner(Planning& planning, const GraphModule& module)
-      : planning_(planning), problems_(planning.problems), module_(module) {}
-
-  void plan(const Description& description) {
-    planned_.name = module_.name;
-    planned_.program = module_.program.value;
-    planned_.host = module_.host.value;
-    planned_.group = module_.group;
-    planned_.options = {"--name", module_.name};
-    planned_.restart = module_.restart;
-    planned_.hang = std::chrono::seconds(module_.hang.value);
-    planned_.ends_graph = module_.ends_graph;
-    planned_.manage_uri = "unix-listen:@" + planning_.plan.token + "." + module_.name + ".manage";
-    if (description.control && !description.knows("unix"))
-      problems_.add(module_.place,
-                    "module {} supports --control, which takes unix: URIs, but its program does "
-                    "not list unix in \"transports\"",
-                    module_.name);
-    if (description.control)
-      planned_.control_uri = "unix-listen:@" + planning_.plan.token + "." + module_.name +
-                             ".control?readers=0&keep=64";
-    else
-      check_needs_no_control(description);
-    planned_.description = to_json(description);
-    add_parameters(description);
-    add_encodings();
-    planning_.index[module_.name] = planning_.plan.modules.size();
-    planning_.plan.modules.push_back(std::move(planned_));
-  }
-
- private:
-  void add_parameters(const Description& description) {
-    for (const auto& parameter : description.parameters)
-      planned_.known.emplace(parameter.name, parameter);
-    for (const auto& [name, value] : module_.parameters) {
-      if (auto checked = planned_.check_parameter(name, value.value); !checked)
-        problems_.add(value.place, checked.error().detail);
-      planned_.parameters[name] = value.value;
-    }
-  }
-
-  void add_encodings() {
-    for (const auto& [port, encoding] : module_.encodings) {
-      const auto* output = find_port(planning_, encoding.place, {module_.name, port, {}}, false);
-      if (output != nullptr && !output->types.empty())
-        if (auto broken = find_error(info_with(output->types.front(), encoding.value)))
-          problems_.add(encoding.place, "module {}: R{} {}: {}", module_.name, broken->rule, port,
-                        broken->what);
-      planned_.add_option("--encoding", port + "=" + std::string(name(encoding.value)));
-    }
-  }
-
-  /// What a program that does not say "control" would ignore.
-  void check_needs_no_control(const Description& description) {
-    auto refuse = [&](const Place& place, const std::string& key) {
-      problems_.add(place, kNeedsControl, module_.name, key);
-    };
-    for (const auto& [port, to] : module_.to) refuse(to.place, "to");
-    if (module_.mode) refuse(module_.mode->place, "mode");
-    if (!module_.modes.empty()) refuse(module_.modes.front().place, "modes");
-    if (!module_.exclusive.empty()) refuse(module_.exclusive.front().place, "exclusive");
-    if (description.routes)
-      problems_.add(module_.place,
-                    "module {} is a router, but its program does not support --control",
-                    module_.name);
-  }
-
-  Planning& planning_;
-  Problems& problems_;
-  const GraphModule& module_;
-  PlannedModule planned_;
-};
-
 void plan_module(Planning& planning, const Describe& describe, const GraphModule& module) {
+  auto& problems = planning.problems;
   planning.names.insert(module.name);
   const std::string& program = module.program.value;
   if (program.empty()) return;
   auto text = describe(program, module.host.value);
-  if (!text)
-    return planning.problems.add(module.place, "module {}: {}", module.name, text.error().detail);
-  auto description = parse_description(*text);
-  if (!description)
-    return planning.problems.add(module.place,
-                                 "module {}: {} --describe does not print the description of a "
-                                 "module; see spec/module.md",
-                                 module.name, program);
-  if (auto named = check_names(*description); !named)
-    return planning.problems.add(module.place, "module {}: {}", module.name, named.error().detail);
+  if (!text) return problems.add(module.place, "module {}: {}", module.name, text.error().detail);
+  auto parsed = parse_description(*text);
+  if (!parsed)
+    return problems.add(module.place,
+                        "module {}: {} --describe does not print the description of a module; see "
+                        "spec/module.md",
+                        module.name, program);
+  if (auto named = check_names(*parsed); !named)
+    return problems.add(module.place, "module {}: {}", module.name, named.error().detail);
   if (planning.index.contains(module.name)) return;  // a duplicate, which has been reported
-  ModulePlanner(planning, module).plan(planning.described[module.name] = std::move(*description));
+  const auto& description = planning.described[module.name] = std::move(*parsed);
+  const std::string name = "unix-listen:@" + planning.plan.token + "." + module.name;
+  PlannedModule planned;
+  planned.name = module.name;
+  planned.program = program;
+  planned.host = module.host.value;
+  planned.group = module.group;
+  planned.options = {"--name", module.name};
+  planned.restart = module.restart;
+  planned.hang = std::chrono::seconds(module.hang.value);
+  planned.ends_graph = module.ends_graph;
+  planned.manage_uri = name + ".manage";
+  if (description.control && !description.knows("unix"))
+    problems.add(module.place,
+                 "module {} supports --control, which takes unix: URIs, but its program does not "
+                 "list unix in \"transports\"",
+                 module.name);
+  if (description.control)
+    planned.control_uri = name + ".control?readers=0&keep=64";
+  else
+    check_needs_no_control(problems, module, description);
+  planned.description = to_json(description);
+  add_parameters(problems, module, description, planned);
+  add_encodings(planning, module, planned);
+  planning.index[module.name] = planning.plan.modules.size();
+  planning.plan.modules.push_back(std::move(planned));
 }
 
 }  // namespace
@@ -172,9 +157,8 @@ std::vector<std::string> PlannedModule::command() const {
   std::vector<std::string> words = {program};
   words.insert(words.end(), options.begin(), options.end());
   for (const auto& [key, value] : parameters) words.push_back("--" + key + "=" + value);
-  auto add = [&](const char* option, std::string value) {
-    words.emplace_back(option);
-    words.push_back(std::move(value));
+  auto add = [&](const char* option, const std::string& value) {
+    words.insert(words.end(), {option, value});
   };
   auto peer_of = [](std::string_view listening) {
     listening = listening.substr(0, listening.find('?'));
@@ -182,9 +166,9 @@ std::vector<std::string> PlannedModule::command() const {
   };
   if (!manage_uri.empty()) add("--manage", peer_of(manage_uri));
   if (!control_uri.empty()) add("--control", peer_of(control_uri));
-  for (const auto& end : ends) add(end.is_input ? "--in" : "--out", end.port + "=" + end.uri);
+  for (const auto& end : ends) add(end.is_input ? "--in" : "--out", end.text());
   for (const auto& end : ends)
-    if (!end.route.empty()) add("--route", end.port + "=" + end.uri + " " + end.route);
+    if (!end.route.empty()) add("--route", end.text() + " " + end.route);
   return words;
 }
 

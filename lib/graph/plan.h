@@ -26,6 +26,9 @@ struct PlannedEnd {
   bool is_input = false;
   std::string port, uri;
   std::string route;  ///< the words of --route; empty: none
+
+  /// "PORT=URI"
+  [[nodiscard]] std::string text() const { return port + "=" + uri; }
 };
 
 /// A process that is to run.

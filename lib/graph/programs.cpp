@@ -9,7 +9,6 @@
 #include <cstdlib>
 
 #include <graph/process.h>
-#include <hc/link/link.h>
 #include <hc/os/wait_readable.h>
 
 namespace hc {

@@ -4,7 +4,6 @@
 #include <fcntl.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <deque>
 #include <map>
@@ -18,7 +17,6 @@
 #include <graph/programs.h>
 #include <hc/base/suggestion.h>
 #include <hc/os/aside.h>
-#include <hc/os/program.h>
 #include <hosts/conversation.h>
 #include <hosts/key_file.h>
 
@@ -61,7 +59,8 @@ class Agent {
                                                [this](const std::string& why) {
                                                  end(Error{Code::Closed, why});
                                                }}));
-    stop_ = HC_TRY(loop_->watch(options_.stop, EPOLLIN, [this](auto) { end({}); }));
+    const int stop = options_.stop;
+    stop_ = HC_TRY(loop_->watch(stop, stop < 0 ? 0U : EPOLLIN, [this](auto) { end({}); }));
     Json hello = {{"what", "hello"}, {"version", options_.version}};
     // "CLIENT PORT SERVER PORT": the two hosts as they see each other.
     const char* connection = std::getenv("SSH_CONNECTION");
@@ -105,7 +104,8 @@ class Agent {
   void send_times(const Moments& times) { send({{"what", "heartbeat"}, {"times", times}}); }
 
   void take(const Message& message) {
-    if (message.header.src == Order) return obey(read_order(message), monotonic_now());
+    const auto taken = monotonic_now();
+    if (message.header.src == Order) return obey(read_order(message), taken);
     auto* process = message.header.src == Commands ? find(message.header.dst) : nullptr;
     if (process != nullptr) process->send(message);
   }
@@ -235,15 +235,15 @@ class Agent {
 
   /// Holds a port, of a number if one is given.
   void hold(const Json& order) {
-    Json answer = {{"what", "answer"}, {"id", order.at("id")}};
     auto port = hold_port(order.at("of_all"), order.at("port").get<std::uint16_t>());
-    if (port) {
-      answer["port"] = (*port)->number;
-      ports_[(*port)->number] = *port;
-    } else {
-      answer["error"] = port.error().detail;
-    }
-    send(answer);
+    if (port) ports_[(*port)->number] = *port;
+    send(answer_of(order, "port", port ? Result<Json>((*port)->number) : port.error()));
+  }
+
+  static Json answer_of(const Json& question, const char* key, const Result<Json>& value) {
+    return {{"what", "answer"},
+            {"id", question.value("id", std::int64_t{0})},
+            {value ? key : "error", value ? *value : Json(value.error().detail)}};
   }
 
   /// Answers a question on another thread, since programs that are asked may be slow.
@@ -251,7 +251,9 @@ class Agent {
     if (aside_.is_busy() || questions_.empty()) return;
     auto aside = internal::run_aside(
         *loop_,
-        [this, question = questions_.front()](int stop) { return answer_to(question, stop); },
+        [this, question = questions_.front()](int stop) {
+          return answer_of(question, "text", answer_to(question, stop));
+        },
         [this](const Json& answer) {
           send(answer);
           answer_next();
@@ -261,26 +263,15 @@ class Agent {
     questions_.pop_front();
   }
 
-  [[nodiscard]] Json answer_to(const Json& question, int stop) const {
-    Json answer = {{"what", "answer"}, {"id", question.value("id", 0)}};
+  [[nodiscard]] Result<Json> answer_to(const Json& question, int stop) const {
     const std::string what = question.at("what"), subject = question.value("subject", "");
-    if (what == "find") {
-      const auto program = find_program(subject);
-      if (program.empty())
-        answer["error"] = "no program \"" + subject + "\"" + suggestion(subject, module_names());
-      answer["text"] = program;
-    } else if (what == "describe") {
-      auto text = describe_program(subject, stop);
-      if (text)
-        answer["text"] = *text;
-      else
-        answer["error"] = text.error().detail;
-    } else if (what == "examine" && options_.examine) {
-      answer["text"] = options_.examine(subject);
-    } else {
-      answer["error"] = "no such question: " + what;
-    }
-    return answer;
+    if (what == "describe") return Json(HC_TRY(describe_program(subject, stop)));
+    if (what == "examine" && options_.examine) return Json(options_.examine(subject));
+    if (what != "find") return Error{Code::Invalid, "no such question: " + what};
+    const auto program = find_program(subject);
+    if (!program.empty()) return Json(program);
+    return Error{Code::NotFound,
+                 "no program \"" + subject + "\"" + suggestion(subject, module_names())};
   }
 
   const AgentOptions& options_;

@@ -33,7 +33,7 @@ Result<T> answer_of(internal::Loop& loop, int stop, std::chrono::nanoseconds tim
           [self = here.get(), value = std::move(value)] { self->answer.emplace(value); });
     });
   });
-  const auto stopped = HC_TRY(here->loop->watch(stop, EPOLLIN, [&](auto) {
+  const auto stopped = HC_TRY(here->loop->watch(stop, stop < 0 ? 0U : EPOLLIN, [&](auto) {
     here->answer.emplace(Error{Code::Stopped, "asked to stop"});
   }));
   const auto late = here->loop->call_at(std::chrono::steady_clock::now() + timeout, [&] {

@@ -295,8 +295,9 @@ void Connection::read_ssh_errors() {
 }
 
 void Connection::take(const Message& message) {
+  const auto received = monotonic_now();
   const auto& header = message.header;
-  if (header.src == Order) return obey(read_order(message), monotonic_now());
+  if (header.src == Order) return obey(read_order(message), received);
   const auto found = modules_.find(header.dst);
   if (found == modules_.end()) return;
   if (header.src == Log) found->second->said(message.characters());

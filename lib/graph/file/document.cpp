@@ -5,7 +5,6 @@
 #include <charconv>
 #include <tuple>
 
-#include <graph/graph_file.h>
 #include <hc/base/json_string.h>
 
 // toml++ before 3.4 asserts, or assumes, what hostile text can break (a line end in a table's

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Addresses of ports, and whom the messages of an output are for.
-#include <algorithm>
 
 #include <graph/plan/planning.h>
 #include <graph/plan/routes.h>

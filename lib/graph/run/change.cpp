@@ -26,10 +26,6 @@ std::string without_readers(const std::string& uri) {
   return parsed->text();
 }
 
-std::string place(const PlannedEnd& end) {
-  return end.port + "=" + end.uri;
-}
-
 /// Sets what is new or has another value. The default of what is not given any more is known to the
 /// module alone.
 void add_settings(const PlannedModule& before, const PlannedModule& after, ModuleChange& change) {
@@ -46,13 +42,13 @@ void add_settings(const PlannedModule& before, const PlannedModule& after, Modul
 void add_links(const PlannedModule& before, const PlannedModule& after, ModuleChange& change) {
   for (const auto& end : before.ends)
     if (find_same(after.ends, end) == nullptr)
-      change.unlinks.push_back(text({Verb::Unlink, end.is_input, place(end), {}}));
+      change.unlinks.push_back(text({Verb::Unlink, end.is_input, end.text(), {}}));
   for (const auto& end : after.ends) {
     auto& commands = end.is_input ? change.inputs : change.outputs;
     const PlannedEnd* old = find_same(before.ends, end);
-    if (old == nullptr) commands.push_back(text({Verb::Link, end.is_input, place(end), {}}));
+    if (old == nullptr) commands.push_back(text({Verb::Link, end.is_input, end.text(), {}}));
     if (end.route != (old == nullptr ? "" : old->route))
-      commands.push_back(text({Verb::Route, end.is_input, place(old == nullptr ? end : *old),
+      commands.push_back(text({Verb::Route, end.is_input, (old == nullptr ? end : *old).text(),
                                end.route.empty() ? "to=*" : end.route}));
   }
 }

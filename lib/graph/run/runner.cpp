@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <chrono>
 
-#include <graph/run/lines.h>
-
 namespace hc::internal {
 namespace {
 
@@ -45,7 +43,7 @@ Status Runner::begin() {
         GraphServer::make(*loop_, {options_.name, ::getpid()},
                           {[this] { return state(); },
                            [this](const auto& lines, const auto& reply) { obey(lines, reply); }}));
-  stop_ = HC_TRY(loop_->watch(options_.stop, EPOLLIN, [this](auto) {
+  stop_ = HC_TRY(loop_->watch(options_.stop, options_.stop < 0 ? 0U : EPOLLIN, [this](auto) {
     stop_.reset();
     is_stopped_ = true;
     end_all();

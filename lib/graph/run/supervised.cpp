@@ -92,7 +92,7 @@ std::vector<Message> Supervised::catch_up() {
   for (const auto* some : {&change.unlinks, &change.outputs, &change.inputs})
     for (const auto& command : *some) add(command);
   for (const auto& input : finished_) add(text({ModuleCommand::Verb::Finish, true, input, {}}));
-  for (const auto& [port, observed] : observed_) add(observed.command());
+  for (const auto& [port, observed] : observed_) add("link out " + observed.end.text());
   if (wall_offset_ != 0)
     add(text({ModuleCommand::Verb::WallOffset, true, std::to_string(wall_offset_), {}}));
   set_told();
@@ -244,7 +244,7 @@ void Supervised::send_commands(const std::vector<std::string>& commands) {
 }
 
 void Supervised::finish_input(const PlannedEnd& end, bool is_finished) {
-  std::string what = end.port + "=" + end.uri;
+  const std::string what = end.text();
   if (is_finished && finished_.insert(what).second)
     send_commands({text({ModuleCommand::Verb::Finish, true, what, {}})});
   if (!is_finished && finished_.erase(what) != 0)

@@ -20,7 +20,6 @@
 #include <graph/run/restarts.h>
 #include <hc/base/clock.h>
 #include <hc/contract/graph_state.h>
-#include <hc/link/intake.h>
 #include <hc/os/procfs.h>
 
 namespace hc::internal {
@@ -113,19 +112,16 @@ class Supervised {
   enum class Wish { None, End, Restart, Dismissal };
 
   struct Observed {
-    std::string text;  // PORT=URI, of the module's output
-    std::string uri;   // for observers
+    PlannedEnd end;
+    std::string uri;  // for observers
     MonotonicTime until{0};
     std::shared_ptr<const HeldPort> held = {};  // where it is read from another host
-
-    [[nodiscard]] std::string command() const { return "link out " + text; }
-    [[nodiscard]] std::string uri_there() const { return text.substr(text.find('=') + 1); }
   };
 
   [[nodiscard]] std::shared_ptr<Host> host() const;
   Status make_process();
   void send_wall_offset();
-  Status open_observed(Observed& observed, const std::string& port, const std::string& name);
+  Status open_observed(Observed& observed, const std::string& name);
   void end_observations(MonotonicTime time);
   std::vector<Message> catch_up();
   void set_told();

@@ -20,26 +20,25 @@ constexpr const char* kObserverPolicy = "?readers=0&stay=1&keep=16";
 Result<std::string> Supervised::observe(const std::string& port, const std::string& name) {
   auto found = observed_.find(port);
   if (found == observed_.end()) {
-    Observed observed;
-    HC_TRY(open_observed(observed, port, name));
+    Observed observed{{false, port, {}, {}}, {}};
+    HC_TRY(open_observed(observed, name));
     found = observed_.emplace(port, std::move(observed)).first;
-    send_commands({found->second.command()});
+    send_commands({"link out " + found->second.end.text()});
   }
   found->second.until = now() + kObserved;
   return found->second.uri;
 }
 
 /// Where an output is opened for observers: those of another host come with the key of this one.
-Status Supervised::open_observed(Observed& observed, const std::string& port,
-                                 const std::string& name) {
+Status Supervised::open_observed(Observed& observed, const std::string& name) {
   if (const auto there = host()) {
     observed.held = HC_TRY(there->spare_port());
     const auto number = ":" + std::to_string(observed.held->number);
     const auto place = there->place();
     const bool is_v6 = place.address.find(':') != std::string::npos;
-    observed.text = port + "=tls-listen:" + (is_v6 ? "[::]" : "0.0.0.0") + number +
-                    kObserverPolicy + "&key=" + std::string(kKeyFile) +
-                    "&peer=" + hosts_->fingerprint();
+    observed.end.uri = std::string("tls-listen:") + (is_v6 ? "[::]" : "0.0.0.0") + number +
+                       kObserverPolicy + "&key=" + std::string(kKeyFile) +
+                       "&peer=" + hosts_->fingerprint();
     observed.uri = "tls:" + (is_v6 ? "[" + place.address + "]" : place.address) + number +
                    "?key=/proc/" + std::to_string(::getpid()) + "/fd/" +
                    std::to_string(hosts_->key()) + "&peer=" + place.fingerprint;
@@ -47,7 +46,7 @@ Status Supervised::open_observed(Observed& observed, const std::string& port,
   }
   const bool has_memory = std::any_of(plan_.ends.begin(), plan_.ends.end(),
                                       [](const auto& end) { return end.uri.starts_with("shm:"); });
-  observed.text = port + (has_memory ? "=shm:" : "=unix-listen:@") + name + kObserverPolicy;
+  observed.end.uri = (has_memory ? "shm:" : "unix-listen:@") + name + kObserverPolicy;
   observed.uri = (has_memory ? "shm:" : "unix:@") + name;
   return {};
 }
@@ -55,12 +54,11 @@ Status Supervised::open_observed(Observed& observed, const std::string& port,
 void Supervised::end_observations(MonotonicTime time) {
   // Readers of a process that is being restarted wait for the next one.
   for (auto& [port, observed] : observed_)
-    if (heard_ == MonotonicTime(0) ||
-        reports_.peers_of({false, port, observed.uri_there(), {}}) > 0)
+    if (heard_ == MonotonicTime(0) || reports_.peers_of(observed.end) > 0)
       observed.until = time + kObserved;
   std::erase_if(observed_, [&](const auto& entry) {
     const bool is_over = time >= entry.second.until;
-    if (is_over) send_commands({"unlink out " + entry.second.text});
+    if (is_over) send_commands({"unlink out " + entry.second.end.text()});
     return is_over;
   });
 }

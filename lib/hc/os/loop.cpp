@@ -44,7 +44,6 @@ Loop::Handle Loop::call_at(TimePoint when, std::function<void()> callback) {
 
 Status Loop::want(std::uint64_t id, std::uint32_t events) {
   Entry& entry = *entries_.at(id);
-  if (entry.descriptor < 0) return {};
   if (events == entry.wanted && (events & EPOLLONESHOT) == 0) return {};
   int operation = events == 0 ? EPOLL_CTL_DEL : entry.wanted == 0 ? EPOLL_CTL_ADD : EPOLL_CTL_MOD;
   auto done = control(operation, entry.descriptor, events, id);
