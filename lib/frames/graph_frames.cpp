@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include <hc/base/json_string.h>
 #include <hc/base/suggestion.h>
+#include <hc/base/text.h>
+#include <hc/base/words.h>
 
 namespace hc::frames {
 namespace {
@@ -17,29 +17,10 @@ namespace {
 constexpr std::size_t kMovedWords = 5, kFixedWords = 10;
 constexpr std::size_t kMostShown = 40;  // bytes of a word that an error quotes
 
-std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
-  std::vector<std::string_view> parts;
-  for (std::size_t at = 0; at < text.size();) {
-    std::size_t begin = text.find_first_not_of(separators, at);
-    if (begin == std::string_view::npos) break;
-    at = std::min(text.find_first_of(separators, begin), text.size());
-    parts.push_back(text.substr(begin, at - begin));
-  }
-  return parts;
-}
-
 std::string quoted(std::string_view word) {
   std::string text;
   append_json_string(word.substr(0, kMostShown), text);
   return text;
-}
-
-template <typename T>
-std::optional<T> number_of(std::string_view word) {
-  T number{};
-  auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (problem != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return number;
 }
 
 std::int32_t standard_number(std::string_view name) {
@@ -75,7 +56,7 @@ bool is_word(std::string_view word) {
 }
 
 Result<Entry> read_entry(std::size_t place, std::string_view text) {
-  const auto words = split(text, " ");
+  const auto words = words_of(text, " ");
   const std::string which = "frames: frame " + std::to_string(place);
   for (auto word : words)
     if (!is_word(word))
@@ -87,12 +68,10 @@ Result<Entry> read_entry(std::size_t place, std::string_view text) {
                                       std::to_string(kMovedWords) + " (moved) or " +
                                       std::to_string(kFixedWords) + " (fixed)"};
   Entry entry{place, words[0], words[2], 0, {words.begin() + 3, words.end()}};
-  auto number = number_of<std::int32_t>(words[1]);
-  if (!number || *number < 0 || *number >= kFrameNumbers)
+  if (!read_number(words[1], entry.number) || entry.number < 0 || entry.number >= kFrameNumbers)
     return entry.error(Code::Malformed, "a frame's number is from 0 (none) to " +
                                             std::to_string(kFrameNumbers - 1) + ", not " +
                                             quoted(words[1]));
-  entry.number = *number;
   const std::int32_t standard = standard_number(entry.name);
   if (standard != 0 && entry.number != standard)
     return entry.error(Code::Malformed, "its number is " + std::to_string(standard) + ", not " +
@@ -106,12 +85,9 @@ Result<Entry> read_entry(std::size_t place, std::string_view text) {
 
 Result<Eigen::Isometry3d> fixed_joint(const Entry& entry) {
   std::array<double, 7> numbers{};
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    auto number = number_of<double>(entry.joint[i]);
-    if (!number || !std::isfinite(*number))
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (!read_number(entry.joint[i], numbers[i]) || !std::isfinite(numbers[i]))
       return entry.error(Code::Malformed, quoted(entry.joint[i]) + " is no number");
-    numbers[i] = *number;
-  }
   Eigen::Quaterniond q(numbers[6], numbers[3], numbers[4], numbers[5]);
   if (!(std::abs(q.coeffs().stableNorm() - 1) <= kRotationTolerance))
     return entry.error(Code::Malformed, "its quaternion is not of length 1");
@@ -126,11 +102,11 @@ Result<Mover> moved_joint(const Entry& entry, std::int32_t parent_number) {
   if (dot == 0 || dot == std::string_view::npos || dot + 1 == output.size() ||
       output.find('.', dot + 1) != std::string_view::npos)
     return entry.error(Code::Malformed, quoted(output) + " is not MODULE.PORT");
-  auto source = number_of<std::int32_t>(entry.joint[1]);
-  if (!source || *source < 0)
+  std::int32_t source = 0;
+  if (!read_number(entry.joint[1], source) || source < 0)
     return entry.error(Code::Malformed, quoted(entry.joint[1]) + " is no src of messages");
   const bool numbered = entry.number != 0 && parent_number != 0;
-  return Mover{std::string(entry.parent), std::string(entry.name), std::string(output), *source,
+  return Mover{std::string(entry.parent), std::string(entry.name), std::string(output), source,
                numbered ? kFrameNumbers * parent_number + entry.number : 0};
 }
 
@@ -165,22 +141,21 @@ Result<const Mover*> GraphFrames::mover_of(std::int32_t source, std::int32_t coo
 }
 
 Result<GraphFrames> read_frames(std::string_view text, const Memory& memory) {
-  const auto parts = split(text, ";");
+  const auto parts = words_of(text, ";");
   if (parts.size() > kMostFrames)
     return Error{Code::TooLarge, "frames: " + std::to_string(parts.size()) +
                                      " frames are more than " + std::to_string(kMostFrames)};
   GraphFrames frames;
   std::vector<Entry> entries;
   std::map<std::string_view, std::int32_t> numbers;
-  if (split(text, " ").empty()) return frames;
+  if (words_of(text, " ").empty()) return frames;
   for (auto part : parts) {
-    auto entry = read_entry(entries.size() + 1, part);
-    if (!entry) return entry.error();
-    auto added = entry->number == 0 ? frames.tree.add(entry->name)
-                                    : frames.tree.add(entry->number, entry->name);
-    if (!added) return entry->error(added.error());
-    numbers[entry->name] = entry->number;
-    entries.push_back(std::move(*entry));
+    auto entry = HC_TRY(read_entry(entries.size() + 1, part));
+    auto added =
+        entry.number == 0 ? frames.tree.add(entry.name) : frames.tree.add(entry.number, entry.name);
+    if (!added) return entry.error(added.error());
+    numbers[entry.name] = entry.number;
+    entries.push_back(std::move(entry));
   }
   std::string_view root;
   for (const auto& entry : entries) {
@@ -202,18 +177,16 @@ Result<GraphFrames> read_frames(std::string_view text, const Memory& memory) {
   for (const auto& entry : entries) {
     Status joined;
     if (entry.joint.size() + 3 == kFixedWords) {
-      auto joint = fixed_joint(entry);
-      if (!joint) return joint.error();
-      joined = frames.tree.fix(entry.parent, entry.name, *joint);
+      auto joint = HC_TRY(fixed_joint(entry));
+      joined = frames.tree.fix(entry.parent, entry.name, joint);
     } else {
-      auto mover = moved_joint(entry, numbers.at(entry.parent));
-      if (!mover) return mover.error();
-      frames.movers.push_back(std::move(*mover));
+      auto mover = HC_TRY(moved_joint(entry, numbers.at(entry.parent)));
+      frames.movers.push_back(std::move(mover));
       joined = frames.tree.join(entry.parent, entry.name, memory);
     }
     if (!joined) return entry.error(joined.error());
   }
-  if (auto checked = check_movers(frames.movers); !checked) return checked.error();
+  HC_TRY(check_movers(frames.movers));
   return frames;
 }
 

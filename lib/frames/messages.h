@@ -22,11 +22,10 @@ using RowMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajo
 /// Errors: Unsupported (compressed; another scalar than T).
 template <ScalarType T>
 Result<Eigen::Map<const RowMajor<T>>> as_eigen(const Message& message) {
-  auto view = message.view<T>();
-  if (!view) return view.error();
-  return Eigen::Map<const RowMajor<T>>(
-      view->numbers().data(), static_cast<Eigen::Index>(view->height()),
-      static_cast<Eigen::Index>(view->width() * view->components()));
+  auto view = HC_TRY(message.view<T>());
+  return Eigen::Map<const RowMajor<T>>(view.numbers().data(),
+                                       static_cast<Eigen::Index>(view.height()),
+                                       static_cast<Eigen::Index>(view.width() * view.components()));
 }
 
 /// The elements of a draft, to be written in place. Another scalar than the draft's is a bug.
@@ -65,9 +64,8 @@ namespace internal {
 
 template <ScalarType T>
 Result<Eigen::Isometry3d> rigid_of(const Message& message) {
-  auto matrix = as_eigen<T>(message);
-  if (!matrix) return matrix.error();
-  return frames::rigid(matrix->template cast<double>());
+  auto matrix = HC_TRY(as_eigen<T>(message));
+  return frames::rigid(matrix.template cast<double>());
 }
 
 }  // namespace internal
@@ -93,13 +91,12 @@ inline Result<Eigen::Isometry3d> rigid_of(const Message& message) {
 /// name two frames; what frames::rigid() refuses).
 /// Cost: no allocation unless it fails.
 inline Result<TimedPose> pose_of(const Message& message) {
-  auto T_to_from = rigid_of(message);
-  if (!T_to_from) return T_to_from.error();
+  auto T_to_from = HC_TRY(rigid_of(message));
   const Header& header = message.header;
   if (header.coord / 1000 < 1 || header.coord / 1000 > 999 || header.coord % 1000 == 0)
     return Error{Code::Malformed,
                  "a pose's coord is 1000 x to + from, not " + std::to_string(header.coord)};
-  return TimedPose{header.coord / 1000, header.coord % 1000, header.time, *T_to_from};
+  return TimedPose{header.coord / 1000, header.coord % 1000, header.time, T_to_from};
 }
 
 /// Hands a pose to the frames of a graph: to the one that its src and coord mean.
@@ -107,12 +104,10 @@ inline Result<TimedPose> pose_of(const Message& message) {
 /// Errors: as GraphFrames::mover_of() (no frame is meant), pose_of() but for the coord of a frame
 /// without a number, and Tree::feed() (a time of 0). Nothing changes then.
 inline Result<frames::Fed> feed(frames::GraphFrames& frames, const Message& message) {
-  auto mover = frames.mover_of(message.header.src, message.header.coord);
-  if (!mover) return mover.error();
-  auto pose = rigid_of(message);
-  if (!pose) return pose.error();
-  return frames.tree.feed(std::string_view((*mover)->parent), std::string_view((*mover)->child),
-                          message.header.time, *pose);
+  auto mover = HC_TRY(frames.mover_of(message.header.src, message.header.coord));
+  auto pose = HC_TRY(rigid_of(message));
+  return frames.tree.feed(std::string_view(mover->parent), std::string_view(mover->child),
+                          message.header.time, pose);
 }
 
 /// The rotation in a `rotation` of one element: roll φ, pitch θ, yaw ψ [rad], right-handed,
@@ -129,13 +124,11 @@ inline Result<Eigen::Quaterniond> rotation_of(const Message& message) {
                                         matrix_text(header.info, header.width, header.height)};
   Eigen::Vector3d angles;
   if (header.info.scalar == Scalar::F32) {
-    auto row = as_eigen<float>(message);
-    if (!row) return row.error();
-    angles = row->template leftCols<3>().transpose().template cast<double>();
+    auto row = HC_TRY(as_eigen<float>(message));
+    angles = row.template leftCols<3>().transpose().template cast<double>();
   } else {
-    auto row = as_eigen<double>(message);
-    if (!row) return row.error();
-    angles = row->template leftCols<3>().transpose();
+    auto row = HC_TRY(as_eigen<double>(message));
+    angles = row.template leftCols<3>().transpose();
   }
   if (!angles.allFinite()) return Error{Code::Malformed, "a rotation's angle is not finite"};
   return frames::rotation(angles.x(), angles.y(), angles.z());

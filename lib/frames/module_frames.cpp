@@ -73,8 +73,7 @@ Status ModuleFrames::feed(std::string_view parent, std::string_view child, std::
     newest = std::max(newest, time);
   }
   fed_ = module_.now();
-  auto fed = known().tree.feed(parent, child, time, T_parent_child);
-  if (!fed) return fed.error();
+  HC_TRY(known().tree.feed(parent, child, time, T_parent_child));
   answer_known();
   return {};
 }

@@ -115,24 +115,21 @@ std::string Tree::joint_name(std::size_t child) const {
 
 Status Tree::attach(const Frame& parent, const Frame& child,
                     std::variant<Eigen::Isometry3d, Track> joint) {
-  auto p = find(parent), c = find(child);
-  if (!p) return p.error();
-  if (!c) return c.error();
-  Node& node = nodes_[*c];
-  const std::string wanted = node.name + " in " + nodes_[*p].name;
-  if (node.parent == *p) return error(Code::Invalid, wanted + " is given twice");
+  const auto p = HC_TRY(find(parent)), c = HC_TRY(find(child));
+  Node& node = nodes_[c];
+  const std::string wanted = node.name + " in " + nodes_[p].name;
+  if (node.parent == p) return error(Code::Invalid, wanted + " is given twice");
   if (node.parent != kNone)
-    return error(Code::Invalid, wanted + " would be a second parent: there is " + joint_name(*c));
-  if (root(*p) == *c) return error(Code::Invalid, wanted + " would close a cycle");
-  node.parent = *p;
+    return error(Code::Invalid, wanted + " would be a second parent: there is " + joint_name(c));
+  if (root(p) == c) return error(Code::Invalid, wanted + " would close a cycle");
+  node.parent = p;
   node.joint = std::move(joint);
   return {};
 }
 
 Status Tree::fix(const Frame& parent, const Frame& child, const Eigen::Isometry3d& T_parent_child) {
-  auto checked = rigid(T_parent_child.matrix());
-  if (!checked) return checked.error();
-  return attach(parent, child, *checked);
+  auto checked = HC_TRY(rigid(T_parent_child.matrix()));
+  return attach(parent, child, checked);
 }
 
 Status Tree::join(const Frame& parent, const Frame& child, const Memory& memory) {
@@ -147,24 +144,21 @@ Status Tree::join(const Frame& parent, const Frame& child, const Memory& memory)
 
 Result<Fed> Tree::feed(const Frame& parent, const Frame& child, std::int64_t time,
                        const Eigen::Isometry3d& T_parent_child) {
-  auto p = find(parent), c = find(child);
-  if (!p) return p.error();
-  if (!c) return c.error();
-  Node& node = nodes_[*c];
-  if (node.parent != *p)
+  const auto p = HC_TRY(find(parent)), c = HC_TRY(find(child));
+  Node& node = nodes_[c];
+  if (node.parent != p)
     return error(Code::Invalid,
-                 node.name + " in " + nodes_[*p].name + " is fed, but these are not joined so");
+                 node.name + " in " + nodes_[p].name + " is fed, but these are not joined so");
   auto* track = std::get_if<Track>(&node.joint);
-  if (track == nullptr) return error(Code::Invalid, joint_name(*c) + " is fed, but fixed");
-  if (time <= 0) return error(Code::Malformed, joint_name(*c) + " is fed without a time");
-  auto checked = rigid(T_parent_child.matrix());
-  if (!checked) return checked.error();
-  return track->add(time, Pose(*checked));
+  if (track == nullptr) return error(Code::Invalid, joint_name(c) + " is fed, but fixed");
+  if (time <= 0) return error(Code::Malformed, joint_name(c) + " is fed without a time");
+  auto checked = HC_TRY(rigid(T_parent_child.matrix()));
+  return track->add(time, Pose(checked));
 }
 
-/// The nearest frame that is above both, or one of them.
-Result<std::size_t> Tree::find_common(std::size_t a, std::size_t b) const {
-  const std::size_t asked[] = {a, b};
+Result<Tree::Way> Tree::find_way(const Frame& target, const Frame& source) const {
+  const auto t = HC_TRY(find(target)), s = HC_TRY(find(source));
+  auto a = t, b = s;
   std::size_t depth_a = depth(a), depth_b = depth(b);
   for (; depth_a > depth_b; --depth_a) a = nodes_[a].parent;
   for (; depth_b > depth_a; --depth_b) b = nodes_[b].parent;
@@ -172,11 +166,10 @@ Result<std::size_t> Tree::find_common(std::size_t a, std::size_t b) const {
     a = nodes_[a].parent;
     b = nodes_[b].parent;
   }
-  if (a != kNone) return a;
-  return error(Code::NotFound, nodes_[asked[0]].name + " and " + nodes_[asked[1]].name +
-                                   " are not joined: above them are " +
-                                   nodes_[root(asked[0])].name + " and " +
-                                   nodes_[root(asked[1])].name);
+  if (a != kNone) return Way{t, s, a};
+  return error(Code::NotFound, nodes_[t].name + " and " + nodes_[s].name +
+                                   " are not joined: above them are " + nodes_[root(t)].name +
+                                   " and " + nodes_[root(s)].name);
 }
 
 Result<const Track*> Tree::track_of(std::size_t child) const {
@@ -187,22 +180,21 @@ Result<const Track*> Tree::track_of(std::size_t child) const {
 }
 
 Result<Eigen::Isometry3d> Tree::joint_at(std::size_t child, std::int64_t time) const {
-  auto track = track_of(child);
-  if (!track) return track.error();
-  if (*track == nullptr) return std::get<Eigen::Isometry3d>(nodes_[child].joint);
-  const TimeSpan span = (*track)->known();
+  auto track = HC_TRY(track_of(child));
+  if (track == nullptr) return std::get<Eigen::Isometry3d>(nodes_[child].joint);
+  const TimeSpan span = track->known();
   if (time < span.first || time > span.last)
     return error(Code::NotFound, joint_name(child) + " is known from " +
                                      std::to_string(span.first) + " to " +
                                      std::to_string(span.last) + " ns" + outside(time, span));
-  if (auto gap = (*track)->gap_at(time))
+  if (auto gap = track->gap_at(time))
     return error(Code::NotFound, joint_name(child) + " is not known between " +
                                      std::to_string(gap->first) + " and " +
                                      std::to_string(gap->last) + " ns, asked for " +
                                      std::to_string(time) + " ns: a gap of " +
                                      duration(static_cast<std::uint64_t>(gap->last) -
                                               static_cast<std::uint64_t>(gap->first)));
-  return (*track)->at(time).transformation();
+  return track->at(time).transformation();
 }
 
 Eigen::Isometry3d Tree::joint_nearest(std::size_t child, std::int64_t time) const {
@@ -214,15 +206,11 @@ Eigen::Isometry3d Tree::joint_nearest(std::size_t child, std::int64_t time) cons
 template <typename JointOf>
 Result<Eigen::Isometry3d> Tree::product(const Frame& target, const Frame& source,
                                         const JointOf& joint_of) const {
-  auto t = find(target), s = find(source);
-  if (!t) return t.error();
-  if (!s) return s.error();
-  auto common = find_common(*t, *s);
-  if (!common) return common.error();
+  const auto [t, s, common] = HC_TRY(find_way(target, source));
   Eigen::Isometry3d T_common[2];  // of the target and the source
   for (int i = 0; i < 2; ++i) {
     T_common[i].setIdentity();
-    for (std::size_t at = i == 0 ? *t : *s; at != *common; at = nodes_[at].parent) {
+    for (std::size_t at = i == 0 ? t : s; at != common; at = nodes_[at].parent) {
       Result<Eigen::Isometry3d> joint = joint_of(at);
       if (!joint) return joint.error();
       T_common[i] = *joint * T_common[i];
@@ -259,35 +247,26 @@ std::vector<std::string> Tree::names() const {
 }
 
 Result<std::vector<std::string>> Tree::chain(const Frame& target, const Frame& source) const {
-  auto t = find(target), s = find(source);
-  if (!t) return t.error();
-  if (!s) return s.error();
-  auto common = find_common(*t, *s);
-  if (!common) return common.error();
+  const auto [t, s, common] = HC_TRY(find_way(target, source));
   std::vector<std::string> names, down;
-  for (std::size_t at = *s; at != *common; at = nodes_[at].parent) names.push_back(nodes_[at].name);
-  for (std::size_t at = *t; at != *common; at = nodes_[at].parent) down.push_back(nodes_[at].name);
-  names.push_back(nodes_[*common].name);
+  for (std::size_t at = s; at != common; at = nodes_[at].parent) names.push_back(nodes_[at].name);
+  for (std::size_t at = t; at != common; at = nodes_[at].parent) down.push_back(nodes_[at].name);
+  names.push_back(nodes_[common].name);
   names.insert(names.end(), down.rbegin(), down.rend());
   return names;
 }
 
 Result<TimeSpan> Tree::known(const Frame& target, const Frame& source) const {
-  auto t = find(target), s = find(source);
-  if (!t) return t.error();
-  if (!s) return s.error();
-  auto common = find_common(*t, *s);
-  if (!common) return common.error();
+  const auto [t, s, common] = HC_TRY(find_way(target, source));
   std::vector<const Track*> moving;
   TimeSpan all;                                  // from first to last poses, whatever the gaps
   std::size_t latest = kNone, earliest = kNone;  // the joints that bound `all`
-  for (std::size_t end : {*s, *t}) {
-    for (std::size_t at = end; at != *common; at = nodes_[at].parent) {
-      auto track = track_of(at);
-      if (!track) return track.error();
-      if (*track == nullptr) continue;
-      moving.push_back(*track);
-      const TimeSpan span = (*track)->known();
+  for (std::size_t end : {s, t}) {
+    for (std::size_t at = end; at != common; at = nodes_[at].parent) {
+      auto track = HC_TRY(track_of(at));
+      if (track == nullptr) continue;
+      moving.push_back(track);
+      const TimeSpan span = track->known();
       if (span.first > all.first) {
         all.first = span.first;
         latest = at;

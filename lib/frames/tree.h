@@ -146,7 +146,11 @@ class Tree {
 
   Status add_node(const std::string& which, std::string_view name);
   [[nodiscard]] Result<std::size_t> find(const Frame& frame) const;
-  [[nodiscard]] Result<std::size_t> find_common(std::size_t a, std::size_t b) const;
+  /// Two frames, and the nearest that is above both, or one of them.
+  struct Way {
+    std::size_t target, source, common;
+  };
+  [[nodiscard]] Result<Way> find_way(const Frame& target, const Frame& source) const;
   [[nodiscard]] std::size_t depth(std::size_t node) const;
   [[nodiscard]] std::size_t root(std::size_t node) const;
   [[nodiscard]] std::string joint_name(std::size_t child) const;
