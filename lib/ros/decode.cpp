@@ -35,17 +35,16 @@ Result<Draft> draft_for(const PortType& port, std::uint64_t width, std::uint64_t
   header.width = static_cast<std::int32_t>(width);
   header.height = static_cast<std::int32_t>(height);
   header.time = std::max<std::int64_t>(time, 0);
-  if (auto good = check(header); !good) return good.error();
+  HC_TRY(check(header));
   return Draft::make(header);
 }
 
 /// A table or a pose: rows of numbers.
 Result<Message> matrix_of(const PortType& port, std::uint64_t width, std::uint64_t height,
                           std::int64_t time, std::span<const double> numbers) {
-  auto draft = draft_for(port, width, height, time);
-  if (!draft) return draft.error();
-  std::ranges::copy(numbers, draft->view<double>().numbers().begin());
-  return std::move(*draft).finish();
+  auto draft = HC_TRY(draft_for(port, width, height, time));
+  std::ranges::copy(numbers, draft.view<double>().numbers().begin());
+  return std::move(draft).finish();
 }
 
 /// Numbers that may stand anywhere.
@@ -89,10 +88,9 @@ Result<Message> decode_colours(const Image& image, const PortType& port) {
   const auto* pixel = std::ranges::find(kPixels, image.encoding, &Pixel::encoding);
   if (pixel == std::end(kPixels))
     return unknown_encoding(image, "rgb8, bgr8, rgba8, bgra8 and mono8");
-  if (auto good = check_rows(image, pixel->bytes); !good) return good.error();
-  auto draft = draft_for(port, image.width, image.height, nanoseconds(image.header.stamp));
-  if (!draft) return draft.error();
-  auto* to = reinterpret_cast<std::uint8_t*>(draft->elements().data());
+  HC_TRY(check_rows(image, pixel->bytes));
+  auto draft = HC_TRY(draft_for(port, image.width, image.height, nanoseconds(image.header.stamp)));
+  auto* to = reinterpret_cast<std::uint8_t*>(draft.elements().data());
   const bool is_grey = port.info.components == 1;
   for (std::size_t y = 0; y < image.height; ++y) {
     const auto* from =
@@ -108,7 +106,7 @@ Result<Message> decode_colours(const Image& image, const PortType& port) {
       }
     }
   }
-  return std::move(*draft).finish();
+  return std::move(draft).finish();
 }
 
 Result<Message> decode_depth(const Image& image, const PortType& port) {
@@ -116,10 +114,9 @@ Result<Message> decode_depth(const Image& image, const PortType& port) {
   if (!is_metres && image.encoding != "16UC1") return unknown_encoding(image, "32FC1 and 16UC1");
   if (image.is_bigendian != 0) return Error{Code::Unsupported, "its numbers are big-endian"};
   const std::size_t size = is_metres ? sizeof(float) : sizeof(std::uint16_t);
-  if (auto good = check_rows(image, size); !good) return good.error();
-  auto draft = draft_for(port, image.width, image.height, nanoseconds(image.header.stamp));
-  if (!draft) return draft.error();
-  auto to = draft->view<float>().numbers().begin();
+  HC_TRY(check_rows(image, size));
+  auto draft = HC_TRY(draft_for(port, image.width, image.height, nanoseconds(image.header.stamp)));
+  auto to = draft.view<float>().numbers().begin();
   for (std::size_t y = 0; y < image.height; ++y)
     for (std::size_t x = 0; x < image.width; ++x) {
       const std::size_t at = y * image.step + x * size;
@@ -129,7 +126,7 @@ Result<Message> decode_depth(const Image& image, const PortType& port) {
                     : static_cast<float>(number_at<std::uint16_t>(image.data.bytes, at)) / kMetre;
       *to++ = std::isfinite(depth) ? depth : 0;
     }
-  return std::move(*draft).finish();
+  return std::move(draft).finish();
 }
 
 Result<Message> convert(const Image& image, const PortType& port, const Choice&) {
@@ -166,7 +163,7 @@ Result<Message> convert(const CompressedImage& image, const PortType& port, cons
   message.header.width = static_cast<std::int32_t>(size->first);
   message.header.height = static_cast<std::int32_t>(size->second);
   message.header.time = std::max<std::int64_t>(nanoseconds(image.header.stamp), 0);
-  if (auto good = check(message.header); !good) return good.error();
+  HC_TRY(check(message.header));
   message.elements = image.data.bytes;
   return message.keep();
 }
@@ -203,9 +200,8 @@ Result<Message> convert(const PointCloud2& cloud, const PortType& port, const Ch
     return malformed(std::to_string(cloud.height) + " x " + std::to_string(cloud.width) +
                      " points are promised, " + std::to_string(cloud.data.bytes.size()) +
                      " bytes are there");
-  auto draft = draft_for(port, cloud.width, cloud.height, nanoseconds(cloud.header.stamp));
-  if (!draft) return draft.error();
-  auto to = draft->view<float>().numbers().begin();
+  auto draft = HC_TRY(draft_for(port, cloud.width, cloud.height, nanoseconds(cloud.header.stamp)));
+  auto to = draft.view<float>().numbers().begin();
   for (std::size_t y = 0; y < cloud.height; ++y)
     for (std::size_t x = 0; x < cloud.width; ++x)
       for (const auto& [offset, is_double] : places) {
@@ -213,7 +209,7 @@ Result<Message> convert(const PointCloud2& cloud, const PortType& port, const Ch
         *to++ = is_double ? static_cast<float>(number_at<double>(cloud.data.bytes, at))
                           : number_at<float>(cloud.data.bytes, at);
       }
-  return std::move(*draft).finish();
+  return std::move(draft).finish();
 }
 
 Result<Message> convert(const CameraInfo& camera, const PortType& port, const Choice&) {
@@ -285,10 +281,9 @@ Result<Message> convert(const JointState& state, const PortType& port, const Cho
 }
 
 Result<Message> convert(const String& string, const PortType& port, const Choice&) {
-  auto draft = draft_for(port, string.data.text.size(), 1, 0);
-  if (!draft) return draft.error();
-  std::ranges::copy(std::as_bytes(std::span(string.data.text)), draft->elements().begin());
-  return std::move(*draft).finish();
+  auto draft = HC_TRY(draft_for(port, string.data.text.size(), 1, 0));
+  std::ranges::copy(std::as_bytes(std::span(string.data.text)), draft.elements().begin());
+  return std::move(draft).finish();
 }
 
 Result<Message> convert(const MultiArray<double>& array, const PortType& port, const Choice&) {
@@ -307,19 +302,17 @@ Result<Message> convert(const MultiArray<double>& array, const PortType& port, c
       return malformed("its dimensions are " + std::to_string(height) + " x " +
                        std::to_string(width) + ", its numbers " + std::to_string(count));
   }
-  auto draft = draft_for(port, width, height, 0);
-  if (!draft) return draft.error();
+  auto draft = HC_TRY(draft_for(port, width, height, 0));
   const auto from = array.data.bytes.subspan(array.data_offset * sizeof(double));
-  std::ranges::copy(from, draft->elements().begin());
-  return std::move(*draft).finish();
+  std::ranges::copy(from, draft.elements().begin());
+  return std::move(draft).finish();
 }
 
 template <typename T>
 Result<Message> read_as(std::span<const std::byte> bytes, const PortType& port,
                         const Choice& choice) {
-  auto message = CdrReader::read<T>(bytes);
-  if (!message) return message.error();
-  return convert(*message, port, choice);
+  auto message = HC_TRY(CdrReader::read<T>(bytes));
+  return convert(message, port, choice);
 }
 
 }  // namespace

@@ -29,38 +29,22 @@ Stamp stamp_of(const Encoder& encoder, const Message& message, std::int32_t coor
 
 /// What ROS calls the pixels of an image; empty: it has no word for them.
 std::string_view pixel_encoding(const Info& info, std::int32_t coord) {
-  if (info.type == MatrixType::RgbImage) {
-    const bool has_alpha = info.components == 4;
-    switch (info.scalar) {
-      case Scalar::U8:
-        return has_alpha ? "rgba8" : "rgb8";
-      case Scalar::U16:
-        return has_alpha ? "rgba16" : "rgb16";
-      case Scalar::F32:
-        return has_alpha ? "32FC4" : "32FC3";
-      default:
-        return has_alpha ? "64FC4" : "64FC3";
-    }
-  }
+  struct Names {
+    Scalar scalar;
+    std::string_view grey, measure, rgb, rgba;
+  };
+  constexpr Names kNames[] = {{Scalar::U8, "mono8", "8UC1", "rgb8", "rgba8"},
+                              {Scalar::I8, "8SC1", "8SC1", "", ""},
+                              {Scalar::U16, "mono16", "16UC1", "rgb16", "rgba16"},
+                              {Scalar::I16, "16SC1", "16SC1", "", ""},
+                              {Scalar::I32, "32SC1", "32SC1", "", ""},
+                              {Scalar::F32, "32FC1", "32FC1", "32FC3", "32FC4"},
+                              {Scalar::F64, "64FC1", "64FC1", "64FC3", "64FC4"}};
+  const auto* names = std::ranges::find(kNames, info.scalar, &Names::scalar);
+  if (names == std::end(kNames)) return "";
+  if (info.type == MatrixType::RgbImage) return info.components == 4 ? names->rgba : names->rgb;
   const bool is_measure = coord == Coord::kDepth || coord == Coord::kDisparity;
-  switch (info.scalar) {
-    case Scalar::U8:
-      return is_measure ? "8UC1" : "mono8";
-    case Scalar::I8:
-      return "8SC1";
-    case Scalar::U16:
-      return is_measure ? "16UC1" : "mono16";
-    case Scalar::I16:
-      return "16SC1";
-    case Scalar::I32:
-      return "32SC1";
-    case Scalar::F32:
-      return "32FC1";
-    case Scalar::F64:
-      return "64FC1";
-    default:
-      return "";
-  }
+  return is_measure ? names->measure : names->grey;
 }
 
 bool is_float(Scalar scalar) {
@@ -101,20 +85,9 @@ std::int16_t sample_of(auto sample) {
 
 /// Samples a second that a coordinate system says [Hz]; 0: none.
 std::uint32_t sample_rate(std::int32_t coord) {
-  switch (coord) {
-    case Coord::kSound8k:
-      return 8000;
-    case Coord::kSound16k:
-      return 16000;
-    case Coord::kSound22k:
-      return 22050;
-    case Coord::kSound44k:
-      return 44100;
-    case Coord::kSound48k:
-      return 48000;
-    default:
-      return 0;
-  }
+  constexpr std::uint32_t kRates[] = {8000, 16000, 22050, 44100, 48000};
+  if (coord < Coord::kSound8k || coord > Coord::kSound48k) return 0;
+  return kRates[coord - Coord::kSound8k];
 }
 
 Quaternion to_quaternion(const Eigen::Quaterniond& rotation) {

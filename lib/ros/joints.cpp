@@ -22,9 +22,8 @@ Joint joint(std::string parent, std::string child, const Eigen::Isometry3d& T, s
 }  // namespace
 
 Result<GraphJoints> GraphJoints::read(const std::string& text) {
-  auto frames = hc::frames::read_frames(text);
-  if (!frames) return frames.error();
-  GraphJoints joints{std::move(*frames), {}, {}, {}};
+  auto frames = HC_TRY(hc::frames::read_frames(text));
+  GraphJoints joints{std::move(frames), {}, {}, {}};
   std::map<std::string, std::string> parents;
   std::istringstream entries(text);
   for (std::string entry; std::getline(entries, entry, ';');) {
@@ -37,9 +36,9 @@ Result<GraphJoints> GraphJoints::read(const std::string& text) {
     const bool moves = std::ranges::find(joints.frames.movers, child, &hc::frames::Mover::child) !=
                        joints.frames.movers.end();
     if (moves) continue;
-    auto T = joints.frames.tree.lookup(std::string_view(parent), std::string_view(child), 0);
-    if (!T) return T.error();
-    joints.fixed.push_back(joint(parent, child, *T, 0));
+    auto T =
+        HC_TRY(joints.frames.tree.lookup(std::string_view(parent), std::string_view(child), 0));
+    joints.fixed.push_back(joint(parent, child, T, 0));
   }
   while (parents.contains(joints.root)) joints.root = parents[joints.root];
   return joints;
@@ -51,11 +50,9 @@ bool GraphJoints::are_moved_by(std::string_view output) const {
 }
 
 Result<Joint> GraphJoints::joint_of(const Message& pose) const {
-  auto mover = frames.mover_of(pose.header.src, pose.header.coord);
-  if (!mover) return mover.error();
-  auto T = rigid_of(pose);
-  if (!T) return T.error();
-  return joint((*mover)->parent, (*mover)->child, *T, pose.header.time);
+  auto mover = HC_TRY(frames.mover_of(pose.header.src, pose.header.coord));
+  auto T = HC_TRY(rigid_of(pose));
+  return joint(mover->parent, mover->child, T, pose.header.time);
 }
 
 }  // namespace hc::ros

@@ -16,7 +16,8 @@ struct Definition {
   std::string_view text;
 };
 
-constexpr Definition kDefinitions[] = {
+/// What the types are made of.
+constexpr Definition kParts[] = {
     {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
     {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
     {"std_msgs/MultiArrayDimension", "string label\nuint32 size\nuint32 stride\n"},
@@ -35,6 +36,10 @@ constexpr Definition kDefinitions[] = {
      "string name\nuint32 offset\nuint8 datatype\nuint32 count\n"},
     {"sensor_msgs/RegionOfInterest",
      "uint32 x_offset\nuint32 y_offset\nuint32 height\nuint32 width\nbool do_rectify\n"},
+};
+
+/// In the order of Type.
+constexpr Definition kTypes[] = {
     {"std_msgs/UInt8MultiArray", "std_msgs/MultiArrayLayout layout\nuint8[] data\n"},
     {"std_msgs/Int8MultiArray", "std_msgs/MultiArrayLayout layout\nint8[] data\n"},
     {"std_msgs/UInt16MultiArray", "std_msgs/MultiArrayLayout layout\nuint16[] data\n"},
@@ -76,34 +81,9 @@ constexpr Definition kDefinitions[] = {
      "uint32 offset\nuint32 size\nuint8[] elements\n"},
 };
 
-constexpr std::string_view kTypes[] = {
-    "std_msgs/UInt8MultiArray",
-    "std_msgs/Int8MultiArray",
-    "std_msgs/UInt16MultiArray",
-    "std_msgs/Int16MultiArray",
-    "std_msgs/UInt32MultiArray",
-    "std_msgs/Int32MultiArray",
-    "std_msgs/UInt64MultiArray",
-    "std_msgs/Int64MultiArray",
-    "std_msgs/Float32MultiArray",
-    "std_msgs/Float64MultiArray",
-    "sensor_msgs/Image",
-    "sensor_msgs/CompressedImage",
-    "sensor_msgs/PointCloud2",
-    "sensor_msgs/CameraInfo",
-    "geometry_msgs/PoseStamped",
-    "geometry_msgs/Twist",
-    "tf2_msgs/TFMessage",
-    "sensor_msgs/JointState",
-    "std_msgs/String",
-    "foxglove_msgs/RawAudio",
-    "rcl_interfaces/Log",
-    "hypercolumn_msgs/Matrix",
-};
-
-const Definition& find(std::string_view name) {
-  const auto* found = std::ranges::find(kDefinitions, name, &Definition::name);
-  HC_CHECK(found != std::end(kDefinitions), name);
+const Definition& find_part(std::string_view name) {
+  const auto* found = std::ranges::find(kParts, name, &Definition::name);
+  HC_CHECK(found != std::end(kParts), name);
   return *found;
 }
 
@@ -118,20 +98,20 @@ void add_parts(const Definition& definition, std::vector<std::string_view>& part
     parts.push_back(name);
     own.push_back(name);
   }
-  for (const auto name : own) add_parts(find(name), parts);
+  for (const auto name : own) add_parts(find_part(name), parts);
 }
 
 std::vector<Schema> make_schemas() {
   std::vector<Schema> all;
   for (std::size_t i = 0; i < std::size(kTypes); ++i) {
-    const Definition& definition = find(kTypes[i]);
+    const Definition& definition = kTypes[i];
     Schema each{static_cast<Type>(i), std::string(definition.name), std::string(definition.text)};
     each.name.insert(each.name.find('/'), "/msg");
     std::vector<std::string_view> parts;
     add_parts(definition, parts);
     for (const auto part : parts)
       each.text += std::string(80, '=') + "\nMSG: " + std::string(part) + "\n" +
-                   std::string(find(part).text);
+                   std::string(find_part(part).text);
     all.push_back(std::move(each));
   }
   return all;
