@@ -43,6 +43,12 @@ class Failure {
   [[nodiscard]] Error error(Code code = Code::System) const {
     return {code, error_ != nullptr ? error_->message : "unknown error of Aravis"};
   }
+  /// What was done, or asked for, unless it has failed.
+  [[nodiscard]] Status status() const { return error_ != nullptr ? Status(error()) : Status(); }
+  template <typename T>
+  [[nodiscard]] Result<T> or_error(const T& value) const {
+    return error_ != nullptr ? Result<T>(error()) : Result<T>(value);
+  }
 
  private:
   GError* error_ = nullptr;
@@ -159,7 +165,7 @@ Result<std::unique_ptr<Camera>> Camera::open(const std::string& name,
   handles->handler =
       g_signal_connect_data(arv_camera_get_device(camera), "control-lost", G_CALLBACK(note_loss),
                             new Flag(handles->is_lost), forget_flag, static_cast<GConnectFlags>(0));
-  if (auto chosen = choose_format(camera, pixel_format); !chosen) return chosen.error();
+  HC_TRY(choose_format(camera, pixel_format));
   arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS, failure.out());
   if (failure) return failure.error();
   handles->timeout = choose_rate(camera, rate);
@@ -242,52 +248,45 @@ Status Camera::set_gain(double gain) {
     return Error{Code::Unsupported,
                  "gain must be from " + std::to_string(least) + " to " + std::to_string(most)};
   arv_camera_set_gain(camera, gain, failure.out());
-  if (failure) return failure.error();
-  return {};
+  return failure.status();
 }
 
 Status Camera::choose_exposure() {
   Failure failure;
   if (arv_camera_is_exposure_auto_available(handles_->camera, failure.out()))
     arv_camera_set_exposure_time_auto(handles_->camera, ARV_AUTO_CONTINUOUS, failure.out());
-  if (failure) return failure.error();
-  return {};
+  return failure.status();
 }
 
 Status Camera::choose_gain() {
   Failure failure;
   if (arv_camera_is_gain_auto_available(handles_->camera, failure.out()))
     arv_camera_set_gain_auto(handles_->camera, ARV_AUTO_CONTINUOUS, failure.out());
-  if (failure) return failure.error();
-  return {};
+  return failure.status();
 }
 
 Result<double> Camera::exposure() const {
   Failure failure;
   const double microseconds = arv_camera_get_exposure_time(handles_->camera, failure.out());
-  if (failure) return failure.error();
-  return microseconds * 1e-6;
+  return failure.or_error(microseconds * 1e-6);
 }
 
 Result<double> Camera::gain() const {
   Failure failure;
   const double gain = arv_camera_get_gain(handles_->camera, failure.out());
-  if (failure) return failure.error();
-  return gain;
+  return failure.or_error(gain);
 }
 
 Result<bool> Camera::chooses_exposure() const {
   Failure failure;
   const ArvAuto mode = arv_camera_get_exposure_time_auto(handles_->camera, failure.out());
-  if (failure) return failure.error();
-  return mode == ARV_AUTO_CONTINUOUS;
+  return failure.or_error(mode == ARV_AUTO_CONTINUOUS);
 }
 
 Result<bool> Camera::chooses_gain() const {
   Failure failure;
   const ArvAuto mode = arv_camera_get_gain_auto(handles_->camera, failure.out());
-  if (failure) return failure.error();
-  return mode == ARV_AUTO_CONTINUOUS;
+  return failure.or_error(mode == ARV_AUTO_CONTINUOUS);
 }
 
 }  // namespace hc::aravis

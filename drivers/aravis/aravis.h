@@ -44,8 +44,7 @@ class Camera {
   ///
   /// Errors: Closed (the camera is lost: Aravis says so, or it has been silent for a second
   /// beyond its exposure and two periods of its rate, and two more at first; one that waits for a
-  /// trigger may be silent),
-  /// Malformed, Unsupported (what it sends).
+  /// trigger may be silent), Malformed, Unsupported (what it sends).
   Result<std::optional<Image>> next(std::chrono::milliseconds timeout);
 
   /// Sets the time of exposure and ends the camera's own choice of it. [s]

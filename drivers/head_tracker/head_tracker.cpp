@@ -4,13 +4,11 @@
 #include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
-#include <system_error>
 #include <utility>
 
 namespace hc {
@@ -19,7 +17,7 @@ namespace {
 constexpr int kMostAtOnce = 10000;  // so that a flood does not starve the module
 
 Error failed(const std::string& what) {
-  return {Code::System, what + ": " + std::generic_category().message(errno)};
+  return {Code::System, what + ": " + std::strerror(errno)};
 }
 
 /// When the kernel got a packet; now, where it does not say.
@@ -54,24 +52,16 @@ Result<HeadTracker> HeadTracker::open(const std::string& host, int port, Senders
     return Error{Code::Invalid, "host \"" + host + "\": " + ::gai_strerror(status)};
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> addresses(found, ::freeaddrinfo);
   const std::string where = "UDP port " + std::to_string(port) + " of " + host;
-  const int socket = ::socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (socket < 0) return failed(where);
-  HeadTracker tracker(socket, port, std::move(senders));
+  Descriptor owned(::socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (!owned) return failed(where);
+  const int socket = owned.get();
+  HeadTracker tracker(std::move(owned), port, std::move(senders));
   // Without SO_REUSEADDR, which would let a second program take the packets of the first.
   if (::bind(socket, found->ai_addr, found->ai_addrlen) != 0) return failed(where);
   const int on = 1;
   if (::setsockopt(socket, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on) != 0) return failed(where);
   tracker.port_ = port_of(socket);
   return tracker;
-}
-
-HeadTracker::HeadTracker(HeadTracker&& other) noexcept
-    : socket_(std::exchange(other.socket_, -1)),
-      port_(other.port_),
-      senders_(std::move(other.senders_)) {}
-
-HeadTracker::~HeadTracker() {
-  if (socket_ >= 0) ::close(socket_);
 }
 
 Result<std::optional<TimedHeadPose>> HeadTracker::receive(MonotonicTime now,
@@ -90,7 +80,7 @@ Result<std::optional<TimedHeadPose>> HeadTracker::receive(MonotonicTime now,
     message.msg_iovlen = 1;
     message.msg_control = control.data();
     message.msg_controllen = control.size();
-    const ssize_t size = ::recvmsg(socket_, &message, MSG_TRUNC);  // gives the whole size
+    const ssize_t size = ::recvmsg(socket_.get(), &message, MSG_TRUNC);  // gives the whole size
     if (size < 0) {
       if (errno == EAGAIN || errno == EWOULDBLOCK) break;
       if (errno == EINTR || errno == ECONNREFUSED) continue;

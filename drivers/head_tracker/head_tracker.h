@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include <drivers/descriptor.h>
 #include <drivers/head_tracker/pose.h>
 #include <drivers/head_tracker/senders.h>
 #include <hc/base/clock.h>
@@ -34,9 +35,6 @@ class HeadTracker {
   ///
   /// Errors: Invalid (no address), System (the port is in use, …).
   static Result<HeadTracker> open(const std::string& host, int port, Senders senders);
-  HeadTracker(HeadTracker&& other) noexcept;
-  HeadTracker& operator=(HeadTracker&&) = delete;
-  ~HeadTracker();
 
   /// The newest pose that has come; older ones are of no use for following a head. Nothing when no
   /// valid packet has come. Never waits.
@@ -47,14 +45,14 @@ class HeadTracker {
   Result<std::optional<TimedHeadPose>> receive(MonotonicTime now, const Problem& problem);
 
   /// For poll().
-  [[nodiscard]] int descriptor() const { return socket_; }
+  [[nodiscard]] int descriptor() const { return socket_.get(); }
   [[nodiscard]] int port() const { return port_; }
 
  private:
-  HeadTracker(int socket, int port, Senders senders)
-      : socket_(socket), port_(port), senders_(std::move(senders)) {}
+  HeadTracker(Descriptor socket, int port, Senders senders)
+      : socket_(std::move(socket)), port_(port), senders_(std::move(senders)) {}
 
-  int socket_ = -1;
+  Descriptor socket_;
   int port_ = 0;
   Senders senders_;
 };

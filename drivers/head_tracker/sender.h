@@ -3,7 +3,9 @@
 // Sends poses of a head as opentrack does, to whoever listens at an address.
 
 #include <string>
+#include <utility>
 
+#include <drivers/descriptor.h>
 #include <drivers/head_tracker/pose.h>
 #include <hc/base/result.h>
 
@@ -16,9 +18,6 @@ class HeadPoseSender {
   ///
   /// Errors: Invalid (no address, or no port), System.
   static Result<HeadPoseSender> open(const std::string& address);
-  HeadPoseSender(HeadPoseSender&& other) noexcept;
-  HeadPoseSender& operator=(HeadPoseSender&&) = delete;
-  ~HeadPoseSender();
 
   /// Sends a packet. A packet that nobody receives is lost, as on any network.
   ///
@@ -26,9 +25,9 @@ class HeadPoseSender {
   Result<void> send(const HeadPose& pose);
 
  private:
-  explicit HeadPoseSender(int socket) : socket_(socket) {}
+  explicit HeadPoseSender(Descriptor socket) : socket_(std::move(socket)) {}
 
-  int socket_ = -1;
+  Descriptor socket_;
 };
 
 }  // namespace hc

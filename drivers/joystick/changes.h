@@ -3,6 +3,7 @@
 // What has changed about a joystick since it was last looked at, and so is worth a message. Pure.
 
 #include <string>
+#include <utility>
 
 #include <drivers/joystick/joystick.h>
 #include <drivers/joystick/stick.h>
@@ -20,7 +21,20 @@ class JoystickWatch {
  public:
   /// What is new in a state; each change is given once.
   /// @param dead_zone  as of stick_of().
-  JoystickChanges take(const JoystickState& state, double dead_zone);
+  JoystickChanges take(const JoystickState& state, double dead_zone) {
+    const JoystickState last = std::exchange(state_, state);
+    const Stick last_stick = std::exchange(stick_, stick_of(state.axes, dead_zone));
+    JoystickChanges changes;
+    if (state.name != last.name) {
+      const bool is_lost = state.name.empty();
+      changes.level = is_lost ? Level::Warning : Level::Info;
+      changes.line = is_lost ? last.name + " disconnected" : state.name + " connected";
+    }
+    changes.stick = stick_ != last_stick;
+    changes.axes = state.axes != last.axes;
+    changes.buttons = state.buttons != last.buttons;
+    return changes;
+  }
   /// The stick as of the last state.
   [[nodiscard]] const Stick& stick() const { return stick_; }
 

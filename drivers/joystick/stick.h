@@ -2,6 +2,8 @@
 #pragma once
 // A stick as a command to turn. Pure.
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 
 namespace hc {
@@ -17,6 +19,15 @@ struct Stick {
 /// The stick of a controller's first two axes, each −1 … 1, right and down > 0.
 /// @param dead_zone  what is nearer to the middle of an axis counts as 0, and what is beyond it is
 /// rescaled, so that there is no jump and the end is still 1. [0 … 1)
-Stick stick_of(std::span<const double> axes, double dead_zone);
+inline Stick stick_of(std::span<const double> axes, double dead_zone) {
+  const auto beyond = [&](double value) {
+    const double distance = std::abs(value) - dead_zone;
+    if (!(distance > 0)) return 0.0;
+    return std::copysign(std::min(distance / (1 - dead_zone), 1.0), value);
+  };
+  if (axes.size() < 2) return {};
+  // Subtracted, so that the middle is no negative zero.
+  return {0.0 - beyond(axes[0]), beyond(axes[1])};
+}
 
 }  // namespace hc

@@ -156,8 +156,7 @@ void Conversation::say(MonotonicTime now, const std::string& bytes,
 
 std::chrono::nanoseconds Conversation::on_line(std::size_t bytes) const {
   if (bytes_per_second_ <= 0) return {};
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-      std::chrono::duration<double>(static_cast<double>(bytes) / bytes_per_second_));
+  return duration(static_cast<double>(bytes) / bytes_per_second_);
 }
 
 /// When the unit was where its answers of so many bytes say.
@@ -266,7 +265,7 @@ void Conversation::hear_place(MonotonicTime now, int axis, const std::string& te
   const auto value = number(text);
   if (!value) return fail(now, value.error());
   const auto i = static_cast<std::size_t>(axis);
-  const double seconds = std::chrono::duration<double>(now - place_time_).count();
+  const double seconds = hc::seconds(now - place_time_);
   const double most = settings_[PU + i] * seconds + kSlack;
   if (std::abs(*value) > 1e6 || std::trunc(*value) != *value ||
       (place_ && std::abs(*value - (*place_)[i]) > most))

@@ -29,10 +29,6 @@ Motion::State Motion::at(double time) const {
   return {end_position_, 0};
 }
 
-double Motion::end() const {
-  return end_time_;
-}
-
 /// Forgets the plan and begins one from a state.
 void Motion::start(double time, const State& state) {
   count_ = 0;

@@ -34,7 +34,7 @@ class Motion {
   /// Where it is heading, or rests.
   [[nodiscard]] double target() const { return target_; }
   /// When it comes, or came, to rest.
-  [[nodiscard]] double end() const;
+  [[nodiscard]] double end() const { return end_time_; }
   [[nodiscard]] const Pace& pace() const { return pace_; }
 
   /// Heads for another place from now on; what is too fast to be stopped there goes beyond and

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <drivers/pan_tilt/protocol.h>
 
-#include <charconv>
 #include <cmath>
+
+#include <hc/base/text.h>
 
 namespace hc::pan_tilt {
 namespace {
@@ -12,12 +13,6 @@ bool is_line_end(char byte) {
 }
 bool is_printable(char byte) {
   return byte >= ' ' && byte <= '~';
-}
-
-std::string hexadecimal(char byte) {
-  constexpr const char* kDigits = "0123456789abcdef";
-  const auto value = static_cast<unsigned char>(byte);
-  return {'0', 'x', kDigits[value >> 4], kDigits[value & 15]};
 }
 
 /// What follows the mark and its spaces.
@@ -63,7 +58,7 @@ std::optional<Result<Reply>> ReplyReader::next() {
     }
     if (skips_ || (line_.empty() && byte == ' ')) continue;
     if (!is_printable(byte) || (line_.empty() && byte != '*' && byte != '!'))
-      return refuse({Code::Malformed, "garbage: " + hexadecimal(byte) +
+      return refuse({Code::Malformed, "garbage: 0x" + hexadecimal_byte(byte) +
                                           (line_.empty() ? " begins no reply" : " in a reply")});
     // A limit's word has no end of its own: "!T!T!P!P*".
     if (line_ == "!" && (byte == 'P' || byte == 'T')) {
@@ -80,9 +75,7 @@ std::optional<Result<Reply>> ReplyReader::next() {
 
 Result<double> number(std::string_view text) {
   double value = 0;
-  const char* end = text.data() + text.size();
-  auto [stop, status] = std::from_chars(text.data(), end, value);
-  if (stop != end || status != std::errc() || !std::isfinite(value))
+  if (!read_number(text, value) || !std::isfinite(value))
     return Error{Code::Malformed, "garbage: \"" + std::string(text) + "\" is no number"};
   return value;
 }

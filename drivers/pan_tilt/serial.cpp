@@ -8,35 +8,11 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 
 namespace hc::pan_tilt {
 namespace {
-
-struct Rate {
-  int baud;
-  speed_t code;
-};
-constexpr std::array<Rate, 18> kRates = {{{300, B300},
-                                          {600, B600},
-                                          {1200, B1200},
-                                          {2400, B2400},
-                                          {4800, B4800},
-                                          {9600, B9600},
-                                          {19200, B19200},
-                                          {38400, B38400},
-                                          {57600, B57600},
-                                          {115200, B115200},
-                                          {230400, B230400},
-                                          {460800, B460800},
-                                          {500000, B500000},
-                                          {921600, B921600},
-                                          {1000000, B1000000},
-                                          {2000000, B2000000},
-                                          {3000000, B3000000},
-                                          {4000000, B4000000}}};
 
 Error failure(std::string_view call) {
   const int number = errno;
@@ -61,17 +37,17 @@ void hurry(int number) {
 }  // namespace
 
 Result<Serial> Serial::open(const std::string& device, int baud) {
-  speed_t code = B0;
-  for (const Rate& rate : kRates)
-    if (rate.baud == baud) code = rate.code;
-  if (code == B0) return Error{Code::Unsupported, "no such baud rate: " + std::to_string(baud)};
+  termios settings = {};
+  // The C library takes a rate for its code; what is a code itself is no rate.
+  const auto rate = static_cast<speed_t>(baud);
+  if ((rate & ~speed_t{CBAUD}) == 0 || cfsetspeed(&settings, rate) != 0)
+    return Error{Code::Unsupported, "no such baud rate: " + std::to_string(baud)};
   int number = -1;
   do {
     number = ::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   } while (number < 0 && errno == EINTR);
   if (number < 0) return failure("open");
-  Serial serial(number);
-  termios settings = {};
+  Serial serial{Descriptor(number)};
   if (tcgetattr(number, &settings) != 0) return failure("tcgetattr");
   // Two programs on one unit would read each other's answers. The lock ends with the process.
   if (flock(number, LOCK_EX | LOCK_NB) != 0)
@@ -81,24 +57,15 @@ Result<Serial> Serial::open(const std::string& device, int baud) {
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cc[VMIN] = 1;  // so that no byte is EAGAIN, and 0 a disconnected device
   settings.c_cc[VTIME] = 0;
-  if (cfsetspeed(&settings, code) != 0 || tcsetattr(number, TCSANOW, &settings) != 0)
+  if (cfsetspeed(&settings, rate) != 0 || tcsetattr(number, TCSANOW, &settings) != 0)
     return failure("tcsetattr");
   if (tcflush(number, TCIOFLUSH) != 0) return failure("tcflush");
   hurry(number);
   return serial;
 }
 
-Serial& Serial::operator=(Serial&& other) noexcept {
-  std::swap(number_, other.number_);
-  return *this;
-}
-
-Serial::~Serial() {
-  if (number_ >= 0) ::close(number_);
-}
-
 Result<std::string_view> Serial::read(std::span<char> room) {
-  const ssize_t got = ::read(number_, room.data(), room.size());
+  const ssize_t got = ::read(tty_.get(), room.data(), room.size());
   if (got > 0) return std::string_view(room.data(), static_cast<std::size_t>(got));
   if (got == 0) return Error{Code::Closed, "disconnected"};
   if (errno == EAGAIN || errno == EINTR) return std::string_view();
@@ -107,7 +74,7 @@ Result<std::string_view> Serial::read(std::span<char> room) {
 
 Status Serial::write(std::string_view bytes) {
   while (!bytes.empty()) {
-    const ssize_t put = ::write(number_, bytes.data(), bytes.size());
+    const ssize_t put = ::write(tty_.get(), bytes.data(), bytes.size());
     if (put > 0) {
       bytes.remove_prefix(static_cast<std::size_t>(put));
       continue;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include <drivers/descriptor.h>
 #include <hc/base/result.h>
 
 namespace hc::pan_tilt {
@@ -19,12 +20,9 @@ class Serial {
   /// Errors: NotFound (no such device), Unsupported (a rate that there is not; no serial line),
   /// System (another Serial has it open, …).
   static Result<Serial> open(const std::string& device, int baud);
-  Serial(Serial&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Serial& operator=(Serial&& other) noexcept;
-  ~Serial();
 
   /// For poll().
-  [[nodiscard]] int descriptor() const { return number_; }
+  [[nodiscard]] int descriptor() const { return tty_.get(); }
 
   /// Reads what has come; none is nothing.
   ///
@@ -38,9 +36,9 @@ class Serial {
   Status write(std::string_view bytes);
 
  private:
-  explicit Serial(int number) : number_(number) {}
+  explicit Serial(Descriptor tty) : tty_(std::move(tty)) {}
 
-  int number_;
+  Descriptor tty_;
 };
 
 }  // namespace hc::pan_tilt

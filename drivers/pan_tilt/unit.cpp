@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <utility>
+
+#include <hc/base/text.h>
 
 namespace hc::pan_tilt {
 namespace {
@@ -33,8 +34,7 @@ bool read_value(std::string_view text, std::optional<int>& value) {
   if (text[0] == '+') text.remove_prefix(1);
   if (text.empty() || text.size() > 7) return false;
   int number = 0;
-  auto [stop, status] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (stop != text.data() + text.size() || status != std::errc()) return false;
+  if (!read_number(text, number)) return false;
   value = number;
   return true;
 }
@@ -110,11 +110,8 @@ std::string Unit::answer(double time, std::string_view words) {
   if (!is_of_axis) return of_unit(time, words);
   std::optional<int> value;
   if (!read_value(words.substr(2), value)) return illegal();
-  return of_axis(time, axes_[words[0] == 'P' ? 0 : 1], words[1], value);
-}
-
-std::string Unit::of_axis(double time, Axis& axis, char property, std::optional<int> value) {
-  return value ? set(time, axis, property, *value) : ask(time, axis, property);
+  Axis& axis = axes_[words[0] == 'P' ? 0 : 1];
+  return value ? set(time, axis, words[1], *value) : ask(time, axis, words[1]);
 }
 
 std::string Unit::set(double time, Axis& axis, char property, int value) {

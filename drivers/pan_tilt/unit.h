@@ -54,7 +54,6 @@ class Unit {
 
   void obey(double time);
   std::string answer(double time, std::string_view words);
-  std::string of_axis(double time, Axis& axis, char property, std::optional<int> value);
   std::string set(double time, Axis& axis, char property, int value);
   std::string ask(double time, const Axis& axis, char property) const;
   std::string of_unit(double time, std::string_view words);

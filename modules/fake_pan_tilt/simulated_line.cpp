@@ -9,9 +9,8 @@ SimulatedLine::SimulatedLine(double pan, double tilt, std::uint64_t seed)
 hc::Result<bool> SimulatedLine::plug(bool in) {
   if (in == terminal_.has_value()) return false;
   if (in) {
-    auto opened = Terminal::open();
-    if (!opened) return opened.error();
-    terminal_.emplace(std::move(*opened));
+    auto opened = HC_TRY(Terminal::open());
+    terminal_.emplace(std::move(opened));
   } else {
     terminal_.reset();
   }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The supervisor's head, by any tracker that opentrack supports.
-#include <iterator>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -9,17 +7,9 @@
 
 #include <frames/messages.h>
 #include <hc/base/uri.h>
+#include <hc/base/words.h>
 #include <hc/module/module.h>
 #include <transports/all.h>
-
-namespace {
-
-std::vector<std::string> words(const std::string& text) {
-  std::istringstream stream(text);
-  return {std::istream_iterator<std::string>(stream), {}};
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
@@ -55,6 +45,7 @@ int main(int argc, char** argv) {
   };
 
   module.on_start([&] {
+    const auto senders = hc::words_of(*sender);
     hc::HostPort place;
     if (listen->empty())
       module.log("idle: `listen` gives no port; opentrack's is 4242");
@@ -62,7 +53,10 @@ int main(int argc, char** argv) {
       place = hc::value_or_end(hc::parse_host_port(*listen));
     if (!listen->empty() && place.host.empty()) place.host = "127.0.0.1";
     head.emplace(
-        hc::TrackedHeadOptions{place.host, place.port, words(*sender), hc::duration(*silence),
+        hc::TrackedHeadOptions{place.host,
+                               place.port,
+                               {senders.begin(), senders.end()},
+                               hc::duration(*silence),
                                *centre_first},
         [&](hc::Level level, std::string_view line) { module.log(line, level); },
         [&](const auto&... problem) { module.log_once(problem...); });
