@@ -56,12 +56,10 @@ Capture::Capture(AudioSystem system, std::unique_ptr<Queue> queue)
 
 Result<std::unique_ptr<Capture>> Capture::open(const std::string& device, const Format& format,
                                                int frames) {
-  auto system = AudioSystem::start();
-  if (!system) return system.error();
-  auto event = internal::Event::make();
-  if (!event) return event.error();
-  std::unique_ptr<Capture> capture(new Capture(std::move(*system), std::make_unique<Queue>()));
-  capture->queue_->event = std::move(*event);
+  auto system = HC_TRY(start_audio());
+  auto event = HC_TRY(internal::Event::make());
+  std::unique_ptr<Capture> capture(new Capture(std::move(system), std::make_unique<Queue>()));
+  capture->queue_->event = std::move(event);
   const auto per_second = static_cast<std::size_t>(format.rate) / static_cast<std::size_t>(frames);
   capture->queue_->most =
       std::max<std::size_t>(1, per_second * static_cast<std::size_t>(kMostKept.count()) / 1000);

@@ -9,7 +9,6 @@
 
 namespace hc::audio {
 
-constexpr std::int64_t kSecond = 1'000'000'000;  // [ns]
 constexpr std::int64_t kMostDrift = 50'000'000;  // [ns]
 
 namespace {
@@ -28,35 +27,24 @@ void hush_alsa() {
 
 }  // namespace
 
-Result<AudioSystem> AudioSystem::start() {
+Result<AudioSystem> start_audio() {
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
   // It would print; what fails is in SDL_GetError() too.
   SDL_LogSetOutputFunction([](void*, int, SDL_LogPriority, const char*) {}, nullptr);
   hush_alsa();
   if (SDL_InitSubSystem(SDL_INIT_AUDIO) != 0)
     return Error{Code::System, std::string("no sound: ") + SDL_GetError()};
-  return AudioSystem();
-}
-
-AudioSystem::AudioSystem(AudioSystem&& other) noexcept
-    : is_held_(std::exchange(other.is_held_, false)) {}
-
-AudioSystem::~AudioSystem() {
-  if (is_held_) SDL_QuitSubSystem(SDL_INIT_AUDIO);
+  return AudioSystem(nullptr, [](void*) { SDL_QuitSubSystem(SDL_INIT_AUDIO); });
 }
 
 std::int64_t FrameClock::stamp(std::int64_t frames, std::int64_t now) {
-  // Split, so that no product is too large within a century.
-  auto length = [&](std::int64_t count) {
-    return count / rate_ * kSecond + count % rate_ * kSecond / rate_;
-  };
-  std::int64_t end = start_.value_or(0) + length(counted_ + frames);
+  std::int64_t end = start_.value_or(0) + duration_of(counted_ + frames, rate_);
   if (!start_ || std::abs(end - now) > kMostDrift) {
-    start_ = now - length(frames);
+    start_ = now - duration_of(frames, rate_);
     counted_ = 0;
     end = now;
   }
-  const std::int64_t first = *start_ + length(counted_);
+  const std::int64_t first = *start_ + duration_of(counted_, rate_);
   counted_ += frames;
   return first;
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -17,18 +18,9 @@
 namespace hc::audio {
 
 /// SDL's audio while it is held. One at a time in a process.
-class AudioSystem {
- public:
-  /// Errors: System (there is no sound here).
-  static Result<AudioSystem> start();
-  AudioSystem(AudioSystem&& other) noexcept;
-  AudioSystem& operator=(AudioSystem&&) = delete;
-  ~AudioSystem();
-
- private:
-  AudioSystem() = default;
-  bool is_held_ = true;
-};
+using AudioSystem = std::shared_ptr<void>;
+/// Errors: System (there is no sound here).
+Result<AudioSystem> start_audio();
 
 /// Gives sound that comes in pieces the time of its first frame: counts frames, and starts over
 /// where the count and the clock differ by more than 50 ms. Pure.

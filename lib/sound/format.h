@@ -18,6 +18,12 @@ struct Format {
   bool operator==(const Format&) const = default;
 };
 
+/// How long so many frames last [ns]: split, so that no product is too large within a century.
+constexpr std::int64_t duration_of(std::int64_t frames, std::int64_t rate) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  return frames / rate * kSecond + frames % rate * kSecond / rate;
+}
+
 /// "16000 Hz, 2 channels"
 inline std::string text(const Format& format) {
   return std::to_string(format.rate) + " Hz, " + std::to_string(format.channels) +

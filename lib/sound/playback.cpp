@@ -11,8 +11,7 @@ constexpr int kBuffersPerSecond = 100;  // 10 ms: how late what is put in is hea
 }  // namespace
 
 Result<std::unique_ptr<Playback>> Playback::open(const std::string& device, const Format& format) {
-  auto system = AudioSystem::start();
-  if (!system) return system.error();
+  auto system = HC_TRY(start_audio());
   SDL_AudioSpec wanted{}, got{};
   wanted.freq = format.rate;
   wanted.format = AUDIO_S16SYS;
@@ -26,7 +25,7 @@ Result<std::unique_ptr<Playback>> Playback::open(const std::string& device, cons
     return Error{Code::System, (device.empty() ? "loudspeaker" : "loudspeaker \"" + device + "\"") +
                                    ": " + SDL_GetError()};
   SDL_PauseAudioDevice(id, 0);
-  return std::unique_ptr<Playback>(new Playback(std::move(*system), id, format));
+  return std::unique_ptr<Playback>(new Playback(std::move(system), id, format));
 }
 
 Playback::~Playback() {

@@ -61,7 +61,7 @@ Result<WavReader> WavReader::open(const std::string& path) {
   struct stat about {};
   if (::fstat(fileno(reader.file_.get()), &about) != 0 || !S_ISREG(about.st_mode))
     return malformed(path, "no regular file");
-  if (auto read = reader.read_header(about.st_size); !read) return read.error();
+  HC_TRY(reader.read_header(about.st_size));
   return reader;
 }
 
@@ -93,7 +93,7 @@ Status WavReader::read_header(std::int64_t file_size) {
       const auto taken = std::min<std::size_t>(chunk.size(), static_cast<std::size_t>(size));
       if (std::fread(chunk.data(), 1, taken, file_.get()) != taken)
         return malformed(path_, "is cut");
-      if (auto read = read_format(std::span(chunk).first(taken)); !read) return read.error();
+      HC_TRY(read_format(std::span(chunk).first(taken)));
       skipped -= static_cast<std::int64_t>(taken);
     }
     if (::fseeko(file_.get(), skipped, SEEK_CUR) != 0) return malformed(path_, "is cut");

@@ -50,15 +50,14 @@ Header header_of(const Format& format, std::int64_t data_bytes) {
 }  // namespace
 
 Result<WavWriter> WavWriter::create(const std::string& path, const Format& format) {
-  auto file = begin_file(path);
-  if (!file) return file.error();
-  WavWriter writer(std::move(*file), format);
+  auto file = HC_TRY(begin_file(path));
+  WavWriter writer(std::move(file), format);
   // One that is written in place, as /dev/stdout, is open for appending, and its header is
   // rewritten.
   const int descriptor = writer.file_.descriptor.get();
   ::fcntl(descriptor, F_SETFL, 0);
   writer.begin_ = std::max<std::int64_t>(0, ::lseek(descriptor, 0, SEEK_END));
-  if (auto put = writer.put_header(); !put) return put.error();
+  HC_TRY(writer.put_header());
   return writer;
 }
 
@@ -84,7 +83,7 @@ Status WavWriter::write(std::span<const std::int16_t> samples) {
   if (size > kMostBytes - data_bytes_)
     return Error{Code::TooLarge, path() + ": a WAV file has room for 4 GiB"};
   // The samples first: a header that counts them is valid at every moment.
-  if (auto written = put(bytes, kHeaderBytes + data_bytes_); !written) return written;
+  HC_TRY(put(bytes, kHeaderBytes + data_bytes_));
   data_bytes_ += size;
   return put_header();
 }

@@ -10,11 +10,9 @@ using hc::audio::WavReader;
 
 Result<FileEar> FileEar::open(const std::string& path, const hc::audio::Format& format,
                               std::int64_t start) {
-  auto reader = WavReader::open(path);
-  if (!reader) return reader.error();
-  auto converter = Converter::make(Converter::Scalar::I16, reader->format(), format);
-  if (!converter) return converter.error();
-  return FileEar(std::move(*reader), std::move(*converter), format, start);
+  auto reader = HC_TRY(WavReader::open(path));
+  auto converter = HC_TRY(Converter::make(Converter::Scalar::I16, reader.format(), format));
+  return FileEar(std::move(reader), std::move(converter), format, start);
 }
 
 Result<std::optional<Piece>> FileEar::next() {
@@ -22,24 +20,21 @@ Result<std::optional<Piece>> FileEar::next() {
   const std::size_t wanted = frames * static_cast<std::size_t>(format_.channels);
   std::vector<std::int16_t> read(frames * static_cast<std::size_t>(reader_.format().channels));
   while (ready_.size() < wanted && !is_finished_) {
-    auto got = reader_.read(read);
-    if (!got) return got.error();
-    if (*got == 0) {
+    auto got = HC_TRY(reader_.read(read));
+    if (got == 0) {
       converter_.finish();
       is_finished_ = true;
     } else {
       converter_.put(std::span(std::as_const(read))
-                         .first(*got * static_cast<std::size_t>(reader_.format().channels)));
+                         .first(got * static_cast<std::size_t>(reader_.format().channels)));
     }
     const auto more = converter_.take();
     ready_.insert(ready_.end(), more.begin(), more.end());
   }
   if (ready_.empty()) return std::optional<Piece>();
   const std::size_t size = std::min(wanted, ready_.size());
-  constexpr std::int64_t kSecond = 1'000'000'000;  // [ns]
-  const std::int64_t rate = format_.rate;
   auto piece = hc::audio::message_of(std::span(std::as_const(ready_)).first(size), format_)
-                   .at(start_ + sent_ / rate * kSecond + sent_ % rate * kSecond / rate);
+                   .at(start_ + hc::audio::duration_of(sent_, format_.rate));
   sent_ += piece.header.width;
   ready_.erase(ready_.begin(), ready_.begin() + static_cast<std::ptrdiff_t>(size));
   return std::optional(std::move(piece));

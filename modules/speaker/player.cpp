@@ -21,7 +21,7 @@ template <typename T>
 Status Player::play(std::span<const T> samples, const Format& format) {
   constexpr auto kScalar =
       std::is_same_v<T, float> ? Converter::Scalar::F32 : Converter::Scalar::I16;
-  if (auto ready = prepare(kScalar, format); !ready) return ready;
+  HC_TRY(prepare(kScalar, format));
   converter_->put(samples);
   return give_out();
 }
@@ -43,13 +43,12 @@ Status Player::prepare(Converter::Scalar scalar, const Format& format) {
     format_ = Format{options_.rate > 0 ? options_.rate : format.rate,
                      options_.channels > 0 ? options_.channels : format.channels};
   if (!converter_ || !converter_->takes(scalar, format)) {
-    auto made = Converter::make(scalar, format, *format_);
-    if (!made) return made.error();
+    auto made = HC_TRY(Converter::make(scalar, format, *format_));
     if (converter_) {
       converter_->finish();
-      if (auto given = give_out(); !given) return given;
+      HC_TRY(give_out());
     }
-    converter_.emplace(std::move(*made));
+    converter_.emplace(std::move(made));
   }
   return {};
 }
@@ -144,7 +143,7 @@ void Player::look() {
 Status Player::finish() {
   if (!converter_) return {};
   converter_->finish();
-  if (auto given = give_out(); !given) return given;
+  HC_TRY(give_out());
   wait_until_at_most(0);
   playback_.reset();
   return {};
