@@ -64,11 +64,10 @@ View look(Renderer& renderer, hc::room::World& world, int number) {
 
 void augment(Overlay& overlay, const Body& body, const View& view, std::size_t eye,
              const cv::Mat& depth, cv::Mat& image, cv::Mat* mask) {
-  const auto nearness_of =
-      eye == 0 ? hc::graphics::nearness_of_left : hc::graphics::nearness_of_right;
-  const Overlay::View seen{
-      kCamera, view.eyes.at(eye).T_world_eye, view.light, kScale,
-      [&](const cv::Rect& part, cv::Mat& near) { nearness_of(depth, kScale, part, near); }};
+  const Overlay::View seen{kCamera, view.eyes.at(eye).T_world_eye, view.light, kScale,
+                           [&](const cv::Rect& part, cv::Mat& near) {
+                             hc::graphics::nearness_of(eye == 1, depth, kScale, part, near);
+                           }};
   bench::must(overlay.draw({&body, 1}, seen, image, mask));
 }
 

@@ -86,10 +86,9 @@ Result<std::vector<Part>> read_model(const std::string& path) {
     vertices += mesh.mNumVertices;
     if (vertices > kMostVertices)
       return Error{Code::Malformed, path + ": has more than 10 million corners"};
-    auto texture =
-        texture_of(*scene, *scene->mMaterials[mesh.mMaterialIndex], fs::path(path).parent_path());
-    if (!texture) return texture.error();
-    parts.push_back({mesh_of(mesh), *texture});
+    auto texture = HC_TRY(
+        texture_of(*scene, *scene->mMaterials[mesh.mMaterialIndex], fs::path(path).parent_path()));
+    parts.push_back({mesh_of(mesh), texture});
   }
   if (parts.empty()) return Error{Code::Malformed, path + ": has no triangle"};
   return parts;

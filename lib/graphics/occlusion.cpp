@@ -81,7 +81,9 @@ void see_right(const float* depth, float scale, std::size_t begin, Row& left, Ro
   fill_holes(right);
 }
 
-void nearness_of(const cv::Mat& depth, double scale, const cv::Rect& part, bool is_right,
+}  // namespace
+
+void nearness_of(bool is_right, const cv::Mat& depth, double scale, const cv::Rect& part,
                  cv::Mat& nearness) {
   nearness.create(part.size(), CV_32F);
   const auto begin = static_cast<std::size_t>(part.x);
@@ -98,17 +100,6 @@ void nearness_of(const cv::Mat& depth, double scale, const cv::Rect& part, bool 
       std::copy_n(row.nearness.begin() + part.x, part.width, nearness.ptr<float>(y));
     }
   });
-}
-
-}  // namespace
-
-void nearness_of_left(const cv::Mat& depth, double scale, const cv::Rect& part, cv::Mat& nearness) {
-  nearness_of(depth, scale, part, false, nearness);
-}
-
-void nearness_of_right(const cv::Mat& depth, double scale, const cv::Rect& part,
-                       cv::Mat& nearness) {
-  nearness_of(depth, scale, part, true, nearness);
 }
 
 }  // namespace hc::graphics

@@ -9,18 +9,17 @@
 
 namespace hc::graphics {
 
-/// The nearness of all that a part of the left image shows. Where depth is unknown, it is that of
-/// the nearest known pixels to the left and right in the row, of the farther one:
-/// what only one eye sees belongs to what is behind. 0 in a row without any.
+/// The nearness of all that a part of the left or the right image shows. Where depth is unknown, it
+/// is that of the nearest known pixels to the left and right in the row, of the farther one: what
+/// only one eye sees belongs to what is behind. 0 in a row without any. What the left eye does not
+/// see is unknown in the right one, too.
 ///
 /// @param depth  (H, W) f32 of the left image [m]; 0 where unknown.
 /// @param scale  focal length · baseline [px · m].
 /// @param part  of the image [px].
 /// @param[out] nearness  (H, W) f32 of the part [px].
 /// Cost: linear in the rows' pixels; all cores.
-void nearness_of_left(const cv::Mat& depth, double scale, const cv::Rect& part, cv::Mat& nearness);
-
-/// The same of the right image. What the left eye does not see is unknown.
-void nearness_of_right(const cv::Mat& depth, double scale, const cv::Rect& part, cv::Mat& nearness);
+void nearness_of(bool is_right, const cv::Mat& depth, double scale, const cv::Rect& part,
+                 cv::Mat& nearness);
 
 }  // namespace hc::graphics

@@ -21,13 +21,13 @@ cv::Mat row_of(const std::vector<float>& nearness) {
 
 std::vector<float> left_of(const std::vector<float>& nearness) {
   cv::Mat found;
-  nearness_of_left(row_of(nearness), 1, {0, 0, static_cast<int>(nearness.size()), 1}, found);
+  nearness_of(false, row_of(nearness), 1, {0, 0, static_cast<int>(nearness.size()), 1}, found);
   return found.reshape(1, 1);
 }
 
 std::vector<float> right_of(const std::vector<float>& nearness) {
   cv::Mat found;
-  nearness_of_right(row_of(nearness), 1, {0, 0, static_cast<int>(nearness.size()), 1}, found);
+  nearness_of(true, row_of(nearness), 1, {0, 0, static_cast<int>(nearness.size()), 1}, found);
   return found.reshape(1, 1);
 }
 
@@ -63,9 +63,9 @@ TEST(Occlusion, a_part_is_as_in_the_whole) {
   cv::Mat depth(20, 30, CV_32F), whole, part;
   cv::randu(depth, 0.1, 5.0);
   const cv::Rect window(7, 3, 11, 9);
-  for (const auto& nearness_of : {nearness_of_left, nearness_of_right}) {
-    nearness_of(depth, 10, {0, 0, 30, 20}, whole);
-    nearness_of(depth, 10, window, part);
+  for (const bool is_right : {false, true}) {
+    nearness_of(is_right, depth, 10, {0, 0, 30, 20}, whole);
+    nearness_of(is_right, depth, 10, window, part);
     EXPECT_EQ(cv::norm(whole(window), part, cv::NORM_INF), 0);
   }
 }
@@ -76,8 +76,8 @@ TEST(Occlusion, no_depth_is_too_strange) {
                            Limits::denorm_min(), Limits::max(),      0};
   cv::Mat depth(1, 6, CV_32F), found;
   for (int x = 0; x < 6; ++x) depth.at<float>(0, x) = strange[x];
-  for (const auto& nearness_of : {nearness_of_left, nearness_of_right}) {
-    nearness_of(depth, 60, {0, 0, 6, 1}, found);
+  for (const bool is_right : {false, true}) {
+    nearness_of(is_right, depth, 60, {0, 0, 6, 1}, found);
     EXPECT_TRUE(cv::checkRange(found));
   }
 }

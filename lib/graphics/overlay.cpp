@@ -187,7 +187,7 @@ cv::Rect part_of(const Body& body, const PinholeCamera& camera,
 Status Overlay::draw(std::span<const Body> bodies, const View& view, cv::Mat& image,
                      cv::Mat* mask) {
   for (const auto& each : group(bodies, view.camera, view.T_world_camera))
-    if (auto drawn = draw_part(each.items, view, each.part, image, mask); !drawn) return drawn;
+    HC_TRY(draw_part(each.items, view, each.part, image, mask));
   return {};
 }
 

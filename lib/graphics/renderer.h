@@ -37,15 +37,15 @@ struct Light {
 /// Draws with OpenGL 3.3 into memory; needs no window.
 class Renderer {
  public:
-  /// Errors: Unsupported (no OpenGL: see Context; what its compiler says).
+  /// Errors: Unsupported (no EGL without a surface, or no OpenGL 3.3, with what EGL says; what its
+  /// compiler says).
   static Result<std::unique_ptr<Renderer>> make();
   ~Renderer();
 
   /// Takes a surface in.
   ///
   /// @param texture  (H, W, 3) u8, red, green, blue; row 0 at texture coordinate y = 0. One pixel
-  /// is
-  ///     a plain colour.
+  ///     is a plain colour.
   SurfaceId add(const Mesh& mesh, const cv::Mat& texture);
   /// Puts another image on a surface.
   void set_texture(SurfaceId surface, const cv::Mat& texture);

@@ -30,11 +30,9 @@ void Scenery::add_box(const Vector3d& size, const Vector3d& middle, const cv::Ma
   const Isometry3d place(Translation3d(middle) * AngleAxisd(yaw, Vector3d::UnitZ()));
   add(graphics::make_box(size.cast<float>()), texture, place);
   auto& corners = boxes_.emplace_back();
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vector3d side((i & 1) != 0 ? 0.5 : -0.5, (i & 2) != 0 ? 0.5 : -0.5,
-                        (i & 4) != 0 ? 0.5 : -0.5);
-    corners[i] = place * size.cwiseProduct(side);
-  }
+  const Eigen::AlignedBox3d box(-size / 2, size / 2);
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    corners[i] = place * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
 }
 
 void Scenery::move_last(const Vector3d& middle) {

@@ -42,18 +42,15 @@ const Eigen::Isometry3d* Markers::find(int number) const {
 }
 
 hc::Result<std::unique_ptr<Scene>> Scene::make(const std::string& text) {
-  auto objects = read_objects(text);
-  if (!objects) return objects.error();
-  auto renderer = hc::graphics::Renderer::make();
-  if (!renderer) return renderer.error();
-  std::unique_ptr<Scene> scene(new Scene(std::move(*renderer)));
-  for (const auto& object : *objects) {
-    auto parts = load(object.model);
-    if (!parts) return parts.error();
-    scene->bodies_.push_back(hc::graphics::make_body(*scene->renderer_, *parts));
+  auto objects = HC_TRY(read_objects(text));
+  auto renderer = HC_TRY(hc::graphics::Renderer::make());
+  std::unique_ptr<Scene> scene(new Scene(std::move(renderer)));
+  for (const auto& object : objects) {
+    auto parts = HC_TRY(load(object.model));
+    scene->bodies_.push_back(hc::graphics::make_body(*scene->renderer_, parts));
     if (object.size > 0) scene->bodies_.back().set_size(object.size);
   }
-  scene->objects_ = std::move(*objects);
+  scene->objects_ = std::move(objects);
   return scene;
 }
 
@@ -105,10 +102,7 @@ hc::Status Scene::draw(const Sight& sight, std::size_t eye, const cv::Mat& depth
   view.T_world_camera = sight.T_world_eye.at(eye);
   view.scale = sight.scale;
   view.nearness = [&](const cv::Rect& part, cv::Mat& nearness) {
-    if (eye == 0)
-      hc::graphics::nearness_of_left(depth, sight.scale, part, nearness);
-    else
-      hc::graphics::nearness_of_right(depth, sight.scale, part, nearness);
+    hc::graphics::nearness_of(eye == 1, depth, sight.scale, part, nearness);
   };
   return overlay_.draw(placed_, view, image, mask);
 }

@@ -61,6 +61,5 @@ class Scene {
   std::unique_ptr<hc::graphics::Renderer> renderer_;
   hc::graphics::Overlay overlay_;
   std::vector<Object> objects_;
-  std::vector<hc::graphics::Body> bodies_,
-      placed_;  // of each object; of those whose place is known
+  std::vector<hc::graphics::Body> bodies_, placed_;  // of all objects; of those with a known place
 };
