@@ -27,12 +27,9 @@ struct AprilTagFinder::Detector {
   }
 };
 
-AprilTagFinder::AprilTagFinder(double decimate) : detector_(std::make_unique<Detector>()) {
+AprilTagFinder::AprilTagFinder(double decimate) : detector_(std::make_shared<Detector>()) {
   detector_->detector->quad_decimate = static_cast<float>(decimate);
 }
-AprilTagFinder::AprilTagFinder(AprilTagFinder&&) noexcept = default;
-AprilTagFinder& AprilTagFinder::operator=(AprilTagFinder&&) noexcept = default;
-AprilTagFinder::~AprilTagFinder() = default;
 
 std::vector<Marker> AprilTagFinder::find(const cv::Mat& grey) const {
   std::vector<Marker> markers;

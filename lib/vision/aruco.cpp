@@ -2,6 +2,7 @@
 #include <vision/marker_finder.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include <opencv2/aruco.hpp>
 
@@ -13,30 +14,13 @@ namespace aruco = cv::aruco;
 // PREDEFINED_DICTIONARY_NAME in OpenCV 4.6, PredefinedDictionaryType in 4.7 and later.
 using DictionaryName = decltype(aruco::DICT_6X6_250);
 
-struct Named {
-  const char* name;
-  DictionaryName number;
-};
-
-constexpr Named kDictionaries[] = {
-    {"4X4_50", aruco::DICT_4X4_50},
-    {"4X4_100", aruco::DICT_4X4_100},
-    {"4X4_250", aruco::DICT_4X4_250},
-    {"4X4_1000", aruco::DICT_4X4_1000},
-    {"5X5_50", aruco::DICT_5X5_50},
-    {"5X5_100", aruco::DICT_5X5_100},
-    {"5X5_250", aruco::DICT_5X5_250},
-    {"5X5_1000", aruco::DICT_5X5_1000},
-    {"6X6_50", aruco::DICT_6X6_50},
-    {"6X6_100", aruco::DICT_6X6_100},
-    {"6X6_250", aruco::DICT_6X6_250},
-    {"6X6_1000", aruco::DICT_6X6_1000},
-    {"7X7_50", aruco::DICT_7X7_50},
-    {"7X7_100", aruco::DICT_7X7_100},
-    {"7X7_250", aruco::DICT_7X7_250},
-    {"7X7_1000", aruco::DICT_7X7_1000},
-    {"ARUCO_ORIGINAL", aruco::DICT_ARUCO_ORIGINAL},
-};
+/// In OpenCV's order.
+constexpr std::string_view kDictionaries[] = {
+    "4X4_50",  "4X4_100",  "4X4_250", "4X4_1000", "5X5_50",        "5X5_100",
+    "5X5_250", "5X5_1000", "6X6_50",  "6X6_100",  "6X6_250",       "6X6_1000",
+    "7X7_50",  "7X7_100",  "7X7_250", "7X7_1000", "ARUCO_ORIGINAL"};
+static_assert(kDictionaries[aruco::DICT_6X6_250] == "6X6_250" &&
+              kDictionaries[aruco::DICT_ARUCO_ORIGINAL] == "ARUCO_ORIGINAL");
 
 /// A dictionary as detectMarkers takes it: OpenCV 4.6 gives a cv::Ptr, 4.7 and later a value.
 template <typename Given>
@@ -62,19 +46,14 @@ struct ArucoFinder::Words {
   cv::Ptr<aruco::DetectorParameters> parameters = cv::makePtr<aruco::DetectorParameters>();
 };
 
-ArucoFinder::ArucoFinder(std::unique_ptr<Words> words) : words_(std::move(words)) {}
-ArucoFinder::ArucoFinder(ArucoFinder&&) noexcept = default;
-ArucoFinder& ArucoFinder::operator=(ArucoFinder&&) noexcept = default;
-ArucoFinder::~ArucoFinder() = default;
-
 Result<ArucoFinder> ArucoFinder::make(const std::string& dictionary) {
-  const auto* named = std::find_if(std::begin(kDictionaries), std::end(kDictionaries),
-                                   [&](const Named& each) { return dictionary == each.name; });
+  const auto* named = std::ranges::find(kDictionaries, dictionary);
   if (named == std::end(kDictionaries))
     return Error{Code::NotFound, "there is no ArUco dictionary \"" + dictionary + "\""};
-  auto words = std::make_unique<Words>();
+  auto words = std::make_shared<Words>();
   keep_inner_outlines(*words->parameters);
-  words->dictionary = pointer_to(aruco::getPredefinedDictionary(named->number));
+  words->dictionary = pointer_to(aruco::getPredefinedDictionary(
+      static_cast<DictionaryName>(named - std::begin(kDictionaries))));
   return ArucoFinder(std::move(words));
 }
 

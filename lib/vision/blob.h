@@ -51,8 +51,7 @@ class BlobFinder {
   /// @param rgb  (H, W, 3) u8, the next of a sequence.
   /// @param min_area  of what counts as found [px²].
   /// @returns  nothing where no blob is as large, or for a second of 20 images, only one of more
-  /// than
-  ///     four times the last one's area.
+  ///     than four times the last one's area.
   /// Cost: 1 ms at 800×600.
   std::optional<Blob> find(const cv::Mat& rgb, double min_area);
 

@@ -194,8 +194,7 @@ Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& boar
     }
     rectify(result.calibration);
     // What is written has to be what can be read.
-    auto checked = calibration_of(text_of(result.calibration));
-    if (!checked) return checked.error();
+    HC_TRY(calibration_of(text_of(result.calibration)));
     result.rms_all = rms_all;
     result.given = views.size();
     result.epipolar = epipolar_error(result.calibration, points);

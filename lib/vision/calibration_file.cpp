@@ -54,25 +54,23 @@ Result<std::vector<double>> numbers_of(const cv::FileNode& root, const std::stri
 template <int kRows, int kColumns>
 Status read(const cv::FileNode& root, const std::string& key,
             cv::Matx<double, kRows, kColumns>& matrix) {
-  auto numbers = numbers_of(root, key);
-  if (!numbers) return numbers.error();
+  auto numbers = HC_TRY(numbers_of(root, key));
   // A column may have been written as a row.
   const bool is_vector = kColumns == 1;
-  if (numbers->size() != std::size_t{kRows} * std::size_t{kColumns} ||
+  if (numbers.size() != std::size_t{kRows} * std::size_t{kColumns} ||
       (!is_vector && (root[key]["rows"].real() != kRows)))
     return malformed(key + " is not " + std::to_string(kRows) + " x " + std::to_string(kColumns));
-  std::copy(numbers->begin(), numbers->end(), matrix.val);
+  std::copy(numbers.begin(), numbers.end(), matrix.val);
   return {};
 }
 
 Status read_distortion(const cv::FileNode& root, const std::string& key,
                        std::vector<double>& distortion) {
-  auto numbers = numbers_of(root, key);
-  if (!numbers) return numbers.error();
-  const auto count = numbers->size();
+  auto numbers = HC_TRY(numbers_of(root, key));
+  const auto count = numbers.size();
   if (count != 4 && count != 5 && count != 8 && count != 12 && count != 14)
     return malformed(key + " has " + std::to_string(count) + " numbers, not 4, 5, 8, 12 or 14");
-  distortion = *numbers;
+  distortion = numbers;
   return {};
 }
 
@@ -159,26 +157,23 @@ Result<StereoCalibration> calibration_of(const std::string& text) {
     const cv::FileNode root = file.root();
     if (!root.isMap()) return malformed("holds no names");
     StereoCalibration c;
-    if (auto s = read_size(root, c.size); !s) return s.error();
-    if (auto s = read(root, "M1", c.M1); !s) return s.error();
-    if (auto s = read_distortion(root, "D1", c.D1); !s) return s.error();
-    if (auto s = read(root, "M2", c.M2); !s) return s.error();
-    if (auto s = read_distortion(root, "D2", c.D2); !s) return s.error();
+    HC_TRY(read_size(root, c.size));
+    HC_TRY(read(root, "M1", c.M1));
+    HC_TRY(read_distortion(root, "D1", c.D1));
+    HC_TRY(read(root, "M2", c.M2));
+    HC_TRY(read_distortion(root, "D2", c.D2));
     for (auto [key, R] : {std::pair{"R", &c.R}, {"R1", &c.R1}, {"R2", &c.R2}})
-      if (auto s = read(root, key, *R); !s) return s.error();
-    for (auto [key, P] : {std::pair{"P1", &c.P1}, {"P2", &c.P2}})
-      if (auto s = read(root, key, *P); !s) return s.error();
+      HC_TRY(read(root, key, *R));
+    for (auto [key, P] : {std::pair{"P1", &c.P1}, {"P2", &c.P2}}) HC_TRY(read(root, key, *P));
     cv::Matx31d T;
-    if (auto s = read(root, "T", T); !s) return s.error();
+    HC_TRY(read(root, "T", T));
     c.T = {T(0), T(1), T(2)};
-    if (auto s = read(root, "Q", c.Q); !s) return s.error();
+    HC_TRY(read(root, "Q", c.Q));
     if (const cv::FileNode rms = root["rms"]; rms.isReal() || rms.isInt()) c.rms = rms.real();
     if (!root["head"].empty()) {
-      auto head = numbers_of(root, "head");
-      if (!head) return head.error();
-      c.head = *std::move(head);
+      c.head = HC_TRY(numbers_of(root, "head"));
     }
-    if (auto s = check(c); !s) return s.error();
+    HC_TRY(check(c));
     return c;
   } catch (const std::exception&) {  // cv::Exception, or one that its parser lets through
     return malformed("is no file of cv::FileStorage");

@@ -19,12 +19,10 @@ using Quad = std::array<cv::Point2d, 4>;
 
 /// The minimum of red, green and blue: dark in what is coloured, light in what is white.
 cv::Mat min_channel(const cv::Mat& rgb) {
-  cv::Mat least(rgb.size(), CV_8U);
-  for (int y = 0; y < rgb.rows; ++y) {
-    const auto* from = rgb.ptr<std::uint8_t>(y);
-    auto* to = least.ptr<std::uint8_t>(y);
-    for (int x = 0; x < rgb.cols; ++x, from += 3) to[x] = std::min({from[0], from[1], from[2]});
-  }
+  cv::Mat channels[3], least;
+  cv::split(rgb, channels);
+  cv::min(channels[0], channels[1], least);
+  cv::min(least, channels[2], least);
   return least;
 }
 

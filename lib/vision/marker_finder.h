@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hc/base/result.h>
@@ -18,9 +19,6 @@ class ArucoFinder {
   ///
   /// Errors: NotFound.
   static Result<ArucoFinder> make(const std::string& dictionary);
-  ArucoFinder(ArucoFinder&&) noexcept;
-  ArucoFinder& operator=(ArucoFinder&&) noexcept;
-  ~ArucoFinder();
 
   /// @param grey  (H, W) u8.
   /// Cost: 5 ms at 800×600.
@@ -28,8 +26,8 @@ class ArucoFinder {
 
  private:
   struct Words;
-  explicit ArucoFinder(std::unique_ptr<Words> words);
-  std::unique_ptr<Words> words_;
+  explicit ArucoFinder(std::shared_ptr<const Words> words) : words_(std::move(words)) {}
+  std::shared_ptr<const Words> words_;
 };
 
 /// AprilTags of the family tag36h11.
@@ -38,9 +36,6 @@ class AprilTagFinder {
   /// @param decimate  edges are looked for in an image so many times smaller: 1 finds the most, 2
   ///     takes a third of the time. [1]
   explicit AprilTagFinder(double decimate);
-  AprilTagFinder(AprilTagFinder&&) noexcept;
-  AprilTagFinder& operator=(AprilTagFinder&&) noexcept;
-  ~AprilTagFinder();
 
   /// @param grey  (H, W) u8.
   /// Cost: 20 to 35 ms at 800×600 and decimate 1.
@@ -48,7 +43,7 @@ class AprilTagFinder {
 
  private:
   struct Detector;
-  std::unique_ptr<Detector> detector_;
+  std::shared_ptr<Detector> detector_;
 };
 
 /// Filled squares of one saturated colour on white. The square does not show its rotation, so

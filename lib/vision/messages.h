@@ -15,26 +15,13 @@ namespace hc {
 ///
 /// Errors: Unsupported (u32, u64 and i64, which OpenCV does not have).
 inline Result<int> cv_depth(Scalar scalar) {
-  switch (scalar) {
-    case Scalar::U8:
-      return CV_8U;
-    case Scalar::I8:
-      return CV_8S;
-    case Scalar::U16:
-      return CV_16U;
-    case Scalar::I16:
-      return CV_16S;
-    case Scalar::I32:
-      return CV_32S;
-    case Scalar::F32:
-      return CV_32F;
-    case Scalar::F64:
-      return CV_64F;
-    case Scalar::U32:
-    case Scalar::U64:
-    case Scalar::I64:
-      break;
-  }
+  const int depth = visit_scalar(scalar, [](auto zero) {
+    if constexpr (requires { cv::DataType<decltype(zero)>::depth; })
+      return static_cast<int>(cv::DataType<decltype(zero)>::depth);
+    else
+      return -1;
+  });
+  if (depth >= 0) return depth;
   return Error{Code::Unsupported, "OpenCV has no matrix of " + std::string(name(scalar))};
 }
 
@@ -51,10 +38,9 @@ inline Result<cv::Mat> as_mat(const Message& message) {
   if (!message.plain())
     return Error{Code::Unsupported,
                  "the elements are compressed: " + std::string(name(message.header.info.encoding))};
-  auto depth = cv_depth(message.header.info.scalar);
-  if (!depth) return depth.error();
+  auto depth = HC_TRY(cv_depth(message.header.info.scalar));
   return cv::Mat(message.header.height, message.header.width,
-                 CV_MAKETYPE(*depth, message.header.info.components),
+                 CV_MAKETYPE(depth, message.header.info.components),
                  const_cast<std::byte*>(message.elements.data()));
 }
 

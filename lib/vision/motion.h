@@ -40,8 +40,7 @@ Matches match(const cv::Mat& a, const cv::Mat& b, const Intrinsics& camera,
 ///
 /// @param R_a_b, t  where to begin; t of any length but 0.
 /// @param is_known  the direction of t is known, and R alone is found: better where the camera
-/// turns
-///     much and moves little.
+///     turns much and moves little.
 /// @returns  nothing if fewer than 30 matches agree to 1 px.
 /// Source: Hartley, Zisserman, Multiple View Geometry, 2nd edition, 11.4.3.
 std::optional<RelativePose> relative_pose(const Matches& matches, const Intrinsics& camera,

@@ -33,9 +33,8 @@ BlockReader::BlockReader(Recogniser recogniser, bool upper_case)
     : recogniser_(std::move(recogniser)), upper_case_(upper_case) {}
 
 hc::Result<BlockReader> BlockReader::make(const std::string& language, bool upper_case) {
-  auto recogniser = Recogniser::make(language, upper_case);
-  if (!recogniser) return recogniser.error();
-  return BlockReader(std::move(*recogniser), upper_case);
+  auto recogniser = HC_TRY(Recogniser::make(language, upper_case));
+  return BlockReader(std::move(recogniser), upper_case);
 }
 
 bool BlockReader::is_due(std::int64_t time, double rate) const {

@@ -30,14 +30,9 @@ struct Recogniser::Engine {
   tesseract::TessBaseAPI api;
 };
 
-Recogniser::Recogniser(std::unique_ptr<Engine> engine) : engine_(std::move(engine)) {}
-Recogniser::Recogniser(Recogniser&&) noexcept = default;
-Recogniser& Recogniser::operator=(Recogniser&&) noexcept = default;
-Recogniser::~Recogniser() = default;
-
 hc::Result<Recogniser> Recogniser::make(const std::string& language, bool upper_case) {
   keep_to_one_thread();
-  auto engine = std::make_unique<Engine>();
+  auto engine = std::make_shared<Engine>();
   auto& api = engine->api;
   api.SetVariable("debug_file", "/dev/null");  // else it talks on standard error
   if (api.Init(nullptr, language.c_str(), tesseract::OEM_LSTM_ONLY) != 0)

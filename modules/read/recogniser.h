@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <hc/base/result.h>
 #include <vision/letter_shapes.h>
@@ -19,16 +20,12 @@ class Recogniser {
   /// Errors: NotFound (no data of this language).
   static hc::Result<Recogniser> make(const std::string& language, bool upper_case);
 
-  Recogniser(Recogniser&&) noexcept;
-  Recogniser& operator=(Recogniser&&) noexcept;
-  ~Recogniser();
-
   /// @param line  (H, W) u8, black letters about 36 pixels high on white, level, with a margin.
   /// Cost: 30 … 150 ms on one core.
   hc::vision::Reading read(const cv::Mat& line);
 
  private:
   struct Engine;
-  explicit Recogniser(std::unique_ptr<Engine> engine);
-  std::unique_ptr<Engine> engine_;
+  explicit Recogniser(std::shared_ptr<Engine> engine) : engine_(std::move(engine)) {}
+  std::shared_ptr<Engine> engine_;
 };

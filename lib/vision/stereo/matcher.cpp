@@ -61,7 +61,7 @@ class SemiGlobalMatcher final : public StereoMatcher {
   }
 
   Status match(const cv::Mat& left, const cv::Mat& right, Disparities& found) override {
-    if (auto checked = check(left, right); !checked) return checked;
+    HC_TRY(check(left, right));
     cv::parallel_for_({0, 2}, [&](const cv::Range& range) {
       for (int i = range.start; i < range.end; ++i)
         prepare(i == 0 ? left : right, i == 1, i == 0 ? left_ : right_);
@@ -117,7 +117,7 @@ class OpenCvMatcher final : public StereoMatcher {
   }
 
   Status match(const cv::Mat& left, const cv::Mat& right, Disparities& found) override {
-    if (auto checked = check(left, right); !checked) return checked;
+    HC_TRY(check(left, right));
     // OpenCV 4.6 writes where it should not otherwise.
     if (left.cols <= matcher_->getNumDisparities())
       return Error{Code::Invalid, hc::format("images of {} x {} are not wider than {} disparities",

@@ -2,6 +2,7 @@
 #pragma once
 // How good disparities are, against ground truth.
 
+#include <cmath>
 #include <cstdint>
 
 #include <opencv2/core.hpp>
@@ -30,6 +31,23 @@ struct StereoScore {
 /// @param disparity  (H, W) f32 [px], 0: unknown.
 /// @param truth  (H, W) f32 [px], 0: unknown.
 /// @param threshold  a larger error is bad [px].
-StereoScore score(const cv::Mat& disparity, const cv::Mat& truth, double threshold);
+inline StereoScore score(const cv::Mat& disparity, const cv::Mat& truth, double threshold) {
+  CV_Assert(disparity.size() == truth.size() && disparity.type() == CV_32F &&
+            truth.type() == CV_32F);
+  StereoScore score;
+  for (int y = 0; y < truth.rows; ++y) {
+    const auto* found = disparity.ptr<float>(y);
+    const auto* known = truth.ptr<float>(y);
+    for (int x = 0; x < truth.cols; ++x) {
+      if (known[x] <= 0) continue;
+      ++score.truth;
+      if (found[x] <= 0)
+        ++score.holes;
+      else if (std::abs(double{found[x]} - known[x]) > threshold)
+        ++score.bad;
+    }
+  }
+  return score;
+}
 
 }  // namespace hc::vision

@@ -50,8 +50,7 @@ struct SemiGlobal {
 
 /// The rows [begin, end) of a pair, and where their disparities go.
 struct Stripe {
-  const cv::Mat*
-      left;  ///< (H + 8, W + 8 + kReadBeyond) u8, grey, with kBorder pixels more on each side
+  const cv::Mat* left;   ///< (H + 8, W + 8 + kReadBeyond) u8, grey, with kBorder pixels around
   const cv::Mat* right;  ///< the same, flipped, so that the partners of a pixel follow one another
   int width;
   int begin, end;
