@@ -31,14 +31,10 @@ std::string name_of_peer(int socket) {
 }  // namespace
 
 Result<Descriptor> Acceptor::start() {
-  auto event =
-      internal::system_call("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); });
-  if (!event) return event.error();
-  Descriptor readable(*event);
+  Descriptor readable = HC_TRY(internal::open_descriptor(
+      "eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); }));
   event_ = readable.get();
-  auto loop = internal::Loop::make();
-  if (!loop) return loop.error();
-  loop_ = std::move(*loop);
+  loop_ = HC_TRY(internal::Loop::make());
   auto watched = loop_->watch(socket_.descriptor.get(), EPOLLIN, [this](auto) { accept_all(); });
   if (!watched) return watched.error();
   listening_ = std::move(*watched);

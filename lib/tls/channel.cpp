@@ -48,36 +48,16 @@ BIO* make_writing_end(TlsChannel* channel) {
   return bio;
 }
 
-/// What a client does with a peer that said one of these.
-bool says_that_our_key_is_refused(int reason) {
-  switch (reason) {
-    case SSL_R_SSLV3_ALERT_BAD_CERTIFICATE:
-    case SSL_R_SSLV3_ALERT_CERTIFICATE_UNKNOWN:
-    case SSL_R_SSLV3_ALERT_HANDSHAKE_FAILURE:
-    case SSL_R_SSLV3_ALERT_UNSUPPORTED_CERTIFICATE:
-    case SSL_R_TLSV1_ALERT_ACCESS_DENIED:
-    case SSL_R_TLSV1_ALERT_UNKNOWN_CA:
-    case SSL_R_TLSV13_ALERT_CERTIFICATE_REQUIRED:
-      return true;
-    default:
-      return false;
-  }
-}
-
-bool speaks_no_tls(int reason) {
-  switch (reason) {
-    case SSL_R_WRONG_VERSION_NUMBER:
-    case SSL_R_HTTP_REQUEST:
-    case SSL_R_HTTPS_PROXY_REQUEST:
-    case SSL_R_BAD_RECORD_TYPE:
-    case SSL_R_RECORD_LENGTH_MISMATCH:
-    case SSL_R_PACKET_LENGTH_TOO_LONG:
-    case SSL_R_ENCRYPTED_LENGTH_TOO_LONG:
-      return true;
-    default:
-      return false;
-  }
-}
+/// Of OpenSSL's reasons, those that say that the peer has refused our key, and that it is no TLS.
+constexpr int kRefusals[] = {
+    SSL_R_SSLV3_ALERT_BAD_CERTIFICATE,      SSL_R_SSLV3_ALERT_CERTIFICATE_UNKNOWN,
+    SSL_R_SSLV3_ALERT_HANDSHAKE_FAILURE,    SSL_R_SSLV3_ALERT_UNSUPPORTED_CERTIFICATE,
+    SSL_R_TLSV1_ALERT_ACCESS_DENIED,        SSL_R_TLSV1_ALERT_UNKNOWN_CA,
+    SSL_R_TLSV13_ALERT_CERTIFICATE_REQUIRED};
+constexpr int kNoTls[] = {SSL_R_WRONG_VERSION_NUMBER,     SSL_R_HTTP_REQUEST,
+                          SSL_R_HTTPS_PROXY_REQUEST,      SSL_R_BAD_RECORD_TYPE,
+                          SSL_R_RECORD_LENGTH_MISMATCH,   SSL_R_PACKET_LENGTH_TOO_LONG,
+                          SSL_R_ENCRYPTED_LENGTH_TOO_LONG};
 
 }  // namespace
 
@@ -145,11 +125,11 @@ std::string TlsChannel::why_refused(int result) const {
   if (refused_ && !refused_->empty())
     return "the peer's key is " + *refused_ + ", which is not the one of peer=";
   if (reason == SSL_R_PEER_DID_NOT_RETURN_A_CERTIFICATE) return "the peer has shown no key";
-  if (says_that_our_key_is_refused(reason))
+  if (std::ranges::count(kRefusals, reason) > 0)
     return "the peer has refused our key; its peer= has to name it";
   if (reason == SSL_R_UNSUPPORTED_PROTOCOL || reason == SSL_R_TLSV1_ALERT_PROTOCOL_VERSION)
     return "the peer does not know TLS 1.3";
-  if (speaks_no_tls(reason)) return "the peer does not speak TLS";
+  if (std::ranges::count(kNoTls, reason) > 0) return "the peer does not speak TLS";
   if (is_silent || reason == SSL_R_UNEXPECTED_EOF_WHILE_READING ||
       SSL_get_error(ssl_.get(), result) == SSL_ERROR_ZERO_RETURN)
     return "the peer disconnected during the TLS handshake; does it listen by tls-listen?";

@@ -90,11 +90,11 @@ Status check_keys(const Uri& uri) {
 }
 
 Result<std::shared_ptr<const Context>> Context::make(const Uri& uri) {
-  if (auto checked = check_keys(uri); !checked) return checked.error();
+  HC_TRY(check_keys(uri));
   std::shared_ptr<Context> made(new Context);
-  if (auto done = made->set_up(); !done) return done.error();
-  if (auto done = made->use_key(std::string(uri.option("key", ""))); !done) return done.error();
-  if (auto done = made->add_peers(std::string(uri.option("peer", ""))); !done) return done.error();
+  HC_TRY(made->set_up());
+  HC_TRY(made->use_key(std::string(uri.option("key", ""))));
+  HC_TRY(made->add_peers(std::string(uri.option("peer", ""))));
   return std::shared_ptr<const Context>(made);
 }
 

@@ -53,15 +53,12 @@ Result<std::string> make_key_text() {
 }
 
 Status make_key(const std::string& path) {
-  const auto text = make_key_text();
-  if (!text) return text.error();
+  const auto text = HC_TRY(make_key_text());
   constexpr mode_t kOwnerOnly = 0600;
-  auto opened = internal::system_call("open", path, [&] {
+  const auto file = HC_TRY(internal::open_descriptor("open", path, [&] {
     return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerOnly);
-  });
-  if (!opened) return opened.error();
-  const internal::Descriptor file(*opened);
-  for (std::string_view rest = *text; !rest.empty();) {
+  }));
+  for (std::string_view rest = text; !rest.empty();) {
     auto written = internal::system_call(
         "write", path, [&] { return ::write(file.get(), rest.data(), rest.size()); });
     if (!written) {
@@ -74,9 +71,8 @@ Status make_key(const std::string& path) {
 }
 
 Result<std::string> fingerprint_of(const std::string& path) {
-  auto file = open_file(path);
-  if (!file) return file.error();
-  const Certificate certificate(PEM_read_bio_X509(file->get(), nullptr, nullptr, nullptr));
+  auto file = HC_TRY(open_file(path));
+  const Certificate certificate(PEM_read_bio_X509(file.get(), nullptr, nullptr, nullptr));
   if (!certificate) return Error{Code::Invalid, path + ": no certificate in PEM"};
   return fingerprint(*certificate);
 }

@@ -9,26 +9,23 @@
 namespace hc::tls {
 
 Result<internal::Peer> find_peer(const Uri& uri) {
-  auto context = Context::make(uri);
-  if (!context) return context.error();
+  auto context = HC_TRY(Context::make(uri));
   auto peer = internal::tcp_peer(uri);
   if (!peer) return peer;
-  peer->secure = [own = *context](int socket) {
+  peer->secure = [own = context](int socket) {
     return std::make_unique<TlsChannel>(own, socket, TlsChannel::Side::Dials);
   };
   return peer;
 }
 
 Result<internal::ListeningSocket> listen(const Uri& uri) {
-  auto context = Context::make(uri);
-  if (!context) return context.error();
+  auto context = HC_TRY(Context::make(uri));
   auto listening = internal::listen_tcp(uri);
   if (!listening) return listening;
-  auto acceptor = std::make_shared<Acceptor>(std::move(*listening), std::move(*context));
-  auto readable = acceptor->start();
-  if (!readable) return readable.error();
+  auto acceptor = std::make_shared<Acceptor>(std::move(*listening), std::move(context));
+  auto readable = HC_TRY(acceptor->start());
   internal::ListeningSocket socket;
-  socket.descriptor = std::move(*readable);
+  socket.descriptor = std::move(readable);
   socket.take_agreed = [acceptor](const LogSink& log) { return acceptor->take(log); };
   return socket;
 }
