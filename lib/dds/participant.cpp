@@ -101,8 +101,7 @@ Participant::Participant(std::uint32_t number)
 
 Result<std::unique_ptr<Participant>> Participant::open(const Place& place, const Limits& limits) {
   constexpr std::uint64_t kMostBytes = (std::uint64_t{1} << 31) - 1;  // of a sample
-  auto interfaces = find_interfaces(place);
-  if (!interfaces) return interfaces.error();
+  auto interfaces = HC_TRY(find_interfaces(place));
   std::unique_ptr<Participant> made(new Participant(next_number()));
   log_of_all().add(made->number_, made->remarks_);
   const auto most = std::min(
@@ -126,15 +125,14 @@ Result<std::unique_ptr<Participant>> Participant::open(const Place& place, const
   }
   made->topic_ = Entity(topic);
   made->type_ = type;
-  if (auto barred = made->bar_others(*interfaces); !barred) return barred.error();
+  HC_TRY(made->bar_others(interfaces));
   return made;
 }
 
 Status Participant::bar_others(const std::vector<unsigned>& interfaces) const {
   std::array<int, HC_DDS_MOST_SOCKETS> sockets{};
   const auto count = static_cast<std::size_t>(hc_dds_sockets(type_, sockets.data()));
-  for (const int socket : std::span(sockets).first(count))
-    if (auto barred = take_from(socket, interfaces); !barred) return barred;
+  for (const int socket : std::span(sockets).first(count)) HC_TRY(take_from(socket, interfaces));
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include <dds/place.h>
+#include <hc/base/text.h>
 #include <hc/link/link.h>
 #include <hc/os/descriptor.h>
 
@@ -42,13 +43,10 @@ Result<Place> parse_place(const Uri& uri) {
     return Error{Code::Invalid, "\"" + uri.rest +
                                     "\" is no topic of DDS: it takes letters, digits, _ and /, and "
                                     "begins with no digit"};
-  auto domain = number_option(uri, "domain", 0, {0, kLastDomain});
-  if (!domain) return domain.error();
-  place.domain = static_cast<std::uint32_t>(*domain);
-  auto list = uri.option("interface", "");
-  while (!list.empty()) {
-    const std::string address(list.substr(0, list.find(',')));
-    list.remove_prefix(std::min(list.size(), address.size() + 1));
+  const auto domain = HC_TRY(number_option(uri, "domain", 0, {0, kLastDomain}));
+  place.domain = static_cast<std::uint32_t>(domain);
+  for (auto list = uri.option("interface", ""); !list.empty();) {
+    const std::string address(take_until(list, ','));
     in_addr read{};
     if (::inet_pton(AF_INET, address.c_str(), &read) != 1)
       return Error{Code::Invalid,

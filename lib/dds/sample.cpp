@@ -213,11 +213,10 @@ std::uint64_t octets_of(const ddsi_serdata& sample) {
 Status read_messages(const ddsi_serdata& data, const Limits& limits, internal::HeaderMemo& memo,
                      const std::function<void(Message, std::uint64_t)>& take) {
   const auto& sample = own(&data);
-  auto octets = sequence_of(sample);
-  if (!octets) return octets.error();
-  if (auto alone = view_one(*octets, limits, memo)) {
+  auto octets = HC_TRY(sequence_of(sample));
+  if (auto alone = view_one(octets, limits, memo)) {
     alone->owner = sample.bytes;
-    take(alone->keep(), octets->size());
+    take(alone->keep(), octets.size());
     return {};
   }
   constexpr std::size_t kMost = 10'000;  // messages, that a sample of small ones fills no memory
@@ -226,16 +225,15 @@ Status read_messages(const ddsi_serdata& data, const Limits& limits, internal::H
   std::size_t at = 0, count = 0;
   std::uint64_t taken = 0;
   while (true) {
-    auto got = reader.next(message);
-    if (!got) return got.error();
-    if (*got) {
+    auto got = HC_TRY(reader.next(message));
+    if (got) {
       if (count++ == kMost)
         return Error{Code::TooLarge, "it has more than " + std::to_string(kMost) + " messages"};
       if (message.elements.size() <= kMostCopied) message.owner.reset();  // which all others share
       take(message.keep(), reader.bytes() - std::exchange(taken, reader.bytes()));
-    } else if (at < octets->size()) {
+    } else if (at < octets.size()) {
       const auto space = reader.space();
-      const auto part = octets->subspan(at, std::min(space.size(), octets->size() - at));
+      const auto part = octets.subspan(at, std::min(space.size(), octets.size() - at));
       std::ranges::copy(part, space.begin());
       reader.commit(part.size());
       at += part.size();

@@ -48,12 +48,8 @@ class DdsSink final : public Sink {
   ~DdsSink() override { end(); }
 
   Status begin(const Place& place) {
-    auto event = internal::Event::make();
-    if (!event) return event.error();
-    event_ = std::move(*event);
-    auto participant = Participant::open(place, options_.limits);
-    if (!participant) return participant.error();
-    participant_ = std::move(*participant);
+    event_ = HC_TRY(internal::Event::make());
+    participant_ = HC_TRY(Participant::open(place, options_.limits));
     const auto qos = make_qos();
     const ListenerOwner listener(dds_create_listener(this));
     dds_lset_publication_matched(
@@ -82,7 +78,7 @@ class DdsSink final : public Sink {
       const auto fate = audience_.decide(readers_);
       if (fate == Audience::Fate::End) return ended();
       if (fate == Audience::Fate::Kept) {
-        if (auto awaited = await_readers(lock); !awaited) return awaited;
+        HC_TRY(await_readers(lock));
         continue;
       }
       if (fate == Audience::Fate::Lost) {
@@ -303,14 +299,11 @@ class DdsSink final : public Sink {
 }  // namespace
 
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options) {
-  auto place = parse_place(uri);
-  if (!place) return place.error();
-  auto policy = internal::parse_policy(uri);
-  if (!policy) return policy.error();
-  auto audience = Audience::make(uri, kMostReaders, *policy, options);
-  if (!audience) return audience.error();
-  auto sink = std::make_unique<DdsSink>(*policy, *audience, options);
-  if (auto begun = sink->begin(*place); !begun) return begun.error();
+  auto place = HC_TRY(parse_place(uri));
+  auto policy = HC_TRY(internal::parse_policy(uri));
+  auto audience = HC_TRY(Audience::make(uri, kMostReaders, policy, options));
+  auto sink = std::make_unique<DdsSink>(policy, audience, options);
+  HC_TRY(sink->begin(place));
   return std::unique_ptr<Sink>(std::move(sink));
 }
 

@@ -68,14 +68,10 @@ class DdsSource final : public Source {
   }
 
   Status begin(const Place& place) {
-    auto event = internal::Event::make();
-    if (!event) return event.error();
-    event_ = std::move(*event);
+    event_ = HC_TRY(internal::Event::make());
     if (auto started = timer_.start(-1, [this](auto) { event_.raise(); }); !started) return started;
     if (give_up_ != TimePoint::max()) timer_.call_at(give_up_);
-    auto participant = Participant::open(place, options_.limits);
-    if (!participant) return participant.error();
-    participant_ = std::move(*participant);
+    participant_ = HC_TRY(Participant::open(place, options_.limits));
     const auto qos = make_qos();
     const ListenerOwner listener(dds_create_listener(this));
     dds_lset_subscription_matched(
@@ -247,20 +243,16 @@ Cache::Cache(DdsSource& to) : dds_rhc{}, source(to) {
 }  // namespace
 
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options) {
-  auto place = parse_place(uri);
-  if (!place) return place.error();
-  auto policy = internal::parse_policy(uri);
-  if (!policy) return policy.error();
-  auto wait = number_option(uri, "wait", 0);
-  if (!wait) return wait.error();
-  auto reconnect = number_option(uri, "reconnect", 0);
-  if (!reconnect) return reconnect.error();
-  Policy unpaced = *policy;
+  auto place = HC_TRY(parse_place(uri));
+  auto policy = HC_TRY(internal::parse_policy(uri));
+  auto wait = HC_TRY(number_option(uri, "wait", 0));
+  auto reconnect = HC_TRY(number_option(uri, "reconnect", 0));
+  Policy unpaced = policy;
   unpaced.rate = 0;
-  auto source = std::make_unique<DdsSource>(unpaced, options, std::chrono::seconds(*wait),
-                                            std::chrono::seconds(*reconnect));
-  if (auto begun = source->begin(*place); !begun) return begun.error();
-  return internal::make_paced(std::move(source), *policy);
+  auto source = std::make_unique<DdsSource>(unpaced, options, std::chrono::seconds(wait),
+                                            std::chrono::seconds(reconnect));
+  HC_TRY(source->begin(place));
+  return internal::make_paced(std::move(source), policy);
 }
 
 }  // namespace hc::dds
