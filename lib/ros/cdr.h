@@ -213,8 +213,7 @@ class CdrReader {
     std::apply([this](auto&... member) { (this->get(member), ...); }, T::members(message));
   }
 
-  std::span<const std::byte>
-      bytes_;  // behind the encapsulation header, from which alignment counts
+  std::span<const std::byte> bytes_;  // behind the header, from where alignment counts
   std::size_t at_ = 0;
   const char* wrong_ = nullptr;
 };

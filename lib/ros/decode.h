@@ -33,13 +33,12 @@ struct Choice {
 /// | CameraInfo | table of 5 × 1: fx, fy, cx, cy [px], baseline [m], of its matrix P |
 /// | PoseStamped, one transform of TFMessage | transformation of 4 × 4 |
 /// | Twist | table of 6 × 1: linear, angular |
-/// | JointState | table, a joint a column: positions; velocities and efforts below, as far as known
-/// | | String | string | | Float64MultiArray | table; of one row, unless it says two dimensions or
-/// three |
+/// | JointState | table, a joint a column: positions, velocities and efforts, as far as known |
+/// | String | string |
+/// | Float64MultiArray | table; of one row, unless it says two dimensions or three |
 ///
-/// @param bytes  with their encapsulation header; whatever they are, no more memory is taken than
-/// in
-///   proportion to them.
+/// @param bytes  with their encapsulation header; whatever they are, memory is taken in proportion
+///   to them.
 ///
 /// Errors: as CdrReader::read(); Malformed (what contradicts itself); Unsupported (another image
 /// encoding, big-endian elements, a type that does not become that port's); NotFound (a joint or
