@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 #include <utility>
-#include <vector>
 
+#include <hc/base/words.h>
 #include <opencv2/imgproc.hpp>
 
 namespace {
@@ -31,14 +30,6 @@ void draw_line(cv::Mat& image, const cv::Point& from, const cv::Point& to,
   cv::line(image, from, to, colour, 2, cv::LINE_AA);
 }
 
-std::vector<std::string> words_of(std::string text) {
-  std::ranges::replace(text, ',', ' ');
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
-
 }  // namespace
 
 hc::Result<Instruments> read_instruments(const std::string& text) {
@@ -48,13 +39,13 @@ hc::Result<Instruments> read_instruments(const std::string& text) {
                                                  {"depth", &shown.depth},
                                                  {"confidence", &shown.confidence},
                                                  {"task", &shown.task}};
-  for (const auto& word : words_of(text)) {
+  for (const auto word : hc::words_of(text, " ,\t\n")) {
     const auto* found =
         std::ranges::find_if(known, [&](const auto& each) { return word == each.first; });
     if (found == std::end(known))
-      return hc::Error{
-          hc::Code::Invalid,
-          "instruments: \"" + word + "\" is none of gaze, frames, depth, confidence, task"};
+      return hc::Error{hc::Code::Invalid,
+                       "instruments: \"" + std::string(word) +
+                           "\" is none of gaze, frames, depth, confidence, task"};
     *found->second = true;
   }
   return shown;

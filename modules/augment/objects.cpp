@@ -2,38 +2,34 @@
 #include "objects.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
 #include <frames/rigid.h>
+#include <hc/base/text.h>
+#include <hc/base/words.h>
 #include <opencv2/imgproc.hpp>
 
 namespace {
 
 constexpr double kFarthest = 1e4;  // [m], [degree]
 
-bool read_number(const std::string& word, double& number) {
-  const char* end = word.data() + word.size();
-  const auto [after, error] = std::from_chars(word.data(), end, number);
-  return error == std::errc() && after == end && std::abs(number) <= kFarthest;
+bool read_number(std::string_view word, double& number) {
+  return hc::read_number(word, number) && std::abs(number) <= kFarthest;
 }
 
-std::optional<NamedFrame> read_frame(const std::string& word) {
-  if (word.find_first_not_of("0123456789") != std::string::npos) return NamedFrame{word};
+std::optional<NamedFrame> read_frame(std::string_view word) {
+  if (word.find_first_not_of("0123456789") != word.npos) return NamedFrame{std::string(word)};
   double number = 0;
   if (!read_number(word, number) || number < 1 || number > 999) return std::nullopt;
-  return NamedFrame{word, static_cast<int>(number)};
+  return NamedFrame{std::string(word), static_cast<int>(number)};
 }
 
-hc::Result<Object> read_object(const std::string& text) {
+hc::Result<Object> read_object(std::string_view text) {
   auto wrong = [&](const char* why) {
-    return hc::Error{hc::Code::Invalid, "objects: \"" + text + "\" " + why};
+    return hc::Error{hc::Code::Invalid, "objects: \"" + std::string(text) + "\" " + why};
   };
-  std::istringstream words(text);
-  std::vector<std::string> all;
-  for (std::string word; words >> word;) all.push_back(word);
+  auto all = hc::words_of(text);
   if (all.size() < 3 || all[1] != "at") return wrong("is not as in cube at world 2 0 0.8 size 0.3");
   Object object;
   object.model = all[0];
@@ -83,13 +79,10 @@ cv::Mat paint_squares(int columns, int rows, const cv::Vec3b& one, const cv::Vec
 
 hc::Result<std::vector<Object>> read_objects(std::string_view text) {
   std::vector<Object> objects;
-  while (!text.empty()) {
-    const auto one = text.substr(0, text.find(';'));
-    text.remove_prefix(std::min(text.size(), one.size() + 1));
-    if (one.find_first_not_of(" \t\n") == std::string_view::npos) continue;
-    auto object = read_object(std::string(one));
-    if (!object) return object.error();
-    objects.push_back(*object);
+  for (const auto one : hc::words_of(text, ";")) {
+    if (hc::words_of(one).empty()) continue;
+    auto object = HC_TRY(read_object(one));
+    objects.push_back(std::move(object));
   }
   return objects;
 }

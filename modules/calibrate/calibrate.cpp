@@ -126,8 +126,7 @@ hc::Result<HeadCalibration> solve(const std::vector<HeadView>& views, bool is_sw
   // How an eye moves as the head turns follows from its mounting.
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
-    for (Eye* eye : {&left, &right})
-      if (auto seen = eye->see(views, camera, stop); !seen) return seen.error();
+    for (Eye* eye : {&left, &right}) HC_TRY(eye->see(views, camera, stop));
     // What both eyes see at once shows how they are mounted.
     const Eye &first = found.swapped ? right : left, &second = found.swapped ? left : right;
     const Vector3d to_second = first.M.transpose() * (second.place - first.place);
@@ -164,13 +163,10 @@ hc::Result<HeadCalibration> calibrate(const std::vector<HeadView>& views,
   const hc::vision::Intrinsics ideal{cameras.M1(0, 0), (size.width - 1) / 2.0,
                                      (size.height - 1) / 2.0};
   // Which camera took which images is not known before the eyes are identified.
-  const auto first = straightened({views[0]}, cameras, false, ideal);
-  if (!first) return first.error();
-  const auto is_swapped = find_swapped(first->front(), ideal);
-  if (!is_swapped) return is_swapped.error();
-  const auto straight = straightened(views, cameras, *is_swapped, ideal);
-  if (!straight) return straight.error();
-  auto found = solve(*straight, *is_swapped, ideal, mounted, stop);
+  const auto first = HC_TRY(straightened({views[0]}, cameras, false, ideal));
+  const auto is_swapped = HC_TRY(find_swapped(first.front(), ideal));
+  const auto straight = HC_TRY(straightened(views, cameras, is_swapped, ideal));
+  auto found = solve(straight, is_swapped, ideal, mounted, stop);
   constexpr double kAgrees = 0.005;  // [rad]
   const Matrix3d measured = cameras.R_left_right();
   if (found && cameras.rms > 0 &&

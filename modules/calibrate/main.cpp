@@ -21,7 +21,6 @@ namespace {
 
 using hc::gaze::Angles;
 
-constexpr double kSecond = 1e9;                  // [ns]
 constexpr std::int64_t kSilent = 1'000'000'000;  // nothing comes for so long: disconnected [ns]
 constexpr double kNear = 0.004;                  // of where it was sent: it is there [rad]
 constexpr std::int64_t kRests = 300'000'000;     // it is at rest after this time [ns]
@@ -94,7 +93,7 @@ int main(int argc, char** argv) {
     views.clear();
     sent = rests_from = 0;
     is_done = ++tried >= *tries;
-    paused_until = module.now() + std::llround(*pause * kSecond);
+    paused_until = module.now() + hc::duration(*pause).count();
     module.log("not calibrated: " + why + (is_done ? "; giving up" : "; retrying"));
   };
   /// Takes in what was computed.
@@ -171,7 +170,7 @@ int main(int argc, char** argv) {
     }
     const auto& wanted = work.valid() ? poses.back() : poses[views.size()];
     if (sent == 0) sent = now;
-    if (!work.valid() && static_cast<double>(now - sent) > *timeout * kSecond)
+    if (!work.valid() && hc::seconds(now - sent) > *timeout)
       return fail("the head did not come to rest where it was sent");
     command.send(hc::rotation(0.0, wanted.tilt, wanted.pan).at(now));
   });

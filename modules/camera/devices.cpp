@@ -23,10 +23,9 @@ class AravisDevice final : public Device {
  public:
   explicit AravisDevice(std::unique_ptr<hc::aravis::Camera> camera) : camera_(std::move(camera)) {}
   hc::Result<std::optional<Frame>> next(std::chrono::milliseconds timeout) override {
-    auto image = camera_->next(timeout);
-    if (!image) return image.error();
-    if (!*image) return std::optional<Frame>();
-    return std::optional<Frame>(Frame{(*image)->bgr, (*image)->time});
+    auto image = HC_TRY(camera_->next(timeout));
+    if (!image) return std::optional<Frame>();
+    return std::optional<Frame>(Frame{image->bgr, image->time});
   }
   hc::Status adjust(const Adjustment& adjustment) override {
     auto exposure = adjustment.exposure > 0 ? camera_->set_exposure(adjustment.exposure)
@@ -91,9 +90,8 @@ hc::Result<std::unique_ptr<Device>> open_capture(const std::string& name, const 
   if (!is_open) return hc::Error{hc::Code::NotFound, "cannot be opened as a camera"};
   std::string remark;
   if (is_device) {
-    const auto settings = settings_to_open(mode);
-    if (!settings) return settings.error();
-    for (const auto& setting : *settings) capture.set(setting.property, setting.value);
+    const auto settings = HC_TRY(settings_to_open(mode));
+    for (const auto& setting : settings) capture.set(setting.property, setting.value);
     if (!capture.isOpened()) return hc::Error{hc::Code::Closed, "cannot be configured"};
     remark = difference(mode, cvRound(capture.get(cv::CAP_PROP_FRAME_WIDTH)),
                         cvRound(capture.get(cv::CAP_PROP_FRAME_HEIGHT)),
@@ -118,8 +116,7 @@ LiveCamera live_camera(const std::string& name, const CaptureMode& mode) {
   if (!name.starts_with(kAravis)) return {name, [=] { return open_capture(name, mode); }};
   return {name,
           [device = name.substr(kAravis.size()), mode]() -> hc::Result<std::unique_ptr<Device>> {
-            auto camera = hc::aravis::Camera::open(device, mode.pixel_format, mode.rate);
-            if (!camera) return camera.error();
-            return std::unique_ptr<Device>(std::make_unique<AravisDevice>(std::move(*camera)));
+            auto camera = HC_TRY(hc::aravis::Camera::open(device, mode.pixel_format, mode.rate));
+            return std::unique_ptr<Device>(std::make_unique<AravisDevice>(std::move(camera)));
           }};
 }

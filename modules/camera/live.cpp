@@ -63,6 +63,15 @@ bool LiveCameras::pause(std::chrono::nanoseconds time) {
   return !stopping_;
 }
 
+/// A camera cannot be opened, or is lost. With the mutex.
+void LiveCameras::miss(Camera& camera, const hc::Error& why, const char* how, const char* then) {
+  if (!reopen_)
+    failure_ = hc::Error{why.code, camera.how.name + ": " + why.detail};
+  else if (!camera.is_missing)
+    remarks_.push_back({hc::Level::Warning, camera.how.name + how + why.detail + then});
+  camera.is_missing = true;
+}
+
 void LiveCameras::run(Camera& camera) {
   do {
     auto device = camera.how.open();
@@ -73,13 +82,7 @@ void LiveCameras::run(Camera& camera) {
       serve(camera, **device);
     } else {
       const std::lock_guard lock(mutex_);
-      if (!reopen_) {
-        failure_ = hc::Error{device.error().code, camera.how.name + ": " + device.error().detail};
-      } else if (!camera.is_missing) {
-        camera.is_missing = true;
-        remarks_.push_back({hc::Level::Warning, camera.how.name + ": cannot connect: " +
-                                                    device.error().detail + "; retrying"});
-      }
+      miss(camera, device.error(), ": cannot connect: ", "; retrying");
     }
     {
       const std::lock_guard lock(mutex_);
@@ -113,15 +116,7 @@ void LiveCameras::serve(Camera& camera, Device& device) {
     auto frame = device.next(kTimeout);
     if (frame && !*frame) continue;
     const std::lock_guard lock(mutex_);
-    if (!frame) {
-      if (!reopen_)
-        failure_ = hc::Error{frame.error().code, camera.how.name + ": " + frame.error().detail};
-      else if (!camera.is_missing)
-        remarks_.push_back({hc::Level::Warning, camera.how.name + ": disconnected: " +
-                                                    frame.error().detail + "; reconnecting"});
-      camera.is_missing = true;
-      return;
-    }
+    if (!frame) return miss(camera, frame.error(), ": disconnected: ", "; reconnecting");
     const auto now = std::chrono::steady_clock::now();
     if (first && now - *first > kSettled) camera.backoff.reset();
     if (!first) {

@@ -90,6 +90,7 @@ class LiveCameras {
   struct Camera;
   void run(Camera& camera);
   void serve(Camera& camera, Device& device);
+  void miss(Camera& camera, const hc::Error& why, const char* how, const char* then);
   void report(std::string text);
   bool pause(std::chrono::nanoseconds time);
 

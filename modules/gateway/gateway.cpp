@@ -1,32 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway.h"
 
-#include <algorithm>
-#include <charconv>
-#include <vector>
-
+#include <hc/base/text.h>
+#include <hc/base/words.h>
 #include <hc/compress/compress.h>
 
 namespace {
 
-std::vector<std::string_view> words_of(std::string_view text) {
-  std::vector<std::string_view> words;
-  while (true) {
-    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-    if (text.empty()) return words;
-    auto end = std::min(text.find(' '), text.size());
-    words.push_back(text.substr(0, end));
-    text.remove_prefix(end);
-  }
-}
-
 hc::Error usage(std::string_view word, const char* what) {
   return {hc::Code::Invalid, "\"" + std::string(word) + "\" " + what};
-}
-
-bool parse(std::string_view word, std::int32_t& number) {
-  auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  return error == std::errc() && end == word.data() + word.size();
 }
 
 }  // namespace
@@ -34,11 +16,11 @@ bool parse(std::string_view word, std::int32_t& number) {
 hc::Result<Renumbering> parse_renumbering(std::string_view text) {
   Renumbering numbers;
   std::set<std::int32_t> taken;
-  for (auto word : words_of(text)) {
+  for (auto word : hc::words_of(text)) {
     auto equals = word.find('=');
     std::int32_t here = 0, there = 0;
-    if (equals == std::string_view::npos || !parse(word.substr(0, equals), here) ||
-        !parse(word.substr(equals + 1), there))
+    if (equals == std::string_view::npos || !hc::read_number(word.substr(0, equals), here) ||
+        !hc::read_number(word.substr(equals + 1), there))
       return usage(word, "is not NUMBER=NUMBER");
     bool are_addresses = here > 0 && there > 0, are_groups = here < -1 && there < -1;
     if (!are_addresses && !are_groups)
@@ -51,9 +33,9 @@ hc::Result<Renumbering> parse_renumbering(std::string_view text) {
 
 hc::Result<std::set<std::int32_t>> parse_addresses(std::string_view text) {
   std::set<std::int32_t> addresses;
-  for (auto word : words_of(text)) {
+  for (auto word : hc::words_of(text)) {
     std::int32_t number = 0;
-    if (!parse(word, number)) return usage(word, "is not an address");
+    if (!hc::read_number(word, number)) return usage(word, "is not an address");
     if (!addresses.insert(number).second) return usage(word, "was there before");
   }
   return addresses;

@@ -8,9 +8,8 @@ hc::Status Targets::calibrate(const hc::vision::StereoCalibration& cameras) {
   eyes_.set_baseline(cameras.baseline());
   eyes_.set_offset(cameras.R_left_right());
   if (cameras.head.empty()) return {};
-  auto of_head = hc::gaze::HeadCalibration::of(cameras.head);
-  if (!of_head) return of_head.error();
-  calibrate(*of_head);
+  auto of_head = HC_TRY(hc::gaze::HeadCalibration::of(cameras.head));
+  calibrate(of_head);
   return {};
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "names.h"
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
-#include <algorithm>
+#include <hc/base/text.h>
+#include <hc/base/words.h>
 
 namespace {
 
@@ -18,12 +19,6 @@ std::optional<MarkerKind> kind_of(std::string_view word) {
   return std::nullopt;
 }
 
-template <typename T>
-bool read_whole(std::string_view text, T& number) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() && std::isfinite(double(number));
-}
-
 int hue_distance(int a, int b) {
   const int d = std::abs(a - b) % 360;
   return std::min(d, 360 - d);
@@ -34,31 +29,27 @@ int hue_distance(int a, int b) {
 hc::Result<std::vector<NamedMarker>> read_names(const std::string& text, double least, double most,
                                                 bool whole) {
   std::vector<NamedMarker> names;
-  constexpr std::string_view kBetween = " ,\t\n";
-  for (std::size_t at = text.find_first_not_of(kBetween); at != std::string::npos;) {
-    const std::size_t end = std::min(text.find_first_of(kBetween, at), text.size());
-    const std::string word = text.substr(at, end - at);
+  for (const auto word : hc::words_of(text, " ,\t\n")) {
     const std::size_t colon = word.find(':'), equals = word.find('=');
     auto wrong = [&](const char* why) {
-      return hc::Error{hc::Code::Invalid, "\"" + word + "\" " + why};
+      return hc::Error{hc::Code::Invalid, "\"" + std::string(word) + "\" " + why};
     };
-    if (colon == std::string::npos || equals == std::string::npos || equals < colon)
+    if (colon == word.npos || equals == word.npos || equals < colon)
       return wrong("is not as in aruco:23=VALUE");
     NamedMarker name;
-    const auto kind = kind_of(std::string_view(word).substr(0, colon));
+    const auto kind = kind_of(word.substr(0, colon));
     if (!kind) return wrong("is none of aruco, apriltag and colour");
     name.kind = *kind;
-    const auto id = std::string_view(word).substr(colon + 1, equals - colon - 1);
+    const auto id = word.substr(colon + 1, equals - colon - 1);
     const int most_id = *kind == MarkerKind::Colour ? 359 : 100000;
-    if (!read_whole(id, name.id) || name.id < 0 || name.id > most_id)
+    if (!hc::read_number(id, name.id) || name.id < 0 || name.id > most_id)
       return wrong(*kind == MarkerKind::Colour ? "has no hue from 0 to 359" : "has no number");
-    if (!read_whole(std::string_view(word).substr(equals + 1), name.value) || name.value < least ||
-        name.value > most || (whole && name.value != std::floor(name.value)))
+    if (!hc::read_number(word.substr(equals + 1), name.value) || !(name.value >= least) ||
+        !(name.value <= most) || (whole && name.value != std::floor(name.value)))
       return wrong("has a value that is not taken");
     for (const auto& other : names)
       if (other.kind == name.kind && other.id == name.id) return wrong("is there twice");
     names.push_back(name);
-    at = text.find_first_not_of(kBetween, end);
   }
   return names;
 }

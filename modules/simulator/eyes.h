@@ -3,13 +3,14 @@
 // The eyes: draw what they see, as cameras would take it, and give it when a camera would.
 
 #include <cstdint>
+#include <deque>
+#include <utility>
 #include <vector>
 
 #include <graphics/renderer.h>
 #include <hc/module/module.h>
 
 #include <room/sensor.h>
-#include "late.h"
 #include "parameters.h"
 
 /// What a pair of images is taken of.
@@ -55,5 +56,5 @@ class Eyes {
   const hc::room::Head head_;
   const hc::graphics::PinholeCamera camera_;
   Eye left_, right_;
-  Late<Image> late_;
+  std::deque<std::pair<std::int64_t, Image>> late_;  // when each is to be sent [ns]
 };

@@ -9,16 +9,15 @@
 
 namespace {
 
-constexpr std::int32_t kWorld = 1, kDepth = 11;
-constexpr std::int32_t kWorldFromHead = 1003, kWorldFromLeftEye = 1004, kWorldFromRightEye = 1005;
+using hc::Coord;
+
+hc::TransformationKind<double> in_world(std::int32_t frame) {
+  return hc::transformation<double>(4, 4).in(hc::transform_coord(Coord::kWorld, frame));
+}
 
 template <typename Output>
 void send_pose(Output& output, std::int64_t time, const Eigen::Isometry3d& pose) {
-  if (!output.linked()) return;
-  auto draft = output.loan(4, 4);
-  draft.header.time = time;
-  hc::as_eigen<double>(draft) = pose.matrix();
-  output.send(std::move(draft));
+  if (output.linked()) output.send(hc::transformation(pose).at(time));
 }
 
 }  // namespace
@@ -42,16 +41,14 @@ std::array<double, 10> row_of(const hc::room::RoomMarker& marker) {
 }
 
 Truth::Truth(hc::Module& module)
-    : depth(module.output("depth", hc::intensity_image<float>().in(kDepth),
+    : depth(module.output("depth", hc::intensity_image<float>().in(Coord::kDepth),
                           "truth: depth of the left image [m], 0 where nothing is")),
-      head_pose_(module.output("head_pose", hc::transformation<double>(4, 4).in(kWorldFromHead),
+      head_pose_(module.output("head_pose", in_world(Coord::kHead),
                                "truth: T_world_head as the images were taken")),
-      left_pose_(module.output("left_pose", hc::transformation<double>(4, 4).in(kWorldFromLeftEye),
-                               "truth: T_world_left_eye")),
-      right_pose_(module.output("right_pose",
-                                hc::transformation<double>(4, 4).in(kWorldFromRightEye),
-                                "truth: T_world_right_eye")),
-      ball_(module.output("ball", hc::position<double>(6).in(kWorld),
+      left_pose_(module.output("left_pose", in_world(Coord::kLeftEye), "truth: T_world_left_eye")),
+      right_pose_(
+          module.output("right_pose", in_world(Coord::kRightEye), "truth: T_world_right_eye")),
+      ball_(module.output("ball", hc::position<double>(6).in(Coord::kWorld),
                           "truth: the ball's middle [m] and velocity [m/s]")),
       ball_seen_(module.output("ball_seen", hc::table<double>().of(4, 1),
                                "truth: u, v, radius of the ball in the left image [px], "
@@ -78,15 +75,11 @@ void Truth::send_ball(std::int64_t time, const hc::room::Ball::State& ball, bool
     ball_.send(std::move(draft));
   }
   const auto [u, v, radius, share] = seen(ball.position, T_world_left, camera);
-  auto row = hc::table({u, v, radius, is_there ? share : 0});
-  row.header.time = time;
-  ball_seen_.send(row);
+  ball_seen_.send(hc::table({u, v, radius, is_there ? share : 0}).at(time));
 }
 
 void Truth::send_board(std::int64_t time, const std::string& text) {
-  auto message = hc::string(text);
-  message.header.time = time;
-  board_.send(message);
+  board_.send(hc::string(text).at(time));
 }
 
 void Truth::send_markers(std::int64_t time, const std::vector<hc::room::RoomMarker>& markers) {

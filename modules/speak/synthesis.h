@@ -18,8 +18,7 @@ struct Voice {
 };
 
 /// A word, and when it is spoken [s since the beginning of the sound]. Of words that eSpeak NG
-/// joins
-/// ("on the"), each gets a share of their time by its letters.
+/// joins ("on the"), each gets a share of their time by its letters.
 struct SpokenWord {
   double start = 0, end = 0;
   std::u32string word;

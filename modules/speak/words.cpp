@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include <hc/base/json_string.h>
+
 namespace {
 
 constexpr std::size_t kLongestWord = 60;
@@ -12,21 +14,10 @@ constexpr std::size_t kLongestWord = 60;
 /// The character at the beginning of a text, with its length; nothing of what is not UTF-8.
 std::optional<std::pair<char32_t, std::size_t>> first_of(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned lead = byte(0);
-  const std::size_t size = lead < 0x80   ? 1
-                           : lead < 0xC2 ? 0
-                           : lead < 0xE0 ? 2
-                           : lead < 0xF0 ? 3
-                                         : 4;
-  if (size == 0 || lead > 0xF4 || text.size() < size) return std::nullopt;
-  char32_t character = size == 1 ? lead : lead & (0x7FU >> size);
-  for (std::size_t i = 1; i < size; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80) return std::nullopt;
-    character = character << 6 | (byte(i) & 0x3FU);
-  }
-  constexpr char32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
-  const bool is_surrogate = character >= 0xD800 && character < 0xE000;
-  if (character < kLeast[size] || character > 0x10FFFF || is_surrogate) return std::nullopt;
+  const std::size_t size = hc::utf8_length(text);
+  if (size == 0) return std::nullopt;
+  char32_t character = size == 1 ? byte(0) : byte(0) & (0x7FU >> size);
+  for (std::size_t i = 1; i < size; ++i) character = character << 6 | (byte(i) & 0x3FU);
   return std::pair{character, size};
 }
 

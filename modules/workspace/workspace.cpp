@@ -40,7 +40,7 @@ hc::Status Workspace::check(const Bidder& who, double salience) {
 
 hc::Status Workspace::take(const Bidder& who, double salience, hc::MonotonicTime made,
                            hc::MonotonicTime now, Bids& bids, std::chrono::nanoseconds expiry) {
-  if (auto checked = check(who, salience); !checked) return checked;
+  HC_TRY(check(who, salience));
   if (now - made >= expiry || made - now > kAhead) {
     ++refused_.time;
     return hc::Error{hc::Code::Malformed, "mode " + std::to_string(who.mode) +
