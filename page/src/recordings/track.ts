@@ -3,7 +3,7 @@
 import { Reader, readMessage, type Message } from "../mtp";
 
 /** Numbers that are added one by one. */
-export class Column {
+class Column {
   private numbers = new Float64Array(256);
   length = 0;
 
