@@ -48,7 +48,7 @@ INTERNAL = {
     "drivers": 4,
     "frames": 2,
     "hosts": 34,
-    "record": 14,
+    "record": 11,
     "modules": 7,
     "python": 6,
     "ros": 6,

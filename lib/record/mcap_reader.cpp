@@ -14,28 +14,23 @@ namespace hc::record {
 namespace {
 
 using mcap::ChannelRecord;
+using mcap::SchemaRecord;
 using mcap::StoredMessage;
 using mcap::Summary;
 
-bool is_matrix(const Summary& summary, const ChannelRecord& channel) {
+bool is_matrix(const ChannelRecord& channel, const SchemaRecord* schema) {
+  return channel.encoding == "cdr" && schema != nullptr &&
+         schema->name == ros::schema(ros::Type::Matrix).name;
+}
+
+const SchemaRecord* schema_of(const Summary& summary, const ChannelRecord& channel) {
   const auto schema = summary.schemas.find(channel.schema);
-  return channel.encoding == "cdr" && schema != summary.schemas.end() &&
-         schema->second.name == ros::schema(ros::Type::Matrix).name;
+  return schema != summary.schemas.end() ? &schema->second : nullptr;
 }
 
 std::string stream_name(const ChannelRecord& channel) {
-  const auto name = channel.metadata.find(mcap::kStreamKey);
+  const auto name = channel.metadata.find(kStreamKey);
   return name != channel.metadata.end() ? name->second : channel.topic;
-}
-
-/// The channels that are beside one of MTP, by the topic of that; none is of MTP itself.
-std::multimap<std::string_view, std::uint16_t> channels_beside(const Summary& summary) {
-  std::multimap<std::string_view, std::uint16_t> channels;
-  for (const auto& [id, channel] : summary.channels)
-    if (const auto beside = channel.metadata.find(mcap::kBesideKey);
-        beside != channel.metadata.end() && !is_matrix(summary, channel))
-      channels.emplace(beside->second, id);
-  return channels;
 }
 
 std::int64_t signed_time(std::uint64_t time) {
@@ -45,47 +40,32 @@ std::int64_t signed_time(std::uint64_t time) {
 
 class McapReader final : public Reader {
  public:
-  McapReader(mcap::Reader reader, Summary summary, const Limits& limits)
-      : reader_(std::move(reader)), summary_(std::move(summary)), limits_(limits) {}
+  McapReader(mcap::Reader reader, const Limits& limits)
+      : reader_(std::move(reader)), limits_(limits) {}
 
   Result<Got> take(Message& message) override {
     message = {};
     while (true) {
-      auto stored = take_stored();
+      auto stored = reader_.next();
       if (!stored) return stored.error();
       if (!*stored) return Got::End;
       const auto& channel = *(*stored)->channel;
-      if (!(*stored)->is_mtp) {
-        const auto beside = channel.metadata.find(mcap::kBesideKey);
-        if (beside != channel.metadata.end()) keep(beside->second, std::move((*stored)->message));
+      if (!is_mtp(**stored)) {
+        const auto beside = channel.metadata.find(kBesideKey);
+        if (beside != channel.metadata.end()) keep(beside->second, std::move(**stored));
         continue;
       }
-      auto made = rebuild((*stored)->message, channel.topic);
+      auto made = rebuild(**stored);
       if (!made) return made.error();
       message = std::move(*made);
       stream_ = stream_name(channel);
-      log_time_ = signed_time((*stored)->message.record.log_time);
+      log_time_ = signed_time((*stored)->record.log_time);
       ++traffic_.messages;
       return Got::Message;
     }
   }
 
-  [[nodiscard]] bool has_more() const override { return true; }
-  Result<std::optional<Stored>> take_stored() override {
-    auto next = reader_.next();
-    if (!next) return next.error();
-    if (!*next) return std::optional<Stored>();
-    const auto channel = reader_.found.channels.find((*next)->record.channel);
-    if (channel == reader_.found.channels.end())
-      return Error{Code::Malformed, "MCAP: a message of channel " +
-                                        std::to_string((*next)->record.channel) +
-                                        ", which is not declared"};
-    const auto schema = reader_.found.schemas.find(channel->second.schema);
-    return std::optional(Stored{&reader_, &channel->second,
-                                schema != reader_.found.schemas.end() ? &schema->second : nullptr,
-                                std::move(**next), is_matrix(reader_.found, channel->second)});
-  }
-
+  Result<std::optional<StoredMessage>> take_raw() override { return reader_.next(); }
   Result<std::optional<std::int64_t>> next_time() override {
     auto time = reader_.next_time();
     if (!time) return time.error();
@@ -104,7 +84,7 @@ class McapReader final : public Reader {
     return traffic;
   }
   Status resume() override { return {}; }
-  Result<std::vector<StreamInfo>> streams(bool) override { return streams_of(summary_); }
+  Result<std::vector<StreamInfo>> streams(bool) override { return streams_of(reader_.summary()); }
   Result<std::map<std::string, mcap::Words>> metadata() override { return reader_.metadata(); }
 
  private:
@@ -115,7 +95,8 @@ class McapReader final : public Reader {
   }
 
   /// The message of MTP out of the two that stand for it.
-  Result<Message> rebuild(const StoredMessage& stored, const std::string& topic) {
+  Result<Message> rebuild(const StoredMessage& stored) {
+    const auto& topic = stored.channel->topic;
     auto wrong = [&](const std::string& what) {
       return Error{Code::Malformed, "MCAP: " + topic + ": " + what};
     };
@@ -150,7 +131,6 @@ class McapReader final : public Reader {
   }
 
   mcap::Reader reader_;
-  const Summary summary_;
   const Limits limits_;
   Traffic traffic_;
   std::string stream_;  // of the last message
@@ -160,23 +140,29 @@ class McapReader final : public Reader {
 
 }  // namespace
 
+bool is_mtp(const StoredMessage& message) {
+  return is_matrix(*message.channel, message.schema);
+}
+
 std::vector<StreamInfo> streams_of(const Summary& summary) {
   std::vector<StreamInfo> all;
-  auto besides = channels_beside(summary);
+  std::map<std::string_view, std::size_t> by_topic;
   for (const auto& [id, channel] : summary.channels) {
-    if (!is_matrix(summary, channel)) continue;
-    StreamInfo stream{stream_name(channel), "", {channel.topic}, 0, 0, 0};
-    if (const auto count = summary.counts.find(id); count != summary.counts.end())
-      stream.messages = count->second;
-    const auto [begin, end] = besides.equal_range(channel.topic);
-    for (auto beside = begin; beside != end; ++beside) {
-      const auto& other = summary.channels.at(beside->second);
-      const auto schema = summary.schemas.find(other.schema);
-      stream.topics.push_back(other.topic);
-      if (stream.type.empty() && schema != summary.schemas.end()) stream.type = schema->second.name;
-    }
-    besides.erase(begin, end);  // others of this topic would only repeat them
-    all.push_back(std::move(stream));
+    if (!is_matrix(channel, schema_of(summary, channel))) continue;
+    by_topic.emplace(channel.topic, all.size());  // others of this topic would only repeat it
+    const auto count = summary.counts.find(id);
+    all.push_back(
+        {stream_name(channel), "", count != summary.counts.end() ? count->second : 0, 0, 0, {id}});
+  }
+  for (const auto& [id, channel] : summary.channels) {
+    const auto* schema = schema_of(summary, channel);
+    const auto beside = channel.metadata.find(kBesideKey);
+    if (beside == channel.metadata.end() || is_matrix(channel, schema)) continue;
+    const auto stream = by_topic.find(beside->second);
+    if (stream == by_topic.end()) continue;
+    auto& info = all[stream->second];
+    info.channels.push_back(id);
+    if (info.type.empty() && schema != nullptr) info.type = schema->name;
   }
   std::ranges::sort(all, {}, &StreamInfo::name);
   return all;
@@ -192,13 +178,12 @@ Result<std::unique_ptr<Reader>> read_mcap(const Place& place, const LinkOptions&
   limits.chunk_bytes = options.limits.element_bytes + (std::uint64_t{64} << 20);
   auto reader = mcap::Reader::open(place.path, limits);
   if (!reader) return reader.error();
-  auto summary = reader->summary();
-  if (!summary) return summary.error();
+  const auto& summary = reader->summary();
   // Of a file without its end, channels that only chunks declare may not be known yet.
-  const auto known = streams_of(*summary);
-  if (!all && known.empty() && !summary->channels.empty() && summary->is_whole)
+  const auto known = streams_of(summary);
+  if (!all && known.empty() && !summary.channels.empty() && summary.is_whole)
     return Error{Code::Unsupported, place.path + ": a recording of " +
-                                        std::to_string(summary->channels.size()) +
+                                        std::to_string(summary.channels.size()) +
                                         " topics, none of them made here"};
   const auto& wanted = place.stream;
   if (!wanted.empty() && std::ranges::find(known, wanted, &StreamInfo::name) == known.end()) {
@@ -207,24 +192,14 @@ Result<std::unique_ptr<Reader>> read_mcap(const Place& place, const LinkOptions&
     return Error{Code::NotFound,
                  place.path + ": no stream \"" + wanted + "\"" + suggestion(wanted, names)};
   }
-  if (!wanted.empty() || (!all && summary->is_whole)) {
+  if (!wanted.empty() || (!all && summary.is_whole)) {
     std::set<std::uint16_t> channels;
-    auto besides = channels_beside(*summary);
-    for (const auto& [id, channel] : summary->channels) {
-      if (!is_matrix(*summary, channel)) continue;
-      if (!wanted.empty() && stream_name(channel) != wanted) continue;
-      channels.insert(id);
-      const auto [begin, end] = besides.equal_range(channel.topic);
-      for (auto beside = begin; beside != end; ++beside) channels.insert(beside->second);
-      besides.erase(begin, end);
-    }
+    for (const auto& each : known)
+      if (wanted.empty() || each.name == wanted)
+        channels.insert(each.channels.begin(), each.channels.end());
     reader->select(std::move(channels));
   }
-  // What the summary says of schemas and channels holds wherever they are first declared.
-  reader->found.schemas = summary->schemas;
-  reader->found.channels = summary->channels;
-  return std::unique_ptr<Reader>(
-      new McapReader(std::move(*reader), std::move(*summary), options.limits));
+  return std::unique_ptr<Reader>(new McapReader(std::move(*reader), options.limits));
 }
 
 }  // namespace hc::record

@@ -11,17 +11,20 @@ namespace {
 
 using mcap::Words;
 
-/// Channels have numbers of 16 bits. A message takes up to three new ones: of its stream's two
-/// topics, and /tf; /tf_static and /rosout are two more.
+/// Channels have 16-bit numbers. A message may need three new ones, for the two topics of its
+/// stream and /tf; two are for /tf_static and /rosout.
 constexpr std::uint16_t kMostChannels = 65535 - 5;
 constexpr std::string_view kStaticFrames = "/tf_static", kFrames = "/tf", kLog = "/rosout";
-/// How streams end that are of a module's output `trace`.
+/// The end of the names of streams of traces.
 constexpr std::string_view kTrace = ".trace";
-/// The frame in which Rerun shows things, unless somebody chooses another one.
+/// Age at which a chunk is written. Source: doc/recordings.md
+constexpr std::chrono::milliseconds kChunkTime{500};
+/// Size of chunks that may wait to be written. [byte]
+constexpr std::size_t kBacklog = std::size_t{256} << 20;
+/// The frame in which Rerun shows everything by default.
 constexpr std::string_view kRerunOrigin = "tf#/";
 
-/// What rosbag2 wants to know of a topic: reliable, and volatile (2) or kept for who comes late
-/// (1).
+/// A topic's quality of service for rosbag2: reliable, and transient local (1) or volatile (2).
 std::string quality_of_service(bool is_kept) {
   const std::string forever = "    sec: 9223372036\n    nsec: 854775807\n";
   return "- history: 1\n  depth: 10\n  reliability: 1\n  durability: " +
@@ -30,7 +33,7 @@ std::string quality_of_service(bool is_kept) {
          "  avoid_ros_namespace_conventions: false\n";
 }
 
-/// A topic of a name: `/MODULE/PORT`, of letters, digits, _ and / alone.
+/// The topic of a stream: `/MODULE/PORT`, with only letters, digits, _ and /.
 std::string topic_of(std::string_view name) {
   std::string topic = "/";
   for (const char c : name) {
@@ -48,30 +51,37 @@ Error no_room() {
                               " topics, two for each stream; record fewer streams in one file"};
 }
 
-std::array<std::span<const std::byte>, 3> pieces_of(const ros::Pieces& data) {
-  return {data.head, data.body, data.tail};
+std::vector<std::byte> joined(const ros::Pieces& data) {
+  std::vector<std::byte> all;
+  for (const auto piece : {data.head, data.body, data.tail})
+    all.insert(all.end(), piece.begin(), piece.end());
+  return all;
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Format>> McapWriter::make(const FormatOptions& options) {
+std::string take_name(std::set<std::string>& taken, const std::string& wanted) {
+  std::string name = wanted;
+  for (int i = 2; !taken.insert(name).second; ++i) name = wanted + "_" + std::to_string(i);
+  return name;
+}
+
+Result<std::unique_ptr<McapWriter>> McapWriter::make(const std::string& file,
+                                                     const WriterOptions& options) {
   auto joints = ros::GraphJoints::read(options.frames);
   if (!joints) return joints.error();
-  auto storage = mcap::Storage::make(options);
+  auto storage = mcap::Storage::make(file, options);
   if (!storage) return storage.error();
-  return std::unique_ptr<Format>(new McapWriter(options, std::move(*storage), std::move(*joints)));
+  return std::unique_ptr<McapWriter>(
+      new McapWriter(std::move(*storage), std::move(*joints), options.chunk_bytes));
 }
 
-Result<std::unique_ptr<Format>> open_mcap(const FormatOptions& options) {
-  return McapWriter::make(options);
-}
-
-McapWriter::McapWriter(FormatOptions options, mcap::Storage storage, ros::GraphJoints joints)
-    : options_(std::move(options)),
+McapWriter::McapWriter(mcap::Storage storage, ros::GraphJoints joints, std::size_t chunk_bytes)
+    : chunk_bytes_(chunk_bytes),
       joints_(std::move(joints)),
       topics_{std::string(kFrames), std::string(kStaticFrames), std::string(kLog)},
-      storage_(std::move(storage)) {
-  options_.file = storage_.file();
+      storage_(std::move(storage)),
+      file_(storage_.file()) {
   encoder_.frames = joints_.names;
   thread_ = std::thread([this] { work(); });
 }
@@ -80,7 +90,7 @@ McapWriter::~McapWriter() {
   static_cast<void>(close());
 }
 
-Status McapWriter::add_stream(const std::string& name) {
+void McapWriter::add_stream(const std::string& name) {
   Stream stream;
   stream.name = take_name(names_, name);
   stream.topic = take_name(topics_, topic_of(name));
@@ -88,7 +98,6 @@ Status McapWriter::add_stream(const std::string& name) {
   stream.moves_frames = joints_.are_moved_by(name);
   stream.is_shown = !name.ends_with(kTrace);
   streams_.push_back(std::move(stream));
-  return {};
 }
 
 std::uint16_t McapWriter::add_channel(mcap::ChannelRecord channel, mcap::SchemaRecord schema) {
@@ -96,16 +105,16 @@ std::uint16_t McapWriter::add_channel(mcap::ChannelRecord channel, mcap::SchemaR
     auto& number = schemas_[schema.name + '\0' + schema.encoding + '\0' + schema.text];
     if (number == 0) {
       number = schema.id = static_cast<std::uint16_t>(schemas_.size());
-      next_.schemas.push_back(std::move(schema));
+      static_cast<void>(repeat(std::move(schema)));
     }
     channel.schema = number;
   }
   channel.id = ++last_channel_;
-  next_.channels.push_back(std::move(channel));
+  static_cast<void>(repeat(std::move(channel)));
   return last_channel_;
 }
 
-std::uint16_t McapWriter::channel(const std::string& topic, ros::Type type, Words metadata) {
+std::uint16_t McapWriter::add_channel(const std::string& topic, ros::Type type, Words metadata) {
   const auto& schema = ros::schema(type);
   metadata["offered_qos_profiles"] = quality_of_service(topic == kStaticFrames);
   return add_channel({0, 0, topic, "cdr", std::move(metadata)},
@@ -115,41 +124,36 @@ std::uint16_t McapWriter::channel(const std::string& topic, ros::Type type, Word
 std::uint16_t McapWriter::channel(Stream& stream, ros::Type type) {
   auto& number = stream.channels[type];
   if (number != 0) return number;
-  if (stream.matrix == 0)
-    stream.matrix =
-        channel(stream.matrix_topic, ros::Type::Matrix, {{mcap::kStreamKey, stream.name}});
-  // A topic has one type. What comes beside the first is rare: an image that is compressed.
-  if (type == ros::Type::Matrix) return number = stream.matrix;
+  if (type == ros::Type::Matrix)
+    return number = add_channel(stream.matrix_topic, type, {{kStreamKey, stream.name}});
+  // A topic has one type; another one, such as compressed images, gets a topic below it.
   std::string topic = stream.topic;
   if (std::exchange(stream.has_topic, true))
     topic = take_name(topics_, topic + (type == ros::Type::CompressedImage
                                             ? "/compressed"
                                             : "/as_" + std::to_string(static_cast<int>(type))));
-  return number = channel(topic, type, {{mcap::kBesideKey, stream.matrix_topic}});
+  return number = add_channel(topic, type, {{kBesideKey, stream.matrix_topic}});
 }
 
-void McapWriter::add(std::uint16_t channel, std::uint32_t sequence, std::int64_t log_time,
-                     std::int64_t publish_time, std::span<const std::span<const std::byte>> data) {
-  if (chunk_.empty()) chunk_begun_ = std::chrono::steady_clock::now();
-  chunk_.add({channel, sequence, static_cast<std::uint64_t>(log_time),
-              static_cast<std::uint64_t>(publish_time)},
-             data);
+std::uint16_t McapWriter::other_channel(std::string_view topic, ros::Type type) {
+  auto& number = other_channels_[{std::string(topic), ros::schema(type).name}];
+  if (number == 0) number = add_channel(std::string(topic), type, {});
+  return number;
 }
 
-std::uint16_t McapWriter::channel(const Stored& stored) {
-  auto& number = copied_[{stored.file, stored.channel->id}];
+std::uint16_t McapWriter::copied_channel(const mcap::StoredMessage& message, const void* from) {
+  auto& number = copied_[message.channel];
   if (number != 0) return number;
-  if (last_channel_ >= kMostChannels) return 0;
-  auto copy = *stored.channel;
-  const auto schema = stored.schema != nullptr ? *stored.schema : mcap::SchemaRecord();
-  const auto stream = copy.metadata.find(mcap::kStreamKey);
-  const auto beside = copy.metadata.find(mcap::kBesideKey);
+  auto copy = *message.channel;
+  const auto schema = message.schema != nullptr ? *message.schema : mcap::SchemaRecord();
+  const auto stream = copy.metadata.find(kStreamKey);
+  const auto beside = copy.metadata.find(kBesideKey);
   auto topic_here = [&](const std::string& topic) {
-    auto& here = copied_topics_[{stored.file, topic}];
+    auto& here = copied_topics_[{from, topic}];
     if (here.empty()) here = take_name(topics_, topic);
     return here;
   };
-  // Topics of streams are theirs alone. All others that have the same name and type are one.
+  // Topics of streams stay separate; others of the same name and type become one.
   if (stream == copy.metadata.end() && beside == copy.metadata.end()) {
     auto& other = other_channels_[{copy.topic, schema.name}];
     if (other == 0) {
@@ -166,24 +170,28 @@ std::uint16_t McapWriter::channel(const Stored& stored) {
   return number = add_channel(std::move(copy), schema);
 }
 
-Status McapWriter::write(const Stored& stored) {
-  const auto number = channel(stored);
-  if (number == 0) return no_room();
-  const auto& message = stored.message.record;
-  const std::span<const std::byte> pieces[] = {stored.message.data};
-  if (stored.channel->topic == kStaticFrames) {
-    next_.lasting.push_back({number,
-                             message.sequence,
-                             message.log_time,
-                             {stored.message.data.begin(), stored.message.data.end()}});
-    return {};
-  }
-  add(number, message.sequence, static_cast<std::int64_t>(message.log_time),
-      static_cast<std::int64_t>(message.publish_time), pieces);
-  if (stored.is_mtp) ++chunk_.messages;
-  // What stands beside a message of MTP is in the same chunk.
-  if (stored.channel->metadata.contains(mcap::kBesideKey)) return {};
-  return hand_on_if_due();
+void McapWriter::add(std::uint16_t channel, std::uint32_t sequence, std::int64_t log_time,
+                     std::int64_t publish_time, const ros::Pieces& data) {
+  if (chunk_.empty()) chunk_begun_ = std::chrono::steady_clock::now();
+  const std::array pieces = {data.head, data.body, data.tail};
+  chunk_.add({channel, sequence, static_cast<std::uint64_t>(log_time),
+              static_cast<std::uint64_t>(publish_time)},
+             pieces);
+}
+
+Status McapWriter::copy(const mcap::StoredMessage& message, const void* from) {
+  if (!copied_.contains(message.channel) && last_channel_ >= kMostChannels) return no_room();
+  const auto& record = message.record;
+  const auto channel = copied_channel(message, from);
+  if (message.channel->topic == kStaticFrames)
+    return repeat(mcap::Lasting{
+        channel, record.sequence, record.log_time, {message.data.begin(), message.data.end()}});
+  add(channel, record.sequence, static_cast<std::int64_t>(record.log_time),
+      static_cast<std::int64_t>(record.publish_time), {{}, message.data, {}});
+  if (is_mtp(message)) ++chunk_.messages;
+  // A message of MTP is in the same chunk as the one beside it, which comes first.
+  if (message.channel->metadata.contains(kBesideKey)) return {};
+  return flush_if_due();
 }
 
 Status McapWriter::write(std::size_t number, const Message& message, std::int64_t time) {
@@ -194,29 +202,30 @@ Status McapWriter::write(std::size_t number, const Message& message, std::int64_
   const std::int64_t published = header.time != 0 ? header.time : time;
   const bool is_picture =
       header.info.type == MatrixType::RgbImage || header.info.type == MatrixType::IntensityImage;
-  // Until a rectified image has come, they are as large as another one.
+  // The size for CameraInfo: of rectified images, until one comes that of any image.
   if (is_picture && (header.coord == Coord::kLeftRectified || encoder_.camera_width == 0)) {
     encoder_.camera_width = static_cast<std::uint32_t>(header.width);
     encoder_.camera_height = static_cast<std::uint32_t>(header.height);
   }
-  // The type is that of the first message, but for images, which are compressed or not.
+  // The type is that of the first message, except that images may also be compressed.
   auto type = stream.is_shown ? ros::type_for(header) : std::nullopt;
   if (type && type != ros::Type::CompressedImage) {
     if (!stream.type) stream.type = type;
     type = stream.type;
   }
-  const bool has_channels = stream.matrix != 0 && (!type || stream.channels.contains(*type));
+  const bool has_channels =
+      stream.channels.contains(ros::Type::Matrix) && (!type || stream.channels.contains(*type));
   if (!has_channels && last_channel_ >= kMostChannels) return no_room();
   std::uint32_t offset = 0;
   if (type) {
     if (auto data = encoder_.encode(*type, message)) {
-      add(channel(stream, *type), sequence, time, published, pieces_of(*data));
+      add(channel(stream, *type), sequence, time, published, *data);
       if (!data->body.empty() && data->body.data() == message.elements.data())
         offset = static_cast<std::uint32_t>(data->head.size());
     }
   }
   add(channel(stream, ros::Type::Matrix), sequence, time, published,
-      pieces_of(matrix_encoder_.encode_matrix(message, offset)));
+      matrix_encoder_.encode_matrix(message, offset));
   ++chunk_.messages;
   if (stream.moves_frames) {
     if (auto joint = joints_.joint_of(message)) {
@@ -224,88 +233,81 @@ Status McapWriter::write(std::size_t number, const Message& message, std::int64_
       add_other(kFrames, ros::Type::TfMessage, time, encoder_.encode(std::span(&*joint, 1)));
     }
   }
-  return hand_on_if_due();
-}
-
-std::uint16_t McapWriter::other_channel(std::string_view topic, ros::Type type) {
-  auto& number = other_channels_[{std::string(topic), ros::schema(type).name}];
-  if (number == 0) number = channel(std::string(topic), type, {});
-  return number;
+  return flush_if_due();
 }
 
 void McapWriter::add_other(std::string_view topic, ros::Type type, std::int64_t time,
                            const ros::Pieces& data) {
-  add(other_channel(topic, type), ++others_, time, time, pieces_of(data));
+  add(other_channel(topic, type), ++others_, time, time, data);
 }
 
 Status McapWriter::log(std::int64_t time, const LogLine& line) {
   add_other(kLog, ros::Type::Log, time, encoder_.encode_log(time, line));
-  return hand_on_if_due();
+  return flush_if_due();
 }
 
-/// What never moves is in each file, and is said as the first message comes.
+/// Records frames that never move, with the time of the first message.
 void McapWriter::record_fixed_frames(std::int64_t time) {
   auto fixed = std::move(joints_.fixed);
   fixed.push_back({.parent = std::string(kRerunOrigin), .child = joints_.root, .time = time});
   joints_.root.clear();
   for (auto& joint : fixed) joint.time = time;
   const auto number = other_channel(kStaticFrames, ros::Type::TfMessage);
-  mcap::Lasting lasting{number, ++others_, static_cast<std::uint64_t>(time), {}};
-  const auto data = encoder_.encode(fixed);
-  for (const auto piece : pieces_of(data))
-    lasting.data.insert(lasting.data.end(), piece.begin(), piece.end());
-  next_.lasting.push_back(std::move(lasting));
+  static_cast<void>(repeat(mcap::Lasting{number, ++others_, static_cast<std::uint64_t>(time),
+                                         joined(encoder_.encode(fixed))}));
 }
 
 Status McapWriter::metadata(const std::string& name, const Words& words) {
-  Job job;
-  job.metadata.push_back({name, words});
-  return enqueue(std::move(job));
+  return repeat(mcap::MetadataRecord{name, words});
 }
 
-Status McapWriter::hand_on_if_due() {
-  if (chunk_.size() >= options_.chunk_bytes) return hand_on();
-  return poll();
+Status McapWriter::repeat(mcap::Storage::Repeated record) {
+  return enqueue({[this, record = std::move(record)] { return storage_.add(record); }});
+}
+
+Status McapWriter::flush_if_due() {
+  return chunk_.size() >= chunk_bytes_ ? flush() : poll();
 }
 
 Status McapWriter::poll() {
-  if (!chunk_.empty() && std::chrono::steady_clock::now() - chunk_begun_ >= options_.chunk_time)
-    return hand_on();
+  if (!chunk_.empty() && std::chrono::steady_clock::now() - chunk_begun_ >= kChunkTime)
+    return flush();
   const std::lock_guard lock(mutex_);
   return status_;
 }
 
-Status McapWriter::hand_on() {
-  Job job = std::exchange(next_, {});
-  if (!chunk_.empty()) job.chunk = std::exchange(chunk_, {});
-  return enqueue(std::move(job));
+Status McapWriter::flush() {
+  if (chunk_.empty()) return poll();
+  const auto bytes = chunk_.size();
+  const auto messages = chunk_.messages;
+  auto write = [this, chunk = std::exchange(chunk_, {})] { return storage_.add(chunk.pack()); };
+  return enqueue({std::move(write), bytes, messages});
 }
 
 Status McapWriter::enqueue(Job job) {
   std::unique_lock lock(mutex_);
-  const std::size_t size = job.chunk ? job.chunk->size() : 0;
-  changed_.wait(lock, [&] { return waiting_ == 0 || waiting_ + size <= options_.backlog; });
-  waiting_ += size;
+  changed_.wait(lock, [&] { return waiting_ == 0 || waiting_ + job.bytes <= kBacklog; });
+  waiting_ += job.bytes;
   jobs_.push_back(std::move(job));
   changed_.notify_all();
   return status_;
 }
 
 Result<std::string> McapWriter::save() {
-  if (auto handed = hand_on(); !handed) return handed.error();
-  Job job;
-  job.saves = true;
-  if (auto queued = enqueue(std::move(job)); !queued) return queued.error();
+  static_cast<void>(flush());
+  Result<std::string> saved = Error{};
+  static_cast<void>(enqueue({[&] {
+    saved = storage_.save();
+    return Status();
+  }}));
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return saved_.has_value(); });
-  auto saved = std::move(*saved_);
-  saved_.reset();
-  return saved;
+  changed_.wait(lock, [&] { return jobs_.empty(); });
+  return status_ ? std::move(saved) : status_.error();
 }
 
 Status McapWriter::close() {
   if (!std::exchange(is_closed_, true)) {
-    static_cast<void>(hand_on());
+    static_cast<void>(flush());
     {
       const std::lock_guard lock(mutex_);
       is_ending_ = true;
@@ -313,7 +315,7 @@ Status McapWriter::close() {
     }
     thread_.join();
     auto closed = storage_.close();
-    if (status_ && !closed) status_ = closed;
+    if (status_) status_ = closed;
   }
   return status_;
 }
@@ -323,40 +325,18 @@ void McapWriter::work() {
   while (true) {
     changed_.wait(lock, [&] { return is_ending_ || !jobs_.empty(); });
     if (jobs_.empty()) return;
-    Job job = std::move(jobs_.front());
-    jobs_.pop_front();
-    const std::size_t size = job.chunk ? job.chunk->size() : 0;
+    const Job& job = jobs_.front();
     if (status_) {
       lock.unlock();
-      auto done = perform(job);
-      std::optional<Result<std::string>> saved;
-      if (job.saves) saved = storage_.save();
+      auto done = job.work();
       lock.lock();
-      if (saved) saved_ = std::move(saved);
-      if (!done) status_ = done;
-    } else {
-      if (job.chunk) discarded_ += job.chunk->messages;
-      if (job.saves) saved_ = status_.error();
+      status_ = done;
     }
-    waiting_ -= size;
+    if (!status_) lost_ += job.messages;
+    waiting_ -= job.bytes;
+    jobs_.pop_front();
     changed_.notify_all();
   }
-}
-
-Status McapWriter::perform(Job& job) {
-  Status done;
-  for (auto& schema : job.schemas)
-    if (done) done = storage_.add(std::move(schema));
-  for (auto& each : job.channels)
-    if (done) done = storage_.add(std::move(each));
-  for (auto& metadata : job.metadata)
-    if (done) done = storage_.add(std::move(metadata));
-  for (auto& lasting : job.lasting)
-    if (done) done = storage_.add(std::move(lasting));
-  if (!job.chunk) return done;
-  if (done) return storage_.add(*job.chunk);
-  discarded_ += job.chunk->messages;
-  return done;
 }
 
 }  // namespace hc::record

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Streams in a file of MCAP. Each has one topic with messages of ROS 2, as viewers show them, and
-// one below it, `…/mtp`, with what those lack: its messages come out of a recording byte for byte
-// as they went in (doc/recordings.md). Gathers messages; a thread of its own compresses and writes
-// them. Internal to record.
+// Writes streams to MCAP. Each has a topic with messages of ROS 2 for viewers, and a topic `…/mtp`
+// with what those lack, so that its messages can be read back byte for byte (doc/recordings.md).
+// Chunks are compressed and written on a second thread. Internal to record.
 
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -19,84 +20,95 @@
 #include <utility>
 #include <vector>
 
-#include <record/format.h>
-#include <record/mcap/chunk.h>
+#include <record/mcap/storage.h>
 #include <record/reader.h>
+#include <record/writer.h>
 #include <ros/encode.h>
 #include <ros/joints.h>
 
 namespace hc::record {
 
-class McapWriter final : public Format {
+/// Adds a name to `taken`: the wanted one or, where it is there, the first free NAME_2, NAME_3, …
+std::string take_name(std::set<std::string>& taken, const std::string& wanted);
+
+class McapWriter {
  public:
   /// Errors: Invalid, System; as Storage::make() and ros::GraphJoints::read().
-  static Result<std::unique_ptr<Format>> make(const FormatOptions& options);
-  ~McapWriter() override;
+  static Result<std::unique_ptr<McapWriter>> make(const std::string& file,
+                                                  const WriterOptions& options);
+  /// Ends as close() does.
+  ~McapWriter();
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
-  /// The stream "MODULE.PORT" has the topic `/MODULE/PORT`. Traces, "MODULE.trace", have none:
-  /// viewers show a text for each of the graph's modules otherwise.
-  Status add_stream(const std::string& name) override;
-  /// Waits while the backlog is full.
-  Status write(std::size_t stream, const Message& message, std::int64_t log_time) override;
-  [[nodiscard]] bool copies_all() const override { return true; }
-  Status write(const Stored& stored) override;
-  /// As ros::Encoder::encode_log() takes it, on the topic /rosout.
-  Status log(std::int64_t time, const LogLine& line) override;
-  Status metadata(const std::string& name, const mcap::Words& words) override;
-  Status poll() override;
-  [[nodiscard]] bool keeps_last() const override { return options_.last.count() > 0; }
-  Result<std::string> save() override;
-  Status close() override;
+  /// Streams are numbered in the order in which they are added. "MODULE.PORT" gets the topic
+  /// `/MODULE/PORT`, or a free one beside it. Traces, "MODULE.trace", get none for viewers, which
+  /// would show a text for each module of a graph.
+  void add_stream(const std::string& name);
 
-  [[nodiscard]] const std::string& place() const override { return options_.file; }
-  [[nodiscard]] std::vector<std::string> files() const override { return storage_.files(); }
-  [[nodiscard]] std::uint64_t lost() const override { return discarded_ + storage_.lost(); }
+  // Errors of all below: System (the disk), from then on always the same.
+
+  /// Blocks while too much is waiting to be written.
+  /// Errors: TooLarge (the file has no room for another channel; other streams can go on).
+  Status write(std::size_t stream, const Message& message, std::int64_t log_time);
+  /// Copies a message of another file. `from` identifies the file. Errors: as write().
+  Status copy(const mcap::StoredMessage& message, const void* from);
+  /// As ros::Encoder::encode_log() takes it, on the topic /rosout.
+  Status log(std::int64_t time, const LogLine& line);
+  Status metadata(const std::string& name, const mcap::Words& words);
+  /// Writes the chunk that is being collected, if it is old enough.
+  Status poll();
+  /// As Storage::save().
+  Result<std::string> save();
+  Status close();
+
+  /// As Storage has it.
+  [[nodiscard]] const std::string& file() const { return file_; }
+  // After close().
+  [[nodiscard]] std::vector<std::string> files() const { return storage_.files(); }
+  /// Messages of MTP that were accepted and not written.
+  [[nodiscard]] std::uint64_t lost() const { return lost_; }
 
  private:
   struct Stream {
     std::string name, topic, matrix_topic;
     std::optional<ros::Type> type;  // of its first message, fixed from then on
-    std::uint16_t matrix = 0;       // channel; 0: none yet
-    bool has_topic = false;         // taken by a channel
-    bool is_shown = true;           // viewers can see it
+    bool has_topic = false;         // `topic` has a channel
+    bool is_shown = true;           // to viewers
+    bool moves_frames = false;      // its messages are poses of frames
     std::map<ros::Type, std::uint16_t> channels;
-    bool moves_frames = false;  // its messages are poses of these
   };
-  /// What the thread is to do.
+  /// Work for the thread.
   struct Job {
-    std::optional<mcap::ChunkBuilder> chunk;
-    bool saves = false;
-    std::vector<mcap::SchemaRecord> schemas;
-    std::vector<mcap::ChannelRecord> channels;
-    std::vector<mcap::MetadataRecord> metadata;
-    std::vector<mcap::Lasting> lasting;
+    std::function<Status()> work;
+    std::size_t bytes = 0;       // memory that it holds
+    std::uint64_t messages = 0;  // of MTP, lost if it is not done
   };
 
-  McapWriter(FormatOptions options, mcap::Storage storage, ros::GraphJoints joints);
+  McapWriter(mcap::Storage storage, ros::GraphJoints joints, std::size_t chunk_bytes);
   void record_fixed_frames(std::int64_t time);
   std::uint16_t add_channel(mcap::ChannelRecord channel, mcap::SchemaRecord schema);
-  std::uint16_t channel(const std::string& topic, ros::Type type, mcap::Words metadata);
-  /// Of a topic beside all streams, such as the log.
-  std::uint16_t other_channel(std::string_view topic, ros::Type type);
-  /// The channel here for one of another file; 0: there is no room.
-  std::uint16_t channel(const Stored& stored);
+  std::uint16_t add_channel(const std::string& topic, ros::Type type, mcap::Words metadata);
   /// The channel of a stream for messages of a type.
   std::uint16_t channel(Stream& stream, ros::Type type);
+  /// The channel of a topic that belongs to no stream, such as the log.
+  std::uint16_t other_channel(std::string_view topic, ros::Type type);
+  /// The channel here for one of another file.
+  std::uint16_t copied_channel(const mcap::StoredMessage& message, const void* from);
   void add(std::uint16_t channel, std::uint32_t sequence, std::int64_t log_time,
-           std::int64_t publish_time, std::span<const std::span<const std::byte>> data);
-  /// Records a message of none of the streams.
+           std::int64_t publish_time, const ros::Pieces& data);
+  /// Adds a message of no stream.
   void add_other(std::string_view topic, ros::Type type, std::int64_t time,
                  const ros::Pieces& data);
-  /// Hands the chunk on when it is full or old.
-  Status hand_on_if_due();
-  Status hand_on();
+  /// Writes what each file contains.
+  Status repeat(mcap::Storage::Repeated record);
+  /// Passes the chunk to the thread: if it is full or old, or in any case.
+  Status flush_if_due();
+  Status flush();
   Status enqueue(Job job);
   void work();
-  Status perform(Job& job);
 
-  FormatOptions options_;
+  const std::size_t chunk_bytes_;
   ros::Encoder encoder_, matrix_encoder_;
   std::vector<Stream> streams_;
   ros::GraphJoints joints_;
@@ -104,26 +116,27 @@ class McapWriter final : public Format {
   std::set<std::string> names_;   // of streams
   std::uint16_t last_channel_ = 0;
   std::map<std::string, std::uint16_t> schemas_;  // by all that they say
-  std::map<std::pair<std::string, std::string>, std::uint16_t>
-      other_channels_;  // by topic and type
-  Job next_;            // schemas and channels that are to stand before the next chunk
-  /// Of other files: their channels here, and how their topics are called here.
-  std::map<std::pair<const mcap::Reader*, std::uint16_t>, std::uint16_t> copied_;
-  std::map<std::pair<const mcap::Reader*, std::string>, std::string> copied_topics_;
+  // Channels of no stream, by topic and type.
+  std::map<std::pair<std::string, std::string>, std::uint16_t> other_channels_;
+  // Of other files: their channels here, and how their topics are called here.
+  std::map<const mcap::ChannelRecord*, std::uint16_t> copied_;
+  std::map<std::pair<const void*, std::string>, std::string> copied_topics_;
   mcap::ChunkBuilder chunk_;
   std::chrono::steady_clock::time_point chunk_begun_;
   std::uint32_t others_ = 0;  // messages of log and joints
   bool is_closed_ = false;
 
-  mcap::Storage storage_;        // of the thread, until it has ended
-  std::uint64_t discarded_ = 0;  // messages of chunks after a failure; of the thread too
+  // Of the thread, until it has ended.
+  mcap::Storage storage_;
+  const std::string file_;
+  std::uint64_t lost_ = 0;
+
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Job> jobs_;
-  std::size_t waiting_ = 0;  // of chunks in jobs_ [byte]
+  std::deque<Job> jobs_;     // the first one is in progress
+  std::size_t waiting_ = 0;  // memory that they hold [byte]
   bool is_ending_ = false;
   Status status_;
-  std::optional<Result<std::string>> saved_;
   std::thread thread_;
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of messages as recordings: they have no log times but those of their messages.
+// Files of messages as recordings, with log times made from the times of the messages.
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -10,7 +9,7 @@
 namespace hc::record {
 namespace {
 
-/// Times that never go back, out of those of messages.
+/// Makes monotonic log times from times of messages.
 class LogTimes {
  public:
   std::int64_t last = 0;  ///< 0: none is known yet
@@ -35,13 +34,7 @@ class LogTimes {
 class MessageReader final : public Reader {
  public:
   MessageReader(const Place& place, const LinkOptions& options, std::unique_ptr<Source> source)
-      : place_(place), options_(options), source_(std::move(source)) {
-    name_ = !place.stream.empty()             ? place.stream
-            : place.kind == Place::Kind::Link ? "messages"
-            : std::filesystem::path(place.path).extension() == ".mtp"
-                ? std::filesystem::path(place.path).stem().string()
-                : std::filesystem::path(place.path).filename().string();
-  }
+      : place_(place), options_(options), source_(std::move(source)), name_(place.name()) {}
 
   Result<Got> take(Message& message) override {
     message = {};
@@ -57,7 +50,7 @@ class MessageReader final : public Reader {
 
   [[nodiscard]] std::int64_t log_time() const override { return times_.last; }
   [[nodiscard]] std::string_view stream() const override { return name_; }
-  [[nodiscard]] bool is_of_outputs() const override { return !place_.stream.empty(); }
+  [[nodiscard]] bool mixes_sources() const override { return place_.stream.empty(); }
   [[nodiscard]] int descriptor() const override { return source_->descriptor(); }
   [[nodiscard]] int wake_descriptor() const override { return source_->wake_descriptor(); }
   bool prepare_wait() override { return !ahead_ && source_->prepare_wait(); }
@@ -69,7 +62,7 @@ class MessageReader final : public Reader {
   }
 
   Result<std::vector<StreamInfo>> streams(bool counted) override {
-    StreamInfo info{name_, "", {}, 0, 0, 0};
+    StreamInfo info{name_, "", 0, 0, 0, {}};
     if (!counted) return std::vector{std::move(info)};
     auto source = hc::open_source(place_.uri, options_);
     if (!source) return source.error();
@@ -83,9 +76,6 @@ class MessageReader final : public Reader {
     }
     info.end = times.last;
     return std::vector{std::move(info)};
-  }
-  Result<std::map<std::string, mcap::Words>> metadata() override {
-    return std::map<std::string, mcap::Words>();
   }
 
  private:
@@ -119,7 +109,7 @@ class MessageReader final : public Reader {
   const Place place_;
   const LinkOptions options_;
   const std::unique_ptr<Source> source_;
-  std::string name_;
+  const std::string name_;
   LogTimes times_;
   std::int64_t start_ = 0;
   bool has_looked_ = false;

@@ -30,14 +30,21 @@ std::string Place::text() const {
   return stream.empty() || kind == Kind::File ? path : path + "?stream=" + stream;
 }
 
+std::string Place::name() const {
+  if (!stream.empty()) return stream;
+  if (kind == Kind::Link) return uri.scheme == "-" ? "messages" : uri.rest;
+  const auto file = fs::path(path).filename();
+  return file.extension() == ".mtp" || file.extension() == ".mcap" ? file.stem() : file;
+}
+
 Place place_of(std::string_view word) {
   Place place;
-  // What cannot be a URI is a file: "2025-11-25T13:00:00.mcap", "odd?name".
-  auto uri = parse_uri(word);
-  place.uri = uri ? *uri : Uri{"file", std::string(word), {}};
   std::error_code missing;
-  if (uri && uri->scheme == "file" && !uri->options.empty() && fs::exists(word, missing))
-    place.uri = {"file", std::string(word), {}};
+  const auto uri = parse_uri(word);
+  // What cannot be a URI is a file: "2025-11-25T13:00:00.mcap", "odd?name".
+  const bool is_uri =
+      uri && (uri->scheme != "file" || uri->options.empty() || !fs::exists(word, missing));
+  place.uri = is_uri ? *uri : Uri{"file", std::string(word), {}};
   if (place.uri.scheme != "file") {
     place.kind = Place::Kind::Link;
     return place;

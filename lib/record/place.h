@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a word names: a link, or a recording and how it is written. The one rule of all verbs
-// (doc/recordings.md, "Names").
+// What a word on the command line names: a link, or a recording in one of three formats. All verbs
+// share this rule (doc/recordings.md, "Names").
 
 #include <string>
 #include <string_view>
@@ -13,31 +13,31 @@ namespace hc::record {
 struct Place {
   enum class Kind {
     Link,    ///< `uri`
-    File,    ///< messages of MTP, one stream behind the other
-    Folder,  ///< a file STREAM.mtp for each stream
-    Mcap,    ///< one file of MCAP
+    File,    ///< a file of messages of MTP
+    Folder,  ///< with a file STREAM.mtp for each stream
+    Mcap,    ///< an MCAP file
   };
   Kind kind = Kind::File;
-  std::string path;    ///< of all but a link
-  std::string stream;  ///< the only one that is read; empty: all
-  Uri uri;             ///< of a link, and of a file
+  std::string path;    ///< of a recording
+  std::string stream;  ///< to be read alone; empty: all
+  Uri uri;             ///< of a link or file
 
-  /// As a person would write it.
+  /// As it is written on the command line.
   [[nodiscard]] std::string text() const;
+  /// The name for its stream: "MODULE.PORT", or that of the file without folder and ending.
+  [[nodiscard]] std::string name() const;
 };
 
-/// `-` and what begins with the name of a transport, `tcp:`, is a link; all else a path, with any
-/// letters. A path that ends in ".mcap" is a file of MCAP, and a folder one that is there or ends
-/// in
-/// "/". Behind both may stand `?stream=NAME`.
+/// `-` and words that begin with a scheme, `tcp:`, are links; all others are paths, with any
+/// letters. A path is MCAP if it ends in ".mcap", and a folder if it is one or ends in "/"; both
+/// may have `?stream=NAME` appended.
 Place place_of(std::string_view word);
 
-/// A place for a recording of several streams, as place_of(), but that everything other than MCAP
-/// is a folder.
+/// The same for a recording of several streams: what is not MCAP is a folder.
 Place place_of_streams(std::string_view word);
 
-/// The first free place for a recording of a graph: this one, or PATH_2 beside it, and so on.
-/// @param is_numbered  its files have numbers, so it is free in any case.
+/// This place, or the first of PATH_2, PATH_3, … without a recording.
+/// @param is_numbered  it names numbered files, and so is always free.
 Place free_place(Place place, bool is_numbered = false);
 
 /// FOLDER/STREAM.mtp

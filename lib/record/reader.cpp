@@ -16,13 +16,13 @@ namespace fs = std::filesystem;
 /// Several recordings as one.
 class MergedReader final : public Reader {
  public:
-  MergedReader(std::vector<std::unique_ptr<Reader>> readers, std::vector<std::string> places)
-      : readers_(std::move(readers)), last_(readers_.front().get()) {
-    for (std::size_t i = 0; i < readers_.size(); ++i) {
-      open_.push_back(readers_[i].get());
-      places_[open_[i]] = std::move(places[i]);
-    }
-  }
+  struct File {
+    std::unique_ptr<Reader> reader;
+    std::string place;
+    bool has_ended = false;
+  };
+
+  explicit MergedReader(std::vector<File> files) : files_(std::move(files)) {}
 
   Result<Got> take(Message& message) override {
     message = {};
@@ -30,56 +30,54 @@ class MergedReader final : public Reader {
       auto next = next_time();
       if (!next) return next.error();
       if (!*next) return Got::End;
-      auto got = last_->take(message);
+      auto got = last_->reader->take(message);
       if (got && *got == Got::End) continue;  // of MCAP, it had other messages
-      if (!got) return named(*last_, got.error());
-      if (last_->log_time() != 0) time_ = last_->log_time();
+      if (!got) return named(got.error());
+      if (last_->reader->log_time() != 0) time_ = last_->reader->log_time();
       return got;
     }
   }
 
   Result<std::optional<std::int64_t>> next_time() override {
     std::optional<std::int64_t> least, least_known;
-    for (std::size_t i = 0; i < open_.size();) {
-      auto next = open_[i]->next_time();
-      if (!next && next.error().code != Code::Truncated) {
-        last_ = open_[i];
-        return named(*last_, next.error());
-      }
-      if (!next) truncated_ = named(*open_[i], next.error());
-      if (!next || !*next) {
-        open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(i));
-        continue;
-      }
+    File* first = nullptr;
+    for (auto& file : files_) {
+      if (file.has_ended) continue;
+      last_ = &file;
+      auto next = file.reader->next_time();
+      if (!next && next.error().code != Code::Truncated) return named(next.error());
+      if (!next) truncated_ = named(next.error());
+      file.has_ended = !next || !*next;
+      if (file.has_ended) continue;
       if (!least || **next < *least) {
         least = *next;
-        last_ = open_[i];
+        first = &file;
       }
       if (**next != 0 && (!least_known || **next < *least_known)) least_known = *next;
-      ++i;
     }
+    if (first != nullptr) last_ = first;
     if (!least && truncated_) return *truncated_;
     if (time_ == 0) time_ = least_known.value_or(0);
     return least;
   }
 
   [[nodiscard]] std::int64_t log_time() const override { return time_; }
-  [[nodiscard]] std::string_view stream() const override { return last_->stream(); }
-  [[nodiscard]] int descriptor() const override { return last_->descriptor(); }
-  Status resume() override { return last_->resume(); }
-  Reader& front() override { return last_->front(); }
+  [[nodiscard]] std::string_view stream() const override { return last_->reader->stream(); }
+  [[nodiscard]] int descriptor() const override { return last_->reader->descriptor(); }
+  Status resume() override { return last_->reader->resume(); }
+  Reader& front() override { return *last_->reader; }
   void start_at(std::int64_t log_time) override {
-    for (auto& reader : readers_) reader->start_at(log_time);
+    for (auto& file : files_) file.reader->start_at(log_time);
   }
   [[nodiscard]] Traffic traffic() const override {
     Traffic all;
-    for (const auto& reader : readers_) all += reader->traffic();
+    for (const auto& file : files_) all += file.reader->traffic();
     return all;
   }
   Result<std::vector<StreamInfo>> streams(bool counted) override {
     std::vector<StreamInfo> all;
-    for (auto& reader : readers_) {
-      auto streams = reader->streams(counted);
+    for (auto& file : files_) {
+      auto streams = file.reader->streams(counted);
       if (!streams) return streams.error();
       std::ranges::move(*streams, std::back_inserter(all));
     }
@@ -87,8 +85,8 @@ class MergedReader final : public Reader {
   }
   Result<std::map<std::string, mcap::Words>> metadata() override {
     std::map<std::string, mcap::Words> all;
-    for (auto& reader : readers_) {
-      auto metadata = reader->metadata();
+    for (auto& file : files_) {
+      auto metadata = file.reader->metadata();
       if (!metadata) return metadata.error();
       all.merge(*metadata);
     }
@@ -96,14 +94,12 @@ class MergedReader final : public Reader {
   }
 
  private:
-  [[nodiscard]] Error named(const Reader& reader, const Error& error) const {
-    return {error.code, places_.at(&reader) + ": " + error.detail};
+  [[nodiscard]] Error named(const Error& error) const {
+    return {error.code, last_->place + ": " + error.detail};
   }
 
-  const std::vector<std::unique_ptr<Reader>> readers_;
-  std::map<const Reader*, std::string> places_;
-  std::vector<Reader*> open_;       // that have not ended
-  Reader* last_;                    // from which the last message was, or is the next
+  std::vector<File> files_;
+  File* last_ = files_.data();      // that had the last message, or has the next
   std::optional<Error> truncated_;  // of one that has no end
   std::int64_t time_ = 0;
 };
@@ -138,24 +134,19 @@ Result<std::vector<Place>> files_of(const Place& folder) {
 
 Result<std::unique_ptr<Reader>> Reader::open(const std::vector<Place>& places,
                                              const LinkOptions& options, bool all) {
-  std::vector<std::unique_ptr<Reader>> readers;
-  std::vector<std::string> names;
-  auto add = [&](const Place& place) -> Status {
-    auto reader = place.kind == Place::Kind::Mcap ? read_mcap(place, options, all)
-                                                  : read_messages(place, options);
-    if (!reader) return reader.error();
-    readers.push_back(std::move(*reader));
-    names.push_back(place.text());
-    return {};
-  };
+  std::vector<MergedReader::File> opened;
   for (const auto& place : places) {
     auto files = place.kind == Place::Kind::Folder ? files_of(place) : std::vector{place};
     if (!files) return files.error();
-    for (const auto& file : *files)
-      if (auto added = add(file); !added) return added.error();
+    for (const auto& file : *files) {
+      auto reader = file.kind == Place::Kind::Mcap ? read_mcap(file, options, all)
+                                                   : read_messages(file, options);
+      if (!reader) return reader.error();
+      opened.push_back({std::move(*reader), file.text()});
+    }
   }
-  if (readers.size() == 1) return std::move(readers.front());
-  return std::unique_ptr<Reader>(new MergedReader(std::move(readers), std::move(names)));
+  if (opened.size() == 1) return std::move(opened.front().reader);
+  return std::unique_ptr<Reader>(new MergedReader(std::move(opened)));
 }
 
 Result<std::unique_ptr<Source>> open_source(std::string_view word, const LinkOptions& options) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Reads recordings: folders, files of messages and MCAP alike, one or several at once, in the order
-// of their log times. What is damaged, or has no end, is read as far as it is whole. A reader is
-// the source of a link too. An object is used by one thread.
+// Reads recordings: folders of files, files of messages, and MCAP, one or several merged by log
+// time. Damaged and truncated files are read as far as possible. An object is used by one thread.
 
 #include <cstdint>
 #include <map>
@@ -18,75 +17,77 @@
 
 namespace hc::record {
 
+/// Keys of the metadata of channels in MCAP: the stream that a channel of MTP is; on a channel for
+/// viewers, the topic of the channel of MTP with the same messages.
+inline constexpr const char *kStreamKey = "hypercolumn.stream", *kBesideKey = "hypercolumn.mtp";
+
 /// A stream of a recording.
 struct StreamInfo {
   std::string name;  ///< "head_eyes.left"
-  std::string type;  ///< of its messages: of ROS 2 in MCAP, else of MTP; may be empty
-  std::vector<std::string> topics;  ///< those that it has in MCAP
+  std::string type;  ///< of its messages: in MCAP of ROS 2, else of MTP; may be empty
   std::uint64_t messages = 0;
-  std::int64_t begin = 0, end = 0;  ///< log times, of a folder or file alone [ns]
+  std::int64_t begin = 0, end = 0;      ///< first and last log time, not in MCAP [ns]
+  std::vector<std::uint16_t> channels;  ///< in MCAP
 };
 
-/// The streams of MTP in a file of MCAP, by name.
+/// The streams of MTP in an MCAP file, by name.
 std::vector<StreamInfo> streams_of(const mcap::Summary& summary);
 
-/// A message as a file of MCAP has it.
-struct Stored {
-  const mcap::Reader* file = nullptr;  ///< numbers channels
-  const mcap::ChannelRecord* channel = nullptr;
-  const mcap::SchemaRecord* schema = nullptr;  ///< null: none
-  mcap::StoredMessage message;
-  bool is_mtp = false;  ///< one of MTP; another may stand beside it, for viewers
-};
+/// Whether a message in MCAP is one of MTP, and not a copy for viewers or something else.
+bool is_mtp(const mcap::StoredMessage& message);
 
 class Reader : public Source {
  public:
-  /// @param places  recordings, or `-`. A folder has the streams of its files; a file of messages
-  /// is
-  ///     one stream, which is called as the file.
-  /// @param all  for take_stored(): what MCAP has beside streams of MTP, too.
+  /// @param places  recordings, or `-`. A folder has one stream for each file; a file of messages
+  ///     is one stream with the name of the file.
+  /// @param all  for take_raw(): read all channels of MCAP files, not only those of MTP.
   ///
   /// Errors: NotFound (no such place or stream), Invalid, Malformed, Unsupported (MCAP without
   /// messages of MTP), System.
   static Result<std::unique_ptr<Reader>> open(const std::vector<Place>& places,
                                               const LinkOptions& options, bool all = false);
 
-  // take() gives messages by log time, equal ones in the order of files and in them. A file of
-  // messages without log times has those of its messages instead, never going back: where a clock
-  // was set back it goes on from there. A message without a time goes with the one before it, the
-  // first with the first that has one. Errors of take(): Truncated (all that is whole was given),
-  // Malformed, TooLarge, Unsupported, System; resume() continues behind what is damaged.
+  // take() returns messages by log time, those with equal times in the order of places and files.
+  // Files of messages have no log times: those of their messages are used, made monotonic. Where
+  // they jump back by more than a second (a clock was set), the jump is removed. A message without
+  // a time gets the time before it, at the begin of a file the first one that there is. Errors of
+  // take(): Truncated (at the end, after all complete messages), Malformed, TooLarge, Unsupported,
+  // System; resume() continues after the damage.
 
-  /// Of the message that take() gave last. [ns since the Unix epoch]; 0: not known.
+  /// Log time and stream of the last message. [ns since the Unix epoch]; 0: unknown.
   [[nodiscard]] virtual std::int64_t log_time() const = 0;
   [[nodiscard]] virtual std::string_view stream() const = 0;
 
   /// The log time of the next message; nothing at the end. Errors: as take().
   virtual Result<std::optional<std::int64_t>> next_time() = 0;
-  /// Skips messages of before. Before the first one is taken.
+  /// Skips messages before this time. To be called before take().
   virtual void start_at(std::int64_t log_time) = 0;
 
-  /// @param counted  with numbers and times, for which a folder or file of messages is read whole.
+  /// @param counted  with counts and times, for which files of messages are read to their end.
   virtual Result<std::vector<StreamInfo>> streams(bool counted = false) = 0;
   /// The newest metadata of each name, of MCAP.
-  virtual Result<std::map<std::string, mcap::Words>> metadata() = 0;
+  virtual Result<std::map<std::string, mcap::Words>> metadata() {
+    return std::map<std::string, mcap::Words>();
+  }
 
-  /// Whether a stream is of one output, whatever src its messages have; a file may have come from a
-  /// pipe instead.
-  [[nodiscard]] virtual bool is_of_outputs() const { return true; }
-  /// The reader of the file that has the next message, after next_time().
+  // For Writer::copy().
+
+  /// The reader of the file with the next message; valid after next_time().
   virtual Reader& front() { return *this; }
-  /// Whether it is MCAP, which has more than messages of MTP; then the next message as it is,
-  /// nothing at the end. Errors: as take().
-  [[nodiscard]] virtual bool has_more() const { return false; }
-  virtual Result<std::optional<Stored>> take_stored() { return std::optional<Stored>(); }
+  /// Whether messages of several src may be mixed in the stream, as in a file written from a pipe.
+  [[nodiscard]] virtual bool mixes_sources() const { return false; }
+  /// The next message of MCAP as it is stored; nothing at the end, and if this is not MCAP.
+  /// Errors: as take().
+  virtual Result<std::optional<mcap::StoredMessage>> take_raw() {
+    return std::optional<mcap::StoredMessage>();
+  }
 };
 
-/// The source that a word names, a link or a recording.
+/// Opens the link or recording that a word names, as place_of().
 /// Errors: as hc::open_source() and Reader::open().
 Result<std::unique_ptr<Source>> open_source(std::string_view word, const LinkOptions& options);
 
-/// Each a reader of one place. Internal to record.
+/// Readers of one file. Internal to record.
 Result<std::unique_ptr<Reader>> read_mcap(const Place& place, const LinkOptions& options, bool all);
 Result<std::unique_ptr<Reader>> read_messages(const Place& place, const LinkOptions& options);
 

@@ -1,97 +1,65 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recordings whatever they are written in; what is of MCAP alone is in mcap_test.cpp.
-#include <sys/resource.h>
+#include <limits>
 
-#include <algorithm>
-#include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <utility>
-
-#include <gtest/gtest.h>
-
-#include <hc/mtp/codec.h>
-#include <record/writer.h>
+#include <record/recording_test.h>
 
 namespace hc::record {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Recorded : public testing::Test {
+Result<std::unique_ptr<Writer>> open_folder(const std::string& folder,
+                                            const std::vector<std::string>& streams) {
+  WriterOptions options;
+  options.streams = streams;
+  return Writer::open(place_of_streams(folder), options);
+}
+
+/// A message with so many bytes of elements.
+Message sized(std::int32_t size) {
+  Header header;
+  header.info = {MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary};
+  header.width = size;
+  header.height = 1;
+  Draft draft = Draft::make(header);
+  std::ranges::fill(draft.elements(), std::byte('a'));
+  return std::move(draft).finish();
+}
+
+/// How many messages a file has, all of them whole.
+std::size_t count(const std::string& path) {
+  const auto played = play(path);
+  EXPECT_FALSE(played.error) << path << ": " << played.error->text();
+  return played.messages.size();
+}
+
+class Recorded : public Recordings {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "hc-test-XXXXXX").string();
-    root = ::mkdtemp(name.data());
-    kept = (root / "kept").string();
+    Recordings::SetUp();
+    kept = in("kept");
   }
-  void TearDown() override { fs::remove_all(root); }
-
-  static Result<std::unique_ptr<Writer>> open(const std::string& folder,
-                                              const std::vector<std::string>& streams) {
-    WriterOptions options;
-    options.streams = streams;
-    return Writer::open(place_of_streams(folder), options);
-  }
-  static std::unique_ptr<Writer> recording(const std::string& folder,
-                                           const std::vector<std::string>& streams) {
-    auto made = open(folder, streams);
-    EXPECT_TRUE(made) << made.error().text();
-    return made ? std::move(*made) : nullptr;
-  }
-  static Error refusal(const std::string& folder, const std::vector<std::string>& streams) {
-    auto made = open(folder, streams);
-    EXPECT_FALSE(made);
-    return made ? Error() : made.error();
+  [[nodiscard]] Error refusal(const std::vector<std::string>& streams) const {
+    return open_folder(kept, streams).error();
   }
 
-  /// A message with so many bytes of elements.
-  static Message sized(std::int32_t size) {
-    Header header;
-    header.info = {MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary};
-    header.width = size;
-    header.height = 1;
-    Draft draft = Draft::make(header);
-    std::ranges::fill(draft.elements(), std::byte('a'));
-    return std::move(draft).finish();
-  }
-
-  static std::string read(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-
-  /// How many messages a file has, all of them whole.
-  static std::uint64_t count(const fs::path& path) {
-    auto source = hc::open_source(Uri{"file", path.string(), {}});
-    if (!source) return 0;
-    Message message;
-    while (true) {
-      auto got = receive(**source, message);
-      EXPECT_TRUE(got) << path << ": " << got.error().text();
-      if (!got || !*got) return (*source)->traffic().messages;
-    }
-  }
-
-  fs::path root;
   std::string kept;
 };
 
 TEST_F(Recorded, AnErrorLeavesNothingBehind) {
   const std::string too_long(300, 'x');
   for (int i = 0; i < 2; ++i) {
-    EXPECT_EQ(refusal(kept, {"eyes.left", too_long}).code, Code::System);
+    EXPECT_EQ(refusal({"eyes.left", too_long}).code, Code::System);
     EXPECT_FALSE(fs::exists(kept));
   }
   fs::create_directories(kept);
-  EXPECT_EQ(refusal(kept, {"eyes.left", too_long}).code, Code::System);
+  EXPECT_EQ(refusal({"eyes.left", too_long}).code, Code::System);
   EXPECT_TRUE(fs::is_empty(kept));
 }
 
 TEST_F(Recorded, HasAFileOfEachStream) {
-  auto made = recording(kept, {"eyes.left", "eyes.right", "neck.pose"});
+  auto made = std::move(*open_folder(kept, {"eyes.left", "eyes.right", "neck.pose"}));
   ASSERT_TRUE(made->add(0, sized(3)));
   ASSERT_TRUE(made->add(1, sized(100000)));
   ASSERT_TRUE(made->add(0, sized(4)));
@@ -101,23 +69,23 @@ TEST_F(Recorded, HasAFileOfEachStream) {
   EXPECT_EQ(written.files.size(), 3U);
   EXPECT_EQ(written.messages, 3U);
   EXPECT_EQ(written.lost, 0U);
-  EXPECT_EQ(read(root / "kept/eyes.left.mtp"), encode(sized(3)) + encode(sized(4)));
-  EXPECT_EQ(read(root / "kept/eyes.right.mtp"), encode(sized(100000)));
-  EXPECT_TRUE(fs::exists(root / "kept/neck.pose.mtp"));
+  EXPECT_EQ(bytes_of(kept + "/eyes.left.mtp"), encode(sized(3)) + encode(sized(4)));
+  EXPECT_EQ(bytes_of(kept + "/eyes.right.mtp"), encode(sized(100000)));
+  EXPECT_TRUE(fs::exists(kept + "/neck.pose.mtp"));
 }
 
 TEST_F(Recorded, OfAnEarlierProcessIsLeftAlone) {
   auto record_one = [&](const std::string& folder) {
-    auto made = recording(folder, {"a.out"});
+    auto made = std::move(*open_folder(folder, {"a.out"}));
     EXPECT_TRUE(made->add(0, sized(1)));
     return made->close().place;
   };
   EXPECT_EQ(record_one(kept), kept);
   EXPECT_EQ(record_one(kept), kept + "_2");
   EXPECT_EQ(record_one(kept + "/"), kept + "_3");
-  EXPECT_EQ(recording(kept, {"b.out"})->written().place, kept + "_4");
+  EXPECT_EQ((*open_folder(kept, {"b.out"}))->written().place, kept + "_4");
   for (const char* file : {"kept/a.out.mtp", "kept_2/a.out.mtp", "kept_3/a.out.mtp"})
-    EXPECT_EQ(count(root / file), 1U) << file;
+    EXPECT_EQ(count(in(file)), 1U) << file;
 }
 
 TEST_F(Recorded, WrongNamesAreRefused) {
@@ -125,7 +93,7 @@ TEST_F(Recorded, WrongNamesAreRefused) {
        {std::pair(std::vector<std::string>{""}, "\"\" cannot be a file name"),
         {{"../a.out"}, "\"../a.out\" cannot be a file name"},
         {{"a.out", "a.out"}, "\"a.out\" is there twice"}}) {
-    const auto error = refusal(kept, streams);
+    const auto error = refusal(streams);
     EXPECT_EQ(error.code, Code::Invalid);
     EXPECT_EQ(error.detail, std::string("streams: ") + what);
   }
@@ -133,73 +101,34 @@ TEST_F(Recorded, WrongNamesAreRefused) {
 }
 
 TEST_F(Recorded, WhereNoneCanBeMadeIsAnError) {
-  std::ofstream(root / "file") << "a";
-  const std::string below = (root / "file/kept").string();
-  EXPECT_EQ(refusal(below, {"a.out"}).detail, below + ": Not a directory");
+  const std::string below = write("file", "a") + "/kept";
+  EXPECT_EQ(open_folder(below, {"a.out"}).error().detail, below + ": Not a directory");
   const std::string name(300, 'a');
-  EXPECT_EQ(refusal(kept, {name}).detail,
-            "open(" + kept + "/" + name + ".mtp): File name too long");
+  EXPECT_EQ(refusal({name}).detail, "open(" + kept + "/" + name + ".mtp): File name too long");
 }
 
-/// Files become no larger, as on a full disk.
-class FullDisk : public Recorded {
- protected:
-  static constexpr rlim_t kMost = 100000;  // [byte]
-
-  void SetUp() override {
-    Recorded::SetUp();
-    before_ = std::signal(SIGXFSZ, SIG_IGN);
-    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit_), 0);
-    const rlimit small{kMost, limit_.rlim_max};
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-  }
-  void TearDown() override {
-    ::setrlimit(RLIMIT_FSIZE, &limit_);
-    std::signal(SIGXFSZ, before_);
-    Recorded::TearDown();
-  }
-
-  /// Records until the disk is full; every message that is said to be recorded is whole.
-  void fill(std::int32_t size) {
-    auto made = recording(kept, {"a.out", "b.out"});
+TEST_F(Recorded, OnAFullDiskHasWholeMessages) {
+  for (const std::int32_t size : {30000, 100}) {  // written at once, and from a buffer
+    const FullDisk full(100'000);
+    auto made = std::move(*open_folder(kept, {"a.out", "b.out"}));
     Status recorded = made->add(1, sized(10));
     for (int i = 0; recorded && i < 20000; ++i) recorded = made->add(0, sized(size));
     ASSERT_FALSE(recorded);
+    const auto& written = made->written();
     EXPECT_EQ(recorded.error().code, Code::System);
-    EXPECT_EQ(recorded.error().detail, kept + "/a.out.mtp: write(): File too large");
+    EXPECT_EQ(recorded.error().detail, written.place + "/a.out.mtp: write(): File too large");
     EXPECT_EQ(made->add(1, sized(1)).error().detail, recorded.error().detail);
-    const auto& written = made->close();
-    EXPECT_EQ(written.status.error().detail, recorded.error().detail);
-    const auto whole = count(root / "kept/a.out.mtp");
+    EXPECT_EQ(made->close().status.error().detail, recorded.error().detail);
+    const auto whole = count(written.place + "/a.out.mtp");
     EXPECT_GT(whole, 0U);
-    EXPECT_EQ(count(root / "kept/b.out.mtp"), 1U);
+    EXPECT_EQ(count(written.place + "/b.out.mtp"), 1U);
     EXPECT_EQ(written.messages, whole + 1);
   }
-
- private:
-  rlimit limit_{};
-  void (*before_)(int) = nullptr;
-};
-
-TEST_F(FullDisk, LeavesWholeMessagesOfThoseThatAreWrittenAtOnce) {
-  fill(30000);
-}
-
-TEST_F(FullDisk, LeavesWholeMessagesOfThoseThatAreGathered) {
-  fill(100);
 }
 
 constexpr std::int64_t kSecond = 1'000'000'000, kNow = 1'763'683'200 * kSecond;
 
-/// What a recording holds.
-struct Held {
-  std::vector<std::string> streams, messages;  // of each message
-  std::vector<std::int64_t> times;
-  std::optional<Error> error;
-  [[nodiscard]] std::int64_t duration() const { return times.back() - times.front(); }
-};
-
-class Recordings : public Recorded {
+class InOrder : public Recorded {
  protected:
   static Message at(std::int64_t time, std::int32_t seq, std::int32_t src = 7) {
     auto message = sized(3);
@@ -209,98 +138,65 @@ class Recordings : public Recorded {
     return message;
   }
   std::string file(const std::string& name, const std::vector<std::int64_t>& times) const {
-    const auto path = (root / name).string();
-    fs::create_directories(fs::path(path).parent_path());
-    std::ofstream out(path, std::ios::binary);
+    std::string bytes;
     for (std::size_t i = 0; i < times.size(); ++i)
-      out << encode(at(times[i], static_cast<std::int32_t>(i)));
-    return path;
-  }
-  static Held held(const std::vector<std::string>& words, std::int64_t from = 0) {
-    Held all;
-    std::vector<Place> places;
-    for (const auto& word : words) places.push_back(place_of(word));
-    auto reader = Reader::open(places, {});
-    if (!reader) {
-      all.error = reader.error();
-      return all;
-    }
-    (*reader)->start_at(from);
-    Message message;
-    while (true) {
-      auto got = (*reader)->take(message);
-      if (!got) all.error = got.error();
-      if (!got || *got != Got::Message) return all;
-      all.streams.emplace_back((*reader)->stream());
-      all.messages.push_back(encode(message));
-      all.times.push_back((*reader)->log_time());
-    }
-  }
-  /// Copies recordings into another, as `hc record` does; where that is.
-  std::string copy(const std::vector<std::string>& words, const std::string& name) const {
-    std::vector<Place> places;
-    for (const auto& word : words) places.push_back(place_of(word));
-    auto writer = Writer::open(place_of((root / name).string()), {});
-    auto reader = Reader::open(places, {}, (*writer)->copies_all());
-    EXPECT_TRUE(reader) << reader.error().text();
-    for (auto copied = Result<bool>(true); copied && *copied;) copied = (*writer)->copy(**reader);
-    EXPECT_TRUE((*writer)->close().status);
-    return (*writer)->written().place;
+      bytes += encode(at(times[i], static_cast<std::int32_t>(i)));
+    return write(name, bytes);
   }
 };
 
-TEST_F(Recordings, OfFilesAreReadByTimeWhateverTheyAreWrittenIn) {
+TEST_F(InOrder, OfFilesAreReadByTimeWhateverTheyAreWrittenIn) {
   file("kept/a.left.mtp", {kNow + 1, kNow + 3, kNow + 5});
   file("kept/a.right.mtp", {kNow, kNow + 2, kNow + 6});
   const std::vector<std::string> order = {"a.right", "a.left", "a.right",
                                           "a.left",  "a.left", "a.right"};
-  const auto whole = held({kept});
+  const auto whole = play({kept});
   EXPECT_EQ(whole.streams, order);
   std::string from = kept;
   for (const char* name : {"x.mcap", "again/"}) {
     from = copy({from}, name);
-    const auto again = held({from});
+    const auto again = play({from});
     EXPECT_EQ(again.streams, order);
     EXPECT_EQ(again.messages, whole.messages);
     EXPECT_EQ(again.times, whole.times);
   }
-  EXPECT_EQ(held({(root / "x.mcap").string()}, kNow + 3).streams.size(), 3U);
-  EXPECT_EQ(held({kept + "?stream=a.left"}).messages.size(), 3U);
-  const auto wrong = held({kept + "?stream=a.lft"});
+  EXPECT_EQ(play({in("x.mcap")}, kNow + 3).streams.size(), 3U);
+  EXPECT_EQ(play({kept + "?stream=a.left"}).messages.size(), 3U);
+  const auto wrong = play({kept + "?stream=a.lft"});
   EXPECT_NE(wrong.error->detail.find("did you mean \"a.left\"?"), std::string::npos);
 }
 
-TEST_F(Recordings, AMessageWithoutATimeGoesWithTheOneBefore) {
-  const auto first = held({file("a.mtp", {0, 0, kNow, kNow + 5, 0, kNow + 7})});
+TEST_F(InOrder, AMessageWithoutATimeGoesWithTheOneBefore) {
+  const auto first = play({file("a.mtp", {0, 0, kNow, kNow + 5, 0, kNow + 7})});
   EXPECT_EQ(first.times, (std::vector{kNow, kNow, kNow, kNow + 5, kNow + 5, kNow + 7}));
-  EXPECT_EQ(held({copy({(root / "a.mtp").string()}, "a.mcap")}).times, first.times);
+  EXPECT_EQ(play({copy({in("a.mtp")}, "a.mcap")}).times, first.times);
   // Nor does a file of those alone make a recording span decades.
-  const auto both = held({file("b.mtp", {0, 0, 0}), file("c.mtp", {kNow, kNow + 1})});
+  const auto both = play({file("b.mtp", {0, 0, 0}), file("c.mtp", {kNow, kNow + 1})});
   EXPECT_EQ(both.times, (std::vector{kNow, kNow, kNow, kNow, kNow + 1}));
-  EXPECT_LT(held({copy({(root / "b.mtp").string()}, "b.mcap")}).duration(), kSecond * 60);
+  EXPECT_LT(play({copy({in("b.mtp")}, "b.mcap")}).duration(), kSecond * 60);
 }
 
-TEST_F(Recordings, AClockThatIsSetLosesNoMessageAndMakesNobodyWait) {
+TEST_F(InOrder, AClockThatIsSetLosesNoMessageAndMakesNobodyWait) {
   const auto hour = 3600 * kSecond;
-  const auto back = held({file("a.mtp", {kNow, kNow + kSecond, kNow + 2 * kSecond - hour,
+  const auto back = play({file("a.mtp", {kNow, kNow + kSecond, kNow + 2 * kSecond - hour,
                                          kNow + 3 * kSecond - hour, kNow + 4 * kSecond})});
   EXPECT_EQ(back.times.size(), 5U);
   EXPECT_EQ(back.duration(), 4 * kSecond);
   EXPECT_TRUE(std::ranges::is_sorted(back.times));
   // One wrong time, as far ahead as there is: what follows goes on from there.
   constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
-  const auto ahead = held({file("b.mtp", {kNow, kMost, kNow + kSecond, kNow + 2 * kSecond})});
+  const auto ahead = play({file("b.mtp", {kNow, kMost, kNow + kSecond, kNow + 2 * kSecond})});
   EXPECT_EQ(ahead.times, (std::vector{kNow, kMost, kMost, kMost}));
 }
 
-TEST_F(Recordings, LogTimesGoByTheMonotonicClock) {
+TEST_F(InOrder, LogTimesGoByTheMonotonicClock) {
   ManualClock clock;
   clock.set_wall(kNow);
   WriterOptions options;
   options.clock = &clock;
   options.last = std::chrono::seconds(10);
   options.chunk_bytes = 1;
-  auto writer = std::move(*Writer::open(place_of((root / "x.mcap").string()), options));
+  auto writer = writer_of(in("x.mcap"), options);
   const auto stream = *writer->add_stream("a.out");
   for (int i = 0; i < 60; ++i) {  // the clock on the wall is set each second, to and fro
     ASSERT_TRUE(writer->add(stream, at(0, i)));
@@ -308,88 +204,80 @@ TEST_F(Recordings, LogTimesGoByTheMonotonicClock) {
     clock.set_wall(kNow + (i % 2 == 0 ? 3600 : -3600) * kSecond);
   }
   writer->save();
-  const auto last = held({writer->close().files.at(0)});
+  const auto last = play({writer->close().files.at(0)});
   EXPECT_EQ(last.times.size(), 11U);
   EXPECT_EQ(last.duration(), 10 * kSecond);
   EXPECT_EQ(last.times.back(), kNow + 59 * kSecond);
 }
 
-TEST_F(Recordings, OneLinkMayCarrySeveralStreams) {
-  auto writer = std::move(*Writer::open(place_of((root / "x.mcap").string()), {}));
+TEST_F(InOrder, OneLinkMayCarrySeveralStreams) {
+  auto writer = writer_of(in("x.mcap"));
   for (int i = 0; i < 6; ++i)
     ASSERT_TRUE(writer->add(*writer->stream_of(0, "eyes", 7 + i % 2), at(kNow, i, 7 + i % 2)));
   ASSERT_TRUE(writer->add(*writer->stream_of(1, "eyes", 7), at(kNow, 0)));  // another of the name
   const auto place = writer->close().place;
   for (const auto& [name, count] : {std::pair("eyes", 3U), {"eyes.src_8", 3U}, {"eyes_2", 1U}})
-    EXPECT_EQ(held({place + "?stream=" + name}).messages.size(), count) << name;
+    EXPECT_EQ(play({place + "?stream=" + name}).messages.size(), count) << name;
 }
 
-TEST_F(Recordings, InMcapAreCopiedWithAllThatStandsBeside) {
+TEST_F(InOrder, InMcapAreCopiedWithAllThatStandsBeside) {
   WriterOptions options;
   options.frames = "head 3 robot 1 2 3 0 0 0 1";
   for (const char* name : {"one/x.mcap", "two/x.mcap"}) {
-    fs::create_directories((root / name).parent_path());
-    auto writer = std::move(*Writer::open(place_of((root / name).string()), options));
+    fs::create_directories(fs::path(in(name)).parent_path());
+    auto writer = writer_of(in(name), options);
     const auto stream = *writer->add_stream("a.out");
     for (int i = 0; i < 9; ++i) ASSERT_TRUE(writer->add(stream, at(kNow + i, i), kNow + 100 * i));
     ASSERT_TRUE(writer->log({"a", Level::Info, "a line"}));
     ASSERT_TRUE(writer->metadata(name, {{"k", "v"}}));
   }
-  auto topics = [](const std::string& path) {
-    auto reader = mcap::Reader::open(path);
-    const auto summary = reader->summary();
-    std::map<std::string, std::uint64_t> counts;
-    for (const auto& [id, channel] : summary->channels)
-      counts[channel.topic] = summary->counts.at(id);
-    return counts;
-  };
-  const auto one = (root / "one/x.mcap").string(), two = (root / "two/x.mcap").string();
+  const auto one = in("one/x.mcap"), two = in("two/x.mcap");
   // A file that is cut off, too.
-  const auto bytes = read(one);
-  std::ofstream(root / "cut.mcap", std::ios::binary) << bytes.substr(0, bytes.rfind("a.out") - 800);
-  for (const auto& from : {one, (root / "cut.mcap").string()}) {
+  const auto bytes = bytes_of(one);
+  const auto cut = write("cut.mcap", bytes.substr(0, bytes.rfind("a.out") - 800));
+  for (const auto& from : {one, cut}) {
     const auto mended = copy({from}, "mended.mcap");
-    EXPECT_EQ(topics(mended), topics(one));
-    EXPECT_EQ(held({mended}).messages, held({one}).messages);
-    EXPECT_EQ(held({mended}).times, held({one}).times);
+    EXPECT_EQ(topics_of(summary_of(mended)), topics_of(summary_of(one)));
+    EXPECT_EQ(play({mended}).messages, play({one}).messages);
+    EXPECT_EQ(play({mended}).times, play({one}).times);
   }
   // Two of the same names: their streams are two, their frames and log are one.
   const auto both = copy({one, two}, "both.mcap");
-  EXPECT_EQ(topics(both), (std::map<std::string, std::uint64_t>{{"/a/out", 9},
-                                                                {"/a/out/mtp", 9},
-                                                                {"/a/out_2", 9},
-                                                                {"/a/out/mtp_2", 9},
-                                                                {"/rosout", 2},
-                                                                {"/tf_static", 2}}));
-  EXPECT_EQ(held({both + "?stream=a.out_2"}).messages, held({two}).messages);
+  EXPECT_EQ(topics_of(summary_of(both)), (std::map<std::string, std::uint64_t>{{"/a/out", 9},
+                                                                               {"/a/out/mtp", 9},
+                                                                               {"/a/out_2", 9},
+                                                                               {"/a/out/mtp_2", 9},
+                                                                               {"/rosout", 2},
+                                                                               {"/tf_static", 2}}));
+  EXPECT_EQ(play({both + "?stream=a.out_2"}).messages, play({two}).messages);
   // So are those of a folder beside.
   const auto beside = copy({both, copy({one}, "kept/")}, "beside.mcap");
-  EXPECT_EQ(held({beside + "?stream=a.out_3"}).messages, held({one}).messages);
+  EXPECT_EQ(play({beside + "?stream=a.out_3"}).messages, play({one}).messages);
 }
 
-TEST_F(Recordings, AFileThatIsCutOffEndsThatStreamAlone) {
+TEST_F(InOrder, AFileThatIsCutOffEndsThatStreamAlone) {
   file("kept/a.mtp", {kNow, kNow + 2, kNow + 4});
   const auto cut = file("kept/b.mtp", {kNow + 1, kNow + 3});
   fs::resize_file(cut, fs::file_size(cut) - 2);
-  const auto whole = held({kept});
+  const auto whole = play({kept});
   EXPECT_EQ(whole.streams, (std::vector<std::string>{"a", "b", "a", "a"}));
   ASSERT_TRUE(whole.error);
   EXPECT_EQ(whole.error->code, Code::Truncated);
   EXPECT_TRUE(whole.error->detail.starts_with(cut + ": ")) << whole.error->detail;
 }
 
-TEST_F(Recordings, ThatGoOnContinueTheirFiles) {
+TEST_F(InOrder, ThatGoOnContinueTheirFiles) {
   WriterOptions options;
   options.streams = {"a.out"};
   options.append = true;
   for (int i = 0; i < 3; ++i) {
-    auto writer = std::move(*Writer::open(place_of_streams(kept), options));
+    auto writer = writer_of(place_of_streams(kept), options);
     ASSERT_TRUE(writer->add(0, at(kNow, i)));
   }
-  EXPECT_EQ(count(root / "kept/a.out.mtp"), 3U);
+  EXPECT_EQ(count(kept + "/a.out.mtp"), 3U);
 }
 
-TEST_F(Recordings, NamesAndLinksAreToldApart) {
+TEST_F(InOrder, NamesAndLinksAreToldApart) {
   using Kind = Place::Kind;
   fs::create_directories(kept);
   for (const auto& [word, kind] : {std::pair<std::string, Kind>{"x.mcap", Kind::Mcap},

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <record/writer.h>
 
+#include <filesystem>
 #include <utility>
 
 #include <hc/base/format.h>
+#include <record/mcap_writer.h>
 
 namespace hc::record {
 
+namespace fs = std::filesystem;
+
 Result<std::unique_ptr<Writer>> Writer::open(const Place& place, const WriterOptions& options) {
-  const bool is_mcap = place.kind == Place::Kind::Mcap;
-  if (!is_mcap && (options.split > 0 || options.keep > 0 || options.last.count() > 0))
+  if (place.kind != Place::Kind::Mcap &&
+      (options.split > 0 || options.keep > 0 || options.last.count() > 0))
     return Error{Code::Invalid, "split, keep and last are for recordings in MCAP: " + place.text() +
                                     " does not end in .mcap"};
   if (place.kind == Place::Kind::Link)
@@ -22,25 +26,55 @@ Result<std::unique_ptr<Writer>> Writer::open(const Place& place, const WriterOpt
   for (const auto& name : options.streams)
     if (!names.insert(name).second)
       return Error{Code::Invalid, "streams: \"" + name + "\" is there twice"};
-  FormatOptions format_options = options;
-  format_options.file = place.path;
-  auto format = is_mcap ? open_mcap(format_options)
-                : place.kind == Place::Kind::Folder
-                    ? open_folder(place.path, options.streams, options.append)
-                    : open_message_file(place.path, options.log);
-  if (!format) return format.error();
-  if (is_mcap)
-    for (const auto& name : options.streams)
-      if (auto added = (*format)->add_stream(name); !added) return added.error();
-  return std::unique_ptr<Writer>(new Writer(std::move(*format), options));
+  std::unique_ptr<Writer> writer(new Writer(place, options));
+  if (auto begun = writer->begin(place); !begun) return begun.error();
+  return writer;
 }
 
-Writer::Writer(std::unique_ptr<Format> format, const WriterOptions& options)
-    : format_(std::move(format)),
-      options_(options),
+Writer::Writer(const Place& place, const WriterOptions& options)
+    : options_(options),
       clock_(options.clock != nullptr ? *options.clock : system_clock_),
-      names_(options.streams) {
-  written_.place = format_->place();
+      is_folder_(place.kind == Place::Kind::Folder) {
+  written_.place = place.path;
+}
+
+Status Writer::begin(const Place& place) {
+  bool is_new = false;
+  if (place.kind == Place::Kind::Mcap) {
+    auto mcap = McapWriter::make(place.path, options_);
+    if (!mcap) return mcap.error();
+    mcap_ = std::move(*mcap);
+    written_.place = mcap_->file();
+  } else if (is_folder_) {
+    if (!options_.append) written_.place = free_place(place).path;
+    std::error_code failed;
+    is_new = fs::create_directories(written_.place, failed);
+    if (failed) return Error{Code::System, written_.place + ": " + failed.message()};
+  } else if (auto begun = begin_file(place.path); !begun) {
+    return begun;
+  }
+  for (const auto& name : options_.streams) {
+    auto added = add_stream(name);
+    if (added) continue;
+    // Empty files would send the next attempt to another folder.
+    std::error_code ignored;
+    for (const auto& each : files_)
+      if (fs::is_empty(each.path, ignored)) fs::remove(each.path, ignored);
+    if (is_new) fs::remove(written_.place, ignored);
+    return added.error();
+  }
+  return {};
+}
+
+Status Writer::begin_file(const std::string& path) {
+  Uri uri{"file", path, {}};
+  if (options_.append) uri.options = {{"append", "1"}};
+  LinkOptions options;
+  if (!is_folder_) options.log = options_.log;
+  auto sink = hc::open_sink(uri, options);
+  if (!sink) return sink.error();
+  files_.push_back({path, std::move(*sink)});
+  return {};
 }
 
 Writer::~Writer() {
@@ -59,7 +93,13 @@ std::int64_t Writer::now() {
 
 Result<std::size_t> Writer::add_stream(std::string_view name) {
   names_.emplace_back(name);
-  if (auto added = note(format_->add_stream(names_.back())); !added) return added.error();
+  if (mcap_ != nullptr) mcap_->add_stream(names_.back());
+  if (is_folder_) {
+    if (name.empty() || name.find('/') != std::string::npos)
+      return Error{Code::Invalid, "streams: \"" + names_.back() + "\" cannot be a file name"};
+    const auto path = stream_file(written_.place, take_name(file_names_, names_.back()));
+    if (auto begun = end_if_failed(begin_file(path)); !begun) return begun.error();
+  }
   return names_.size() - 1;
 }
 
@@ -72,11 +112,22 @@ Result<std::size_t> Writer::stream_of(std::size_t link, const std::string& name,
   return added;
 }
 
-Status Writer::note(const Status& status) {
+Status Writer::end_if_failed(const Status& status) {
   if (status || !written_.status || status.error().code == Code::TooLarge) return status;
   written_.status = status;
-  static_cast<void>(format_->close());
+  static_cast<void>(end());
   return status;
+}
+
+Error Writer::named(const File& file, const Error& error) const {
+  return {error.code, is_folder_ ? file.path + ": " + error.detail : error.detail};
+}
+
+Status Writer::write(std::size_t stream, const Message& message, std::int64_t log_time) {
+  if (mcap_ != nullptr) return mcap_->write(stream, message, log_time);
+  auto& file = files_[is_folder_ ? stream : 0];
+  auto sent = file.sink->send(message);
+  return sent ? sent : named(file, sent.error());
 }
 
 template <typename Write>
@@ -84,23 +135,23 @@ Status Writer::record(std::size_t bytes, const Write& write) {
   ++written_.messages;
   written_.bytes += bytes;
   const bool goes_on = written_.status.has_value();
-  auto done = goes_on ? note(write()) : written_.status;
-  // What the format was given, and has lost, it counts itself.
-  if (!done && (!goes_on || done.error().code == Code::TooLarge)) ++written_.lost;
+  auto done = goes_on ? end_if_failed(write()) : written_.status;
+  // What MCAP was given, and has lost, it counts itself.
+  if (!done && (!goes_on || mcap_ == nullptr || done.error().code == Code::TooLarge))
+    ++written_.lost;
   return done;
 }
 
 Status Writer::add(std::size_t stream, const Message& message,
                    std::optional<std::int64_t> log_time) {
   const auto time = log_time.value_or(0) != 0 ? *log_time : now();
-  auto added =
-      record(message.elements.size(), [&] { return format_->write(stream, message, time); });
+  auto added = record(message.elements.size(), [&] { return write(stream, message, time); });
   if (!added && added.error().code == Code::TooLarge) {
     if (dropping_.insert(stream).second)
       say(Level::Warning, names_[stream] + " dropped: " + added.error().detail);
     return {};
   }
-  if (added && format_->keeps_last() && names_[stream] == options_.when) save_when_set(message);
+  if (added && options_.last.count() > 0 && names_[stream] == options_.when) save_when_set(message);
   return added;
 }
 
@@ -109,38 +160,42 @@ Result<bool> Writer::copy(Reader& reader) {
   if (!next) return next.error();
   if (!*next) return false;
   Reader& file = reader.front();
-  if (copies_all() && file.has_more()) {
-    auto stored = file.take_stored();
-    if (!stored) return stored.error();
-    if (!*stored) return false;
-    const auto write = [&] { return format_->write(**stored); };
-    auto done = (*stored)->is_mtp ? record((*stored)->message.data.size(), write) : note(write());
+  auto stored = copies_all() ? file.take_raw() : std::optional<mcap::StoredMessage>();
+  if (!stored) return stored.error();
+  if (*stored) {
+    const auto write = [&] { return mcap_->copy(**stored, &file); };
+    auto done = is_mtp(**stored) ? record((*stored)->data.size(), write) : end_if_failed(write());
     return done ? Result<bool>(true) : done.error();
   }
   Message message;
   auto got = reader.take(message);
   if (!got || *got != Got::Message) return got ? Result<bool>(false) : got.error();
-  const auto src = file.is_of_outputs() ? 0 : message.header.src;
+  const auto src = file.mixes_sources() ? message.header.src : 0;
   auto stream = stream_of(reinterpret_cast<std::size_t>(&file), std::string(reader.stream()), src);
   auto added = stream ? add(*stream, message, reader.log_time()) : stream.error();
   return added ? Result<bool>(true) : added.error();
 }
 
+template <typename Write>
+Status Writer::to_mcap(const Write& write) {
+  return mcap_ != nullptr && written_.status ? end_if_failed(write()) : written_.status;
+}
+
 Status Writer::log(const LogLine& line) {
-  return written_.status ? note(format_->log(now(), line)) : written_.status;
+  return to_mcap([&] { return mcap_->log(now(), line); });
 }
 
 Status Writer::metadata(const std::string& name, const mcap::Words& words) {
-  return written_.status ? note(format_->metadata(name, words)) : written_.status;
+  return to_mcap([&] { return mcap_->metadata(name, words); });
 }
 
 Status Writer::poll() {
-  return written_.status ? note(format_->poll()) : written_.status;
+  return to_mcap([&] { return mcap_->poll(); });
 }
 
 void Writer::save() {
-  if (!format_->keeps_last()) return;
-  auto saved = format_->save();
+  if (options_.last.count() == 0) return;
+  auto saved = mcap_->save();
   say(saved ? Level::Info : Level::Error,
       saved ? "saved " + *saved : "not saved: " + saved.error().detail);
 }
@@ -154,13 +209,29 @@ void Writer::save_when_set(const Message& message) {
   was_set_ = is_set;
 }
 
+Status Writer::end() {
+  if (mcap_ != nullptr) return mcap_->close();
+  Status status;
+  for (auto& file : files_) {
+    if (file.sink == nullptr) continue;
+    auto closed = file.sink->close();
+    if (!closed && status) status = named(file, closed.error());
+    written_.lost += file.sink->traffic().dropped_disconnect;
+    file.sink.reset();
+  }
+  return status;
+}
+
 const Written& Writer::close() {
   if (std::exchange(is_closed_, true)) return written_;
-  auto closed = format_->close();
-  if (written_.status) written_.status = closed;
-  written_.lost += format_->lost();
+  auto ended = end();
+  if (written_.status) written_.status = ended;
+  for (const auto& file : files_) written_.files.push_back(file.path);
+  if (mcap_ != nullptr) {
+    written_.files = mcap_->files();
+    written_.lost += mcap_->lost();
+  }
   written_.messages -= written_.lost;
-  written_.files = format_->files();
   return written_;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Records streams of messages: into a folder, a file of messages, or MCAP. What is there already
-// stays, and the recording goes beside it; the first failure, as of a full disk, ends it, and what
-// was written is whole. An object is used by one thread.
+// Writes recordings: folders of files, files of messages, and MCAP. Existing recordings are never
+// overwritten: the new one gets a free name beside them. The first error, such as a full disk, ends
+// a recording; what was written until then can be read. An object is used by one thread.
 
 #include <cstdint>
 #include <map>
@@ -11,108 +11,132 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <hc/base/clock.h>
 #include <hc/base/log.h>
+#include <hc/contract/log_line.h>
 #include <hc/link/link.h>
-#include <record/format.h>
+#include <record/mcap/storage.h>
 #include <record/place.h>
 #include <record/reader.h>
 
 namespace hc::record {
 
-struct WriterOptions : FormatOptions {
-  /// Streams that are known, numbered in this order; add_stream() may add others.
+class McapWriter;
+
+/// Those of StorageOptions, `when`, `frames` and `chunk_bytes` are for MCAP.
+struct WriterOptions : mcap::StorageOptions {
+  /// Streams known at the start, numbered in this order; add_stream() adds others.
   std::vector<std::string> streams;
-  /// A stream: what is kept of the last time is saved when its first number becomes other than 0.
+  bool append = false;  ///< continue the files of a folder
+  /// With `last`: save() when the first number of a message of this stream becomes other than 0.
   std::string when;
-  LogSink log;                   ///< what was saved, and which messages are dropped; may be empty
+  /// Frames of the graph as text (spec/graph.md, G31), recorded on /tf and /tf_static.
+  std::string frames;
+  std::size_t chunk_bytes = std::size_t{4} << 20;  ///< size of a chunk, uncompressed
+  LogSink log;                   ///< gets names of saved files, and dropped streams; may be empty
   const Clock* clock = nullptr;  ///< null: the machine's
 };
 
-/// What a recording came to.
+/// The state of a recording, or its result after close().
 struct Written {
-  std::string place;               ///< the folder or file; of several what they are numbered after
-  std::vector<std::string> files;  ///< those in which something is
-  std::uint64_t messages = 0;      ///< that are in them
-  std::uint64_t bytes = 0;         ///< of the elements of all that came
-  std::uint64_t lost = 0;          ///< messages that came and are in none
-  Status status;                   ///< why the recording ended before it was closed
+  std::string place;               ///< the folder or file; with `split` or `last` its base name
+  std::vector<std::string> files;  ///< files with contents
+  std::uint64_t messages = 0;      ///< written
+  std::uint64_t bytes = 0;         ///< of the elements of all messages given
+  std::uint64_t lost = 0;          ///< messages given and not written
+  Status status;                   ///< the error that ended the recording early
 };
 
 class Writer {
  public:
   /// Errors: Invalid (options that this kind of place does not have; names of streams that cannot
-  /// be files), System; nothing is left of the recording then.
+  /// be file names), System. Leaves no files behind then.
   static Result<std::unique_ptr<Writer>> open(const Place& place, const WriterOptions& options);
-  /// Ends as close() does.
+  /// As close().
   ~Writer();
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  /// A further stream; gives its number. Where there is one of the name, it is called NAME_2.
+  /// Adds a stream; returns its number. A name that is taken becomes NAME_2.
   Result<std::size_t> add_stream(std::string_view name);
-  /// The stream for messages of a src that come over a link: one for each src, since a pipe may
-  /// carry both eyes. The first is called as the link, others NAME.src_N.
+  /// The stream for messages of a src from a link, added if it is new. A pipe may carry both eyes,
+  /// so each src has its own: the first has the link's name, others NAME.src_N.
   Result<std::size_t> stream_of(std::size_t link, const std::string& name, std::int32_t src);
 
-  // Errors of all below: System (the disk); each later call gives the same.
+  // Errors of all below: System (the disk), from then on always the same.
 
-  /// Records a message. Waits while the disk is behind. One that there is no place for is dropped,
-  /// which is logged once for each stream.
-  /// @param log_time  when it was recorded before [ns since the Unix epoch]; nothing or 0: now.
+  /// Records a message; blocks while the disk is slower. A message that does not fit into the file
+  /// is dropped, which is logged once for each stream.
+  /// @param log_time  when it was first recorded [ns since the Unix epoch]; nothing or 0: now.
   Status add(std::size_t stream, const Message& message, std::optional<std::int64_t> log_time = {});
 
-  /// Whether copy() copies what MCAP has beside messages of MTP.
-  [[nodiscard]] bool copies_all() const { return format_->copies_all(); }
-  /// Records the next message of another recording, with its stream and log time; from MCAP to MCAP
-  /// byte for byte as it stands there. False: there is none. Errors: of the reader too.
+  /// Whether copy() keeps what MCAP files have beside messages of MTP.
+  [[nodiscard]] bool copies_all() const { return mcap_ != nullptr; }
+  /// Copies the next message of a recording with its stream and log time, from MCAP to MCAP byte
+  /// for byte. False at the end. Errors: also those of the reader.
   Result<bool> copy(Reader& reader);
 
-  /// A line of the graph's log, and what else is said of it; only MCAP keeps these.
+  /// A line of the graph's log, and metadata; ignored other than in MCAP.
   Status log(const LogLine& line);
   Status metadata(const std::string& name, const mcap::Words& words);
 
-  /// To be called a few times a second: writes what has been gathered for long enough.
+  /// Writes messages that have been buffered for long enough; to be called a few times a second.
   Status poll();
-  /// Writes what is kept of the last time into a file of its own, if this recording does that, and
-  /// logs its name.
+  /// With `last`: writes what is in memory into a new file, and logs its name.
   void save();
 
-  /// Writes what is left.
+  /// Writes all that is buffered, and ends the files.
   const Written& close();
 
-  /// The time on the wall by the monotonic clock, since the recording began: whatever happens to
-  /// the wall clock, it goes on evenly. [ns since the Unix epoch]
+  /// The time for new messages: the wall clock's at the first call, from then on advanced by the
+  /// monotonic clock, so that setting the wall clock has no effect. [ns since the Unix epoch]
   [[nodiscard]] std::int64_t now();
-  /// What was recorded so far.
   [[nodiscard]] const Written& written() const { return written_; }
 
  private:
-  Writer(std::unique_ptr<Format> format, const WriterOptions& options);
+  struct File {
+    std::string path;
+    std::unique_ptr<Sink> sink;  // null: closed
+  };
+
+  Writer(const Place& place, const WriterOptions& options);
+  Status begin(const Place& place);
+  Status begin_file(const std::string& path);
+  /// Closes all files.
+  Status end();
+  [[nodiscard]] Error named(const File& file, const Error& error) const;
   void say(Level severity, const std::string& line) const;
-  /// Ends the recording if it has failed, other than for one message.
-  Status note(const Status& status);
-  /// Has a message of so many bytes written, and counts it.
+  /// Ends the recording after an error, unless it is only about one message.
+  Status end_if_failed(const Status& status);
+  /// Counts a message of so many bytes, and writes it.
   template <typename Write>
   Status record(std::size_t bytes, const Write& write);
+  template <typename Write>
+  Status to_mcap(const Write& write);
+  Status write(std::size_t stream, const Message& message, std::int64_t log_time);
   void save_when_set(const Message& message);
 
-  std::unique_ptr<Format> format_;
   const WriterOptions options_;
   SystemClock system_clock_;
   const Clock& clock_;
-  std::optional<std::int64_t> to_wall_;  // of the monotonic clock
+  const bool is_folder_;
+  std::optional<std::int64_t> to_wall_;  // to be added to the monotonic clock [ns]
   std::vector<std::string> names_;       // of streams
-  /// Streams by src, of what comes over a link by a name.
+  std::unique_ptr<McapWriter> mcap_;     // null: they are written to files of messages
+  std::vector<File> files_;              // one for each stream of a folder, else one for all
+  std::set<std::string> file_names_;
+  // Streams by src, of each link and name.
   std::map<std::pair<std::size_t, std::string>, std::map<std::int32_t, std::size_t>> links_;
   std::set<std::size_t> dropping_;
   Written written_;
   bool was_set_ = false, is_closed_ = false;
 };
 
-/// The end of a link that a place is: it records what is sent, a stream for each src, or sends it.
+/// A sink that records into a place, with a stream for each src; where the place is a link, its
+/// end.
 Result<std::unique_ptr<Sink>> open_sink(const Place& place, const LinkOptions& options);
 
 }  // namespace hc::record

@@ -34,10 +34,9 @@ std::vector<Recorded> list_recordings(const std::string& folder) {
     Recorded recorded{each->path().stem().string(), 0, {}};
     if (each->path().extension() != kEnding || !is_recording_name(recorded.name)) continue;
     auto reader = hc::mcap::Reader::open(each->path());
-    const auto summary = reader ? reader->summary() : reader.error();
-    if (!summary) continue;
+    if (!reader) continue;
     recorded.bytes = reader->size();
-    for (const auto& stream : hc::record::streams_of(*summary))
+    for (const auto& stream : hc::record::streams_of(reader->summary()))
       recorded.streams.push_back(stream.name);
     all.push_back(std::move(recorded));
   }
@@ -65,7 +64,8 @@ hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& gr
       std::set<std::string>(ports.begin(), ports.end()).size() < ports.size())
     return hc::Error{Code::Invalid, "1 to 64 different outputs are recorded, as MODULE.PORT"};
   for (const auto& port : ports)
-    if (!hc::is_port_name(port)) return hc::Error{Code::Invalid, "\"" + port + "\" is not MODULE.PORT"};
+    if (!hc::is_port_name(port))
+      return hc::Error{Code::Invalid, "\"" + port + "\" is not MODULE.PORT"};
   const auto place = hc::record::place_of(options.folder + "/" + name + std::string(kEnding));
   std::error_code failed;
   if (fs::symlink_status(place.path, failed).type() != fs::file_type::not_found)

@@ -17,7 +17,6 @@ constexpr std::uint64_t kLimit = std::uint64_t{1} << 20;  // of elements, chunks
 void read_records(const std::string& path) {
   auto reader = hc::mcap::Reader::open(path, {.chunk_bytes = kLimit, .summary_bytes = kLimit});
   if (!reader) return;
-  static_cast<void>(reader->summary());
   static_cast<void>(reader->metadata());
   while (true) {
     const auto time = reader->next_time();

@@ -109,29 +109,29 @@ void print_folder(const hc::record::Place& place, std::uint64_t limit) {
 /// What the summary of a recording in MCAP says, whoever wrote it; its messages are not read.
 void print_mcap(const std::string& path) {
   auto reader = value_or_fail(hc::mcap::Reader::open(path), path);
-  const auto summary = value_or_fail(reader.summary(), path);
+  const auto& summary = reader.summary();
   auto streams = hc::record::streams_of(summary);
-  std::set<std::string> topics;
-  for (const auto& stream : streams) topics.insert(stream.topics.begin(), stream.topics.end());
+  std::set<std::uint16_t> shown;
+  for (const auto& stream : streams) shown.insert(stream.channels.begin(), stream.channels.end());
   for (const auto& [id, channel] : summary.channels) {
-    if (topics.contains(channel.topic)) continue;
+    if (shown.contains(id)) continue;
     const auto count = summary.counts.find(id);
     const auto schema = summary.schemas.find(channel.schema);
     streams.push_back({channel.topic,
                        schema == summary.schemas.end() ? channel.encoding : schema->second.name,
-                       {},
                        count == summary.counts.end() ? 0 : count->second,
                        0,
-                       0});
+                       0,
+                       {}});
   }
   print_streams(
       streams, static_cast<double>(summary.end - summary.begin) * 1e-9,
       hc::format("{} in {} chunk{} of {}", bytes_in_words(static_cast<double>(reader.size())),
                  summary.chunks, summary.chunks == 1 ? "" : "s",
                  bytes_in_words(static_cast<double>(summary.plain))));
-  if (summary.metadata > 0)
-    print(hc::format("{} records of metadata, such as {}\n", summary.metadata,
-                     summary.first_metadata));
+  if (!summary.metadata.empty())
+    print(hc::format("{} records of metadata, such as {}\n", summary.metadata.size(),
+                     summary.metadata.front()));
   if (summary.unread > 0)
     say(hc::format("hc info: {}: {} of {} chunks have no index, and cannot be read: {}", path,
                    summary.unread, summary.chunks, summary.why_unread));

@@ -35,7 +35,7 @@ struct RecordOptions {
 
 /// What is recorded as it comes.
 struct Link {
-  std::string word;
+  std::string word, name;
   bool is_port = false;                // of a running graph: one stream, whoever sent its messages
   std::unique_ptr<hc::Source> source;  // null once it has ended
 };
@@ -56,15 +56,6 @@ bool is_recording(const Place& place) {
   std::error_code missing;
   return place.kind == Place::Kind::Mcap || place.kind == Place::Kind::Folder ||
          (place.kind == Place::Kind::File && std::filesystem::is_regular_file(place.path, missing));
-}
-
-/// What the stream of a link is called: MODULE.PORT, or a file without folder and ending.
-std::string stream_name(const std::string& word) {
-  const auto place = hc::record::place_of(word);
-  if (!place.stream.empty()) return place.stream;
-  if (place.kind == Place::Kind::Link) return place.uri.scheme == "-" ? "messages" : place.uri.rest;
-  const auto name = std::filesystem::path(place.path).filename();
-  return name.extension() == ".mtp" || name.extension() == ".mcap" ? name.stem() : name;
 }
 
 /// Takes the words SOURCE FILE, or FILE alone, as `file` is empty then.
@@ -97,7 +88,8 @@ class Recording {
       if (!is_port && is_recording(place))
         recordings.push_back(place);
       else
-        links_.push_back({word, is_port, open_named(word, options.of, options.limit)});
+        links_.push_back(
+            {word, place.name(), is_port, open_named(word, options.of, options.limit)});
     }
     const auto place = hc::record::place_of(options.file);
     if (!recordings.empty())
@@ -138,7 +130,7 @@ class Recording {
     options.split = value_or_fail(hc::mcap::parse_bytes(options_.split), "--split");
     options.keep = value_or_fail(hc::mcap::parse_bytes(options_.keep), "--keep");
     options.last = hc::duration(options_.last);
-    if (!options_.when.empty()) options.when = stream_name(options_.when);
+    if (!options_.when.empty()) options.when = hc::record::place_of(options_.when).name();
     options.log = [](hc::Level severity, std::string_view line) {
       const bool is_file = line.starts_with("file:");  // as links log it
       say((is_file                        ? ""
@@ -181,8 +173,7 @@ class Recording {
       link.source.reset();
     }
     if (got != hc::Got::Message) return false;
-    auto stream =
-        writer_->stream_of(number, stream_name(link.word), link.is_port ? 0 : message.header.src);
+    auto stream = writer_->stream_of(number, link.name, link.is_port ? 0 : message.header.src);
     check(stream ? writer_->add(*stream, message) : hc::Status(stream.error()));
     return true;
   }

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include <record/mcap/chunk_codec.h>
-
 namespace hc::mcap {
 namespace {
 
@@ -17,66 +15,52 @@ Error damaged(const std::string& what) {
 void ChunkBuilder::add(const MessageRecord& message,
                        std::span<const std::span<const std::byte>> data) {
   index_[message.channel].emplace_back(message.log_time, size());
-  begin_ = std::min(begin_, message.log_time);
-  end_ = std::max(end_, message.log_time);
-  records_.begin(Opcode::Message);
-  records_.number(message.channel);
-  records_.number(message.sequence);
-  records_.number(message.log_time);
-  records_.number(message.publish_time);
+  records_.begin(Opcode::Message, message.channel, message.sequence, message.log_time,
+                 message.publish_time);
   for (const auto piece : data) records_.append(piece);
   records_.end();
 }
 
-ChunkPacker::ChunkPacker(int level) : compressor_(internal::make_compressor(level)) {}
+Chunk ChunkBuilder::pack() const {
+  const std::span<const std::byte> plain(records_.bytes);
+  const auto smaller = compress_zstd(plain);
+  const bool helps = !smaller.empty() && smaller.size() < plain.size();
+  const auto stored = helps ? std::span(smaller) : plain;
 
-ChunkPacker::~ChunkPacker() = default;
-
-PackedChunk ChunkPacker::pack(const ChunkBuilder& chunk) {
-  const std::span<const std::byte> plain(chunk.records_.bytes);
-  // What does not get smaller stays as it is.
-  const auto smaller = compressor_ != nullptr ? compressor_->compress(plain) : plain;
-  const bool helps = smaller.size() < plain.size();
-  const auto stored = helps ? smaller : plain;
-
+  Chunk chunk;
+  chunk.begin = index_.begin()->second.front().first;
+  for (const auto& [channel, entries] : index_) {
+    const auto [first, last] = std::ranges::minmax(entries);
+    chunk.begin = std::min(chunk.begin, first.first);
+    chunk.end = std::max(chunk.end, last.first);
+  }
+  chunk.plain = plain.size();
+  chunk.compressed = stored.size();
+  chunk.compression = helps ? "zstd" : "";
   RecordWriter out;
-  out.bytes.reserve(stored.size() + 128 + 64 * chunk.index_.size());
-  ChunkInfo info{chunk.begin_, chunk.end_,          0,  0, 0, stored.size(),
-                 plain.size(), helps ? "zstd" : "", {}, {}};
-  out.begin(Opcode::Chunk);
-  out.number(info.begin);
-  out.number(info.end);
-  out.number(info.plain);
-  out.number(crc32(plain));
-  out.string(info.compression);
-  out.number(info.compressed);
+  out.bytes.reserve(stored.size() + 128 + 64 * index_.size());
+  out.begin(Opcode::Chunk, chunk.begin, chunk.end, chunk.plain, crc32(plain), chunk.compression,
+            chunk.compressed);
   out.append(stored);
   out.end();
-  info.length = out.bytes.size();
-  for (const auto& [channel, entries] : chunk.index_) {
-    info.index_offsets[channel] = out.bytes.size();
-    info.counts[channel] = entries.size();
-    out.begin(Opcode::MessageIndex);
-    out.number(channel);
-    out.number(static_cast<std::uint32_t>(entries.size() * 16));
-    for (const auto& [time, offset] : entries) {
-      out.number(time);
-      out.number(offset);
-    }
-    out.end();
+  chunk.length = out.bytes.size();
+  for (const auto& [channel, entries] : index_) {
+    chunk.indexes[channel] = {out.bytes.size(), entries.size()};
+    out.add(Opcode::MessageIndex, channel, entries);
   }
-  info.index_length = out.bytes.size() - info.length;
-  return {std::move(out.bytes), std::move(info), chunk.messages};
+  chunk.bytes = std::move(out.bytes);
+  return chunk;
 }
 
 Result<std::vector<std::byte>> unpack_chunk(std::span<const std::byte> content,
                                             std::uint64_t limit) {
   RecordReader reader(content);
-  reader.take(16);
-  const auto plain_size = reader.number<std::uint64_t>();
-  const auto crc = reader.number<std::uint32_t>();
-  const auto compression = reader.string();
-  const auto stored = reader.take(reader.number<std::uint64_t>());
+  std::uint64_t plain_size = 0, stored_size = 0;
+  std::uint32_t crc = 0;
+  std::string compression;
+  reader.take(16);  // first and last log time
+  reader.get(plain_size, crc, compression, stored_size);
+  const auto stored = reader.take(stored_size);
   if (!reader.is_good()) return damaged("its lengths do not add up");
   if (plain_size > limit)
     return Error{Code::TooLarge, "MCAP chunk: it holds " + std::to_string(plain_size) +
@@ -85,12 +69,12 @@ Result<std::vector<std::byte>> unpack_chunk(std::span<const std::byte> content,
   if (compression.empty()) {
     plain.assign(stored.begin(), stored.end());
   } else if (compression == "zstd") {
-    auto expanded = internal::expand_zstd(stored, plain_size);
+    auto expanded = expand_zstd(stored, plain_size);
     if (!expanded) return expanded.error();
     plain = std::move(*expanded);
   } else {
     return Error{Code::Unsupported,
-                 "MCAP chunk: compression \"" + std::string(compression.substr(0, 20)) +
+                 "MCAP chunk: compression \"" + compression.substr(0, 20) +
                      "\" is not known here; `mcap compress --compression zstd` changes it"};
   }
   if (plain.size() != plain_size)

@@ -6,41 +6,40 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace hc::mcap {
 namespace {
 
 constexpr std::uint64_t kFooterLength = 20;
+constexpr const char* kTooShort = "a record is shorter than what it holds";
 constexpr std::uint64_t kRunBytes = std::uint64_t{4} << 20;  // of messages that are in no chunk
 
 MessageRecord read_head(RecordReader& reader) {
   MessageRecord message;
-  message.channel = reader.number<std::uint16_t>();
-  message.sequence = reader.number<std::uint32_t>();
-  message.log_time = reader.number<std::uint64_t>();
-  message.publish_time = reader.number<std::uint64_t>();
+  reader.get(message.channel, message.sequence, message.log_time, message.publish_time);
   return message;
 }
 
-std::map<std::uint16_t, std::uint64_t> read_map(RecordReader list) {
-  std::map<std::uint16_t, std::uint64_t> map;
-  while (!list.at_end()) {
-    const auto key = list.number<std::uint16_t>();
-    map[key] = list.number<std::uint64_t>();
-  }
-  return map;
+/// The next record's opcode and content.
+std::pair<Opcode, std::span<const std::byte>> take_record(RecordReader& records) {
+  Opcode opcode{};
+  std::uint64_t length = 0;
+  records.get(opcode, length);
+  return {opcode, records.take(length)};
 }
 
-void add_time(Summary& summary, std::uint64_t begin, std::uint64_t end) {
-  summary.begin = summary.begin == 0 ? begin : std::min(summary.begin, begin);
-  summary.end = std::max(summary.end, end);
+Error damaged(const std::string& what, std::uint64_t at) {
+  return {Code::Malformed, "MCAP: " + what + ", at byte " + std::to_string(at)};
+}
+
+/// Whether all channels that have messages are known.
+bool knows_channels(const Summary& summary) {
+  return std::ranges::all_of(
+      summary.counts, [&](const auto& each) { return summary.channels.contains(each.first); });
 }
 
 }  // namespace
-
-Error Reader::damaged(const std::string& what, std::uint64_t at) const {
-  return {Code::Malformed, "MCAP: " + what + ", at byte " + std::to_string(at)};
-}
 
 Error Reader::truncated(std::uint64_t at) const {
   return {Code::Truncated, "MCAP: the file has no end, as a recorder that was killed leaves it; " +
@@ -60,6 +59,11 @@ Result<Reader> Reader::open(const std::string& path, const ReaderLimits& limits)
   if (!magic && magic.error().code != Code::Truncated) return magic.error();
   if (!magic || std::memcmp(magic->data(), kMagic.data(), kMagic.size()) != 0)
     return Error{Code::Malformed, path + ": no MCAP file: it does not begin as one"};
+  auto chunks = reader.read_summary();
+  if (!chunks) return chunks.error();
+  if (auto scanned = reader.scan(*chunks); !scanned) return scanned.error();
+  reader.count_contents();
+  std::ranges::stable_sort(reader.parts_, {}, &Part::first);
   return reader;
 }
 
@@ -72,12 +76,13 @@ Result<std::vector<std::byte>> Reader::read(std::uint64_t at, std::uint64_t size
   if (at > size_ || size > size_ - at) return truncated(at);
   std::vector<std::byte> bytes(size);
   for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t got = ::pread(descriptor_.get(), bytes.data() + done, bytes.size() - done,
-                                static_cast<off_t>(at + done));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return internal::system_error("read", path_);
-    if (got == 0) return truncated(at);  // it has become shorter
-    done += static_cast<std::size_t>(got);
+    const auto got = internal::system_call("read", path_, [&] {
+      return ::pread(descriptor_.get(), bytes.data() + done, bytes.size() - done,
+                     static_cast<off_t>(at + done));
+    });
+    if (!got) return got.error();
+    if (*got == 0) return truncated(at);  // it has become shorter
+    done += static_cast<std::size_t>(*got);
   }
   return bytes;
 }
@@ -85,104 +90,60 @@ Result<std::vector<std::byte>> Reader::read(std::uint64_t at, std::uint64_t size
 Result<Reader::RecordPlace> Reader::record_at(std::uint64_t at) {
   auto head = read(at, kRecordHead, kRecordHead);
   if (!head) return head.error();
-  RecordReader reader(*head);
-  const auto opcode = static_cast<Opcode>(reader.number<std::uint8_t>());
-  const RecordPlace place{opcode, at + kRecordHead, reader.number<std::uint64_t>()};
-  if (place.length > size_ - place.content) return truncated(at);
+  RecordPlace place{{}, at, 0};
+  RecordReader(*head).get(place.opcode, place.length);
+  if (place.length > size_ - place.content()) return truncated(at);
   return place;
 }
 
-Status Reader::take(Opcode opcode, std::span<const std::byte> content, Summary& summary,
-                    std::uint64_t at) {
+Status Reader::declare(const RecordPlace& place, std::span<const std::byte> content) {
   RecordReader reader(content);
-  const bool is_kept = opcode == Opcode::Schema || opcode == Opcode::Channel;
-  if (is_kept) {  // as often as one likes, with the same content
-    const auto id = RecordReader(content).number<std::uint16_t>();
-    if (opcode == Opcode::Schema ? summary.schemas.contains(id) : summary.channels.contains(id))
-      return {};
-    kept_ += content.size() + sizeof(ChannelRecord);
-  }
-  if (kept_ > limits_.summary_bytes)
-    return Error{Code::TooLarge, "MCAP: schemas and channels of more than " +
-                                     std::to_string(limits_.summary_bytes) + " bytes"};
-  if (opcode == Opcode::Header) {
-    reader.string();
-    summary.library = reader.string();
-  } else if (opcode == Opcode::Schema) {
+  bool is_new = false;  // they may be repeated
+  if (place.opcode == Opcode::Schema) {
     SchemaRecord schema;
-    schema.id = reader.number<std::uint16_t>();
-    schema.name = reader.string();
-    schema.encoding = reader.string();
-    schema.text = reader.string();
-    if (reader.is_good()) summary.schemas[schema.id] = std::move(schema);
-  } else if (opcode == Opcode::Channel) {
+    reader.get(schema.id, schema.name, schema.encoding, schema.text);
+    is_new = reader.is_good() && summary_.schemas.try_emplace(schema.id, schema).second;
+  } else {
     ChannelRecord channel;
-    channel.id = reader.number<std::uint16_t>();
-    channel.schema = reader.number<std::uint16_t>();
-    channel.topic = reader.string();
-    channel.encoding = reader.string();
-    channel.metadata = reader.words();
-    if (reader.is_good()) summary.channels[channel.id] = std::move(channel);
-  } else if (opcode == Opcode::Statistics) {
-    summary.messages = reader.number<std::uint64_t>();
-    reader.take(18);
-    summary.begin = reader.number<std::uint64_t>();
-    summary.end = reader.number<std::uint64_t>();
-    summary.counts = read_map(reader.list());
-  } else if (opcode == Opcode::ChunkIndex) {
-    reader.take(32);  // times and place
-    reader.list();
-    reader.take(8);
-    reader.string();
-    reader.take(8);
-    summary.plain += reader.number<std::uint64_t>();
-    ++summary.chunks;
-  } else if (opcode == Opcode::MetadataIndex) {
-    reader.take(16);
-    const auto name = reader.string();
-    if (summary.metadata++ == 0) summary.first_metadata = name;
+    reader.get(channel.id, channel.schema, channel.topic, channel.encoding, channel.metadata);
+    is_new = reader.is_good() && summary_.channels.try_emplace(channel.id, channel).second;
   }
-  if (!reader.is_good()) return damaged("a record is shorter than what it holds", at);
-  return {};
+  if (!reader.is_good()) return damaged(kTooShort, place.at);
+  if (is_new) declared_ += content.size() + sizeof(ChannelRecord);
+  if (declared_ <= limits_.summary_bytes) return {};
+  return Error{Code::TooLarge, "MCAP: schemas and channels of more than " +
+                                   std::to_string(limits_.summary_bytes) + " bytes"};
 }
 
-Result<Summary> Reader::summary() {
-  Summary summary;
-  kept_ = 0;
-  if (auto header = record_at(kMagic.size()); header && header->opcode == Opcode::Header)
-    if (auto content = read(header->content, header->length, limits_.summary_bytes))
-      if (auto taken = take(Opcode::Header, *content, summary, header->content); !taken)
-        return taken.error();
-  auto ended = read_end(summary);
-  if (!ended) return ended.error();
-  // A file's summary need not repeat channels, or count messages.
-  const bool has_all = std::ranges::all_of(
-      summary.counts, [&](const auto& each) { return summary.channels.contains(each.first); });
-  if (*ended && has_all && !summary.counts.empty()) return summary;
-  if (auto scanned = scan(); !scanned) return scanned.error();
-  Summary heads = heads_;
-  count_contents(heads);
-  return heads;
+void Reader::add_times(const Part& part) {
+  if (part.first == 0 && part.last == 0) return;  // of a chunk without messages
+  summary_.begin = summary_.begin == 0 ? part.first : std::min(summary_.begin, part.first);
+  summary_.end = std::max(summary_.end, part.last);
 }
 
-/// Takes the summary at the end of the file; false where there is none.
-Result<bool> Reader::read_end(Summary& summary) {
+void Reader::add_chunk(const Part& chunk) {
+  parts_.push_back(chunk);
+  add_times(chunk);
+  summary_.plain += chunk.plain;
+  ++summary_.chunks;
+}
+
+Result<std::vector<Reader::Part>> Reader::read_summary() {
+  std::vector<Part> chunks;
   const std::uint64_t tail = kRecordHead + kFooterLength + kMagic.size();
-  if (size_ < kMagic.size() + tail) return false;
-  auto end = read(size_ - tail, tail, tail);
+  if (size_ < kMagic.size() + tail) return chunks;
+  const std::uint64_t footer_at = size_ - tail;
+  auto end = read(footer_at, tail, tail);
   if (!end) return end.error();
   RecordReader footer(*end);
-  const auto opcode = static_cast<Opcode>(footer.number<std::uint8_t>());
-  const auto length = footer.number<std::uint64_t>();
-  const auto begin = footer.number<std::uint64_t>();
-  footer.number<std::uint64_t>();
-  const auto crc = footer.number<std::uint32_t>();
-  const auto magic = footer.take(kMagic.size());
-  if (opcode != Opcode::Footer || length != kFooterLength ||
-      std::memcmp(magic.data(), kMagic.data(), kMagic.size()) != 0)
-    return false;
-  if (begin == 0) return false;  // a file may have no summary
-  const std::uint64_t footer_at = size_ - tail;
+  Opcode opcode{};
+  std::uint64_t length = 0, begin = 0, offsets = 0;
+  std::uint32_t crc = 0;
+  footer.get(opcode, length, begin, offsets, crc);
+  const bool has_footer =
+      opcode == Opcode::Footer && length == kFooterLength &&
+      std::memcmp(end->data() + (tail - kMagic.size()), kMagic.data(), kMagic.size()) == 0;
+  if (!has_footer || begin == 0) return chunks;  // a file may have no summary
   if (begin < kMagic.size() || begin > footer_at)
     return damaged("the summary begins outside of the file", footer_at);
   // Record by record: of a recording of days it is long.
@@ -195,217 +156,233 @@ Result<bool> Reader::read_end(Summary& summary) {
     if (!bytes) return bytes.error();
     found_crc = crc32(*bytes, found_crc);
     const auto content = std::span(*bytes).subspan(kRecordHead);
-    if (auto taken = take(place->opcode, content, summary, at); !taken) return taken.error();
+    RecordReader reader(content);
+    if (place->opcode == Opcode::Schema || place->opcode == Opcode::Channel) {
+      if (auto declared = declare(*place, content); !declared) return declared.error();
+    } else if (place->opcode == Opcode::Statistics) {
+      reader.take(42);
+      reader.get(summary_.counts);
+    } else if (place->opcode == Opcode::ChunkIndex) {
+      Part chunk{.is_chunk = true, .is_counted = true};
+      std::uint64_t size = 0, indexes_size = 0, compressed = 0;
+      std::string indexes, compression;
+      reader.get(chunk.first, chunk.last, chunk.at, size, indexes, indexes_size, compression,
+                 compressed, chunk.plain);
+      chunk.end = chunk.at + size;
+      chunk.indexed = chunk.end + indexes_size;
+      if (chunk.at < chunk.end && chunk.end <= chunk.indexed && chunk.indexed <= begin)
+        chunks.push_back(chunk);
+    }
+    if (!reader.is_good()) return damaged(kTooShort, at);
     at = place->end();
   }
   const auto head = std::span(*end).first(kRecordHead + 2 * sizeof(std::uint64_t));
   if (crc != 0 && crc32(head, found_crc) != crc)
     return damaged("the summary's CRC is wrong", begin);
-  summary.is_whole = true;
-  return true;
+  if (summary_.counts.empty()) chunks.clear();
+  std::ranges::sort(chunks, {}, &Part::at);
+  return chunks;
 }
 
-Status Reader::scan() {
-  if (is_scanned_) return {};
+Status Reader::scan(const std::vector<Part>& chunks) {
+  const bool is_counted = !summary_.counts.empty();
   while (true) {
+    const auto known = std::ranges::lower_bound(chunks, scanned_, {}, &Part::at);
+    if (known != chunks.end() && known->at == scanned_) {
+      add_chunk(*known);
+      scanned_ = known->indexed;
+      continue;
+    }
     auto place = record_at(scanned_);
     if (!place && place.error().code != Code::Truncated) return place.error();
-    heads_.is_whole = place.has_value();
-    is_scanned_ = !place || place->opcode == Opcode::DataEnd || place->opcode == Opcode::Footer;
-    if (is_scanned_) break;
-    const auto at = std::exchange(scanned_, place->end());
-    if (auto taken = scan_record(*place, at); !taken) return taken;
+    summary_.is_whole = place.has_value();
+    if (!place || place->opcode == Opcode::DataEnd || place->opcode == Opcode::Footer) return {};
+    scanned_ = place->end();
+    if (auto taken = scan_record(*place, is_counted); !taken) return taken;
   }
-  found.schemas.insert(heads_.schemas.begin(), heads_.schemas.end());
-  found.channels.insert(heads_.channels.begin(), heads_.channels.end());
-  return {};
 }
 
-Status Reader::scan_record(const RecordPlace& place, std::uint64_t at) {
+Status Reader::scan_record(const RecordPlace& place, bool is_counted) {
   constexpr std::uint64_t kHead = 64, kEntry = 16, kMaxName = 4096;
-  const bool is_kept = place.opcode == Opcode::Schema || place.opcode == Opcode::Channel ||
-                       place.opcode == Opcode::Header;
-  const std::uint64_t most = is_kept                            ? place.length
-                             : place.opcode == Opcode::Metadata ? kMaxName
-                                                                : kHead;
-  auto content = read(place.content, std::min(place.length, most), limits_.summary_bytes);
+  const bool declares = place.opcode == Opcode::Schema || place.opcode == Opcode::Channel;
+  const bool is_metadata = place.opcode == Opcode::Metadata;
+  const std::uint64_t most = declares ? place.length : is_metadata ? kMaxName : kHead;
+  auto content = read(place.content(), std::min(place.length, most), limits_.summary_bytes);
   if (!content) return content.error();
-  if (is_kept) return take(place.opcode, *content, heads_, at);
+  if (declares) return declare(place, *content);
+  const bool is_behind_chunk = !parts_.empty() && parts_.back().is_chunk;
   RecordReader reader(*content);
-  if (place.opcode == Opcode::Metadata) {
-    const auto name = reader.string();
-    if (heads_.metadata++ == 0) heads_.first_metadata = name;
-    metadata_.emplace_back(name, place);
+  if (is_metadata) {
+    metadata_.push_back(place);
+    reader.get(summary_.metadata.emplace_back());
   } else if (place.opcode == Opcode::Chunk) {
-    const auto first = reader.number<std::uint64_t>(), last = reader.number<std::uint64_t>();
-    heads_.plain += reader.number<std::uint64_t>();
-    if (!reader.is_good()) return damaged("a chunk is shorter than its head", at);
-    parts_.push_back({first, last, at, place.end(), true, false});
-    if (first != 0 || last != 0) add_time(heads_, first, last);  // both are 0 of an empty one
-    ++heads_.chunks;
-  } else if (place.opcode == Opcode::MessageIndex && !parts_.empty() && parts_.back().is_chunk) {
-    const auto channel = reader.number<std::uint16_t>();
-    const std::uint64_t count = reader.number<std::uint32_t>() / kEntry;
-    heads_.counts[channel] += count;
-    heads_.messages += count;
-    parts_.back().has_index = true;
+    Part chunk{.at = place.at, .end = place.end(), .is_chunk = true, .is_counted = is_counted};
+    reader.get(chunk.first, chunk.last, chunk.plain);
+    add_chunk(chunk);
+  } else if (place.opcode == Opcode::MessageIndex && is_behind_chunk && !is_counted) {
+    std::uint16_t channel = 0;
+    std::uint32_t size = 0;
+    reader.get(channel, size);
+    summary_.counts[channel] += size / kEntry;
+    parts_.back().is_counted = true;
   } else if (place.opcode == Opcode::Message) {
     const auto message = read_head(reader);
-    if (!reader.is_good()) return damaged("a message is shorter than its head", at);
-    ++heads_.counts[message.channel];
-    ++heads_.messages;
-    add_time(heads_, message.log_time, message.log_time);
-    if (parts_.empty() || parts_.back().is_chunk || place.end() - parts_.back().at > kRunBytes)
-      parts_.push_back({message.log_time, message.log_time, at, at, false, true});
+    const auto time = message.log_time;
+    if (!is_counted) ++summary_.counts[message.channel];
+    if (parts_.empty() || is_behind_chunk || place.end() - parts_.back().at > kRunBytes)
+      parts_.push_back({.first = time, .at = place.at, .is_counted = true});
     auto& run = parts_.back();
     run.end = place.end();
-    run.first = std::min(run.first, message.log_time);
-    run.last = std::max(run.last, message.log_time);
+    run.first = std::min(run.first, time);
+    run.last = std::max(run.last, time);
+    add_times(run);
   }
   return {};
 }
 
-void Reader::count_contents(Summary& summary) {
+void Reader::count_contents() {
   for (const auto& part : parts_) {
-    const bool has_all = std::ranges::all_of(
-        summary.counts, [&](const auto& each) { return summary.channels.contains(each.first); });
-    if (part.has_index && has_all) continue;
-    auto opened = open(part, summary);
-    if (!opened && summary.unread++ == 0) summary.why_unread = opened.error().detail;
-    if (!opened || part.has_index) continue;
-    summary.messages += opened->messages.size();
-    for (const auto& [time, at] : opened->messages) {
-      RecordReader reader(std::span(*opened->bytes).subspan(at + kRecordHead));
-      ++summary.counts[reader.number<std::uint16_t>()];
-    }
+    if (part.is_counted && knows_channels(summary_)) continue;
+    auto opened = open(part, [&](const MessageRecord& message) {
+      if (!part.is_counted) ++summary_.counts[message.channel];
+      return false;
+    });
+    if (!opened && summary_.unread++ == 0) summary_.why_unread = opened.error().detail;
   }
 }
 
 Result<std::map<std::string, Words>> Reader::metadata() {
-  if (auto scanned = scan(); !scanned) return scanned.error();
   std::map<std::string, Words> all;
   std::uint64_t kept = 0;
-  for (const auto& [name, place] : metadata_) {
-    auto content = read(place.content, place.length, limits_.summary_bytes - kept);
+  for (const auto& place : metadata_) {
+    auto content = read(place.content(), place.length, limits_.summary_bytes - kept);
     if (!content) return content.error();
     kept += content->size();
     RecordReader reader(*content);
-    const std::string key(reader.string());
-    all[key] = reader.words();
-    if (!reader.is_good()) return damaged("a record is shorter than what it holds", place.content);
+    std::string name;
+    Words words;
+    reader.get(name, words);
+    all[name] = std::move(words);
+    if (!reader.is_good()) return damaged(kTooShort, place.at);
   }
   return all;
 }
 
-Result<bool> Reader::is_skipped(const Part& chunk) {
-  if (chunk.last < start_) return true;
-  if (!selected_ || !chunk.is_chunk) return false;
-  for (std::uint64_t at = chunk.end;;) {
+Result<bool> Reader::is_skipped(const Part& part) {
+  if (part.last < start_) return true;
+  if (!selected_ || !part.is_chunk) return false;
+  for (std::uint64_t at = part.end;;) {
     auto place = record_at(at);
     // Where the file ends here, there may have been more.
     if (!place) return place.error().code == Code::Truncated ? Result<bool>(false) : place.error();
-    if (place->opcode != Opcode::MessageIndex) return at > chunk.end;
-    auto channel = read(place->content, sizeof(std::uint16_t), sizeof(std::uint16_t));
-    if (!channel) return channel.error();
-    if (selected_->contains(RecordReader(*channel).number<std::uint16_t>())) return false;
+    if (place->opcode != Opcode::MessageIndex) return at > part.end;
+    std::uint16_t channel = 0;
+    auto bytes = read(place->content(), sizeof channel, sizeof channel);
+    if (!bytes) return bytes.error();
+    RecordReader(*bytes).get(channel);
+    if (selected_->contains(channel)) return false;
     at = place->end();
   }
 }
 
-Result<Reader::OpenPart> Reader::open(const Part& part, Summary& summary) {
-  const auto head = part.is_chunk ? kRecordHead : 0;
-  auto bytes = read(part.at + head, part.end - part.at - head, limits_.chunk_bytes);
+Result<std::vector<Reader::Pending>> Reader::open(
+    const Part& part, const std::function<bool(const MessageRecord&)>& is_wanted) {
+  auto bytes = read(part.at, part.end - part.at, limits_.chunk_bytes);
   if (!bytes) return bytes.error();
   if (part.is_chunk) {
-    bytes = unpack_chunk(*bytes, limits_.chunk_bytes);
-    if (!bytes)
-      return Error{bytes.error().code,
-                   bytes.error().detail + ", at byte " + std::to_string(part.at)};
+    RecordReader record(*bytes);
+    const auto [opcode, content] = take_record(record);
+    if (opcode != Opcode::Chunk) return damaged("there is no chunk where one should be", part.at);
+    auto plain = unpack_chunk(content, limits_.chunk_bytes);
+    if (!plain)
+      return Error{plain.error().code,
+                   plain.error().detail + ", at byte " + std::to_string(part.at)};
+    bytes = std::move(plain);
   }
-  OpenPart opened{std::make_shared<const std::vector<std::byte>>(std::move(*bytes)), {}, 0};
-  RecordReader records(*opened.bytes);
+  const auto opened = std::make_shared<OpenPart>();
+  opened->bytes = std::move(*bytes);
+  std::vector<Pending> messages;
+  RecordReader records(opened->bytes);
   while (!records.at_end()) {
-    const std::uint64_t at = opened.bytes->size() - records.left();
-    const auto opcode = static_cast<Opcode>(records.number<std::uint8_t>());
-    const auto content = records.take(records.number<std::uint64_t>());
+    const std::uint64_t at = opened->bytes.size() - records.left();
+    const auto [opcode, content] = take_record(records);
     if (!records.is_good()) return damaged("a record reaches over the end of its chunk", part.at);
     if (opcode == Opcode::Schema || opcode == Opcode::Channel)
-      if (auto taken = take(opcode, content, summary, part.at); !taken) return taken.error();
+      if (auto declared = declare({opcode, part.at, 0}, content); !declared)
+        return declared.error();
     if (opcode != Opcode::Message) continue;  // a chunk has no others
     RecordReader reader(content);
     const auto message = read_head(reader);
     if (!reader.is_good()) return damaged("a message is shorter than its head", part.at);
-    opened.messages.emplace_back(message.log_time, at);
+    if (is_wanted(message)) messages.push_back({message.log_time, at, opened});
   }
-  return opened;
+  return messages;
 }
 
-Result<Reader::OpenPart*> Reader::front() {
-  if (auto scanned = scan(); !scanned) return scanned.error();
-  if (!std::exchange(is_sorted_, true)) std::ranges::stable_sort(parts_, {}, &Part::first);
+Result<bool> Reader::fill() {
   while (true) {
-    auto first = open_.begin();
-    for (auto each = open_.begin(); each != open_.end(); ++each)
-      if (each->second.time() < first->second.time()) first = each;
-    const bool has_next = next_part_ < parts_.size();
-    if (!open_.empty() && (!has_next || parts_[next_part_].first >= first->second.time() ||
-                           open_bytes_ > limits_.chunk_bytes))
-      return &first->second;
-    if (!has_next) return heads_.is_whole ? Result<OpenPart*>(nullptr) : truncated(scanned_);
-    const auto number = next_part_++;
-    const Part& part = parts_[number];
+    const bool has_part = next_part_ < parts_.size();
+    const bool has_message = next_ < pending_.size();
+    if (has_message && (!has_part || open_bytes_ > limits_.chunk_bytes ||
+                        parts_[next_part_].first >= pending_[next_].time))
+      return true;
+    if (!has_part) return summary_.is_whole ? Result<bool>(false) : truncated(scanned_);
+    const Part& part = parts_[next_part_++];
     position_ += part.end - part.at;
     auto skipped = is_skipped(part);
     if (!skipped) return skipped.error();
     if (*skipped) continue;
-    auto opened = open(part, found);
-    if (!opened) return opened.error();
-    std::erase_if(opened->messages, [&](const auto& message) {
-      RecordReader reader(std::span(*opened->bytes).subspan(message.second + kRecordHead));
-      const auto channel = reader.number<std::uint16_t>();
-      return message.first < start_ || (selected_ && !selected_->contains(channel));
+    auto opened = open(part, [&](const MessageRecord& message) {
+      return message.log_time >= start_ && (!selected_ || selected_->contains(message.channel));
     });
-    if (opened->messages.empty()) continue;
-    const auto by_time = [](const auto& each) { return each.first; };
-    if (!std::ranges::is_sorted(opened->messages, {}, by_time))
-      std::ranges::stable_sort(opened->messages, {}, by_time);
-    open_bytes_ += opened->bytes->size();
-    open_.emplace(number, std::move(*opened));
+    if (!opened) return opened.error();
+    if (opened->empty()) continue;
+    opened->front().part->left = opened->size();
+    open_bytes_ += opened->front().part->bytes.size();
+    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(next_));
+    next_ = 0;
+    std::ranges::move(*opened, std::back_inserter(pending_));
+    if (!std::ranges::is_sorted(pending_, {}, &Pending::time))
+      std::ranges::stable_sort(pending_, {}, &Pending::time);
   }
+}
+
+void Reader::pop() {
+  auto part = std::move(pending_[next_++].part);
+  if (--part->left == 0) open_bytes_ -= part->bytes.size();
 }
 
 void Reader::start_at(std::uint64_t log_time) {
   start_ = log_time;
-  for (auto& [number, part] : open_)
-    while (part.next < part.messages.size() && part.time() < start_) ++part.next;
-  close_parts();
-}
-
-void Reader::close_parts() {
-  std::erase_if(open_, [&](const auto& each) {
-    const bool is_read = each.second.next == each.second.messages.size();
-    if (is_read) open_bytes_ -= each.second.bytes->size();
-    return is_read;
-  });
+  while (next_ < pending_.size() && pending_[next_].time < start_) pop();
 }
 
 Result<std::optional<std::uint64_t>> Reader::next_time() {
-  auto part = front();
-  if (!part) return part.error();
-  return *part != nullptr ? std::optional((*part)->time()) : std::nullopt;
+  auto filled = fill();
+  if (!filled) return filled.error();
+  return *filled ? std::optional(pending_[next_].time) : std::nullopt;
 }
 
 Result<std::optional<StoredMessage>> Reader::next() {
-  auto found_part = front();
-  if (!found_part) return found_part.error();
-  OpenPart* part = *found_part;
-  if (part == nullptr) return std::optional<StoredMessage>();
-  RecordReader record(std::span(*part->bytes).subspan(part->messages[part->next].second + 1));
-  const auto content = record.take(record.number<std::uint64_t>());
+  auto filled = fill();
+  if (!filled) return filled.error();
+  if (!*filled) return std::optional<StoredMessage>();
+  const auto part = pending_[next_].part;
+  RecordReader record(std::span(part->bytes).subspan(pending_[next_].at));
+  pop();
+  const auto content = take_record(record).second;
   RecordReader reader(content);
-  StoredMessage stored{read_head(reader), {}, part->bytes};
+  StoredMessage stored{read_head(reader), nullptr, nullptr, {}, part};
   stored.data = content.last(reader.left());
-  if (++part->next == part->messages.size()) close_parts();
+  const auto channel = summary_.channels.find(stored.record.channel);
+  if (channel == summary_.channels.end())
+    return Error{Code::Malformed, "MCAP: a message of channel " +
+                                      std::to_string(stored.record.channel) +
+                                      ", which is not declared"};
+  stored.channel = &channel->second;
+  if (const auto schema = summary_.schemas.find(channel->second.schema);
+      schema != summary_.schemas.end())
+    stored.schema = &schema->second;
   return std::optional(std::move(stored));
 }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Reads MCAP files, whoever wrote them: their summary, and their messages in the order of their log
-// times. A file without its end, as a crash leaves it, is read up to its last whole chunk. Whatever
-// a file holds, memory is bounded by the limits and by the number of its chunks.
+// Reads MCAP files, also of other programs: their summary, and their messages by log time. Of a
+// truncated file, as a crash leaves it, all complete chunks are read. Memory is bounded by the
+// limits and the number of chunks, whatever a file contains.
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -17,71 +18,65 @@
 #include <hc/base/result.h>
 #include <hc/os/descriptor.h>
 #include <record/mcap/chunk.h>
-#include <record/mcap/file.h>
 
 namespace hc::mcap {
 
 struct ReaderLimits {
-  std::uint64_t chunk_bytes = std::uint64_t{512} << 20;   ///< of a chunk or message, plain
-  std::uint64_t summary_bytes = std::uint64_t{64} << 20;  ///< of schemas and channels
+  std::uint64_t chunk_bytes = std::uint64_t{512} << 20;   ///< of a chunk or message, uncompressed
+  std::uint64_t summary_bytes = std::uint64_t{64} << 20;  ///< of all schemas and channels
 };
 
-/// What a file says of itself.
+/// What is known of a file.
 struct Summary {
-  std::string library;
   std::map<std::uint16_t, SchemaRecord> schemas;
   std::map<std::uint16_t, ChannelRecord> channels;
   std::map<std::uint16_t, std::uint64_t> counts;  ///< of messages, by channel
-  std::uint64_t messages = 0;
-  std::uint64_t begin = 0, end = 0;  ///< log times [ns since the Unix epoch]
-  std::uint64_t chunks = 0;          ///< how many
-  std::uint64_t plain = 0;           ///< what they hold, expanded [byte]
-  std::uint64_t metadata = 0;        ///< how many records
-  std::string first_metadata;        ///< name of one
-  bool is_whole = false;             ///< the file has its end
-  std::uint64_t unread = 0;          ///< chunks whose contents are not counted, as they cannot be
-  std::string why_unread;            ///< read, and why the first of them cannot
+  std::uint64_t begin = 0, end = 0;               ///< log times [ns since the Unix epoch]
+  std::uint64_t chunks = 0;                       ///< number of them
+  std::uint64_t plain = 0;                        ///< their size, uncompressed [byte]
+  std::vector<std::string> metadata;              ///< the name of each record
+  bool is_whole = false;                          ///< not truncated
+  std::uint64_t unread = 0;  ///< chunks without an index that cannot be read, and so not counted
+  std::string why_unread;    ///< the error of the first of them
 };
 
 /// A message, in the memory of its chunk.
 struct StoredMessage {
   MessageRecord record;
+  const ChannelRecord* channel = nullptr;  ///< of the reader, as the next
+  const SchemaRecord* schema = nullptr;    ///< null: none
   std::span<const std::byte> data;
   std::shared_ptr<const void> owner;
 };
 
 class Reader {
  public:
-  /// Errors: NotFound, System; Malformed (no MCAP file).
+  /// Opens a file and reads its summary. Where that does not lead to all records it also scans
+  /// for them, and decompresses chunks that have no index.
+  ///
+  /// Errors: NotFound, System; Malformed (not MCAP, or a damaged summary), TooLarge, Unsupported
+  /// (a pipe or device).
   static Result<Reader> open(const std::string& path, const ReaderLimits& limits = {});
 
-  /// Reads the summary; of a file that has none, or one that says too little, the heads of its
-  /// records, and the contents of chunks that have no index.
-  /// Errors: Malformed, TooLarge, System.
-  Result<Summary> summary();
-
-  /// The last metadata of each name. Cost: a look at each record's head.
-  /// Errors: Malformed, TooLarge, System.
+  /// Grows as chunks are read, by schemas and channels that only they declare.
+  [[nodiscard]] const Summary& summary() const { return summary_; }
+  /// The newest metadata of each name. Errors: Malformed, TooLarge, System.
   Result<std::map<std::string, Words>> metadata();
 
-  /// Reads these channels alone: chunks without any are skipped where the whole index behind them
-  /// says so.
+  /// Reads only these channels; chunks without them are skipped if their index is complete.
   void select(std::set<std::uint16_t> channels) { selected_ = std::move(channels); }
-  /// Skips messages of before; chunks without any other are not read.
+  /// Skips messages before this time, and chunks with only such messages.
   void start_at(std::uint64_t log_time);
 
-  /// The next message by log time, in the order of the file where these are equal; nothing at the
-  /// end. Schemas and channels that came before it are in `found`. Chunks whose times overlap are
-  /// open at the same time; beyond the limit of a chunk's bytes the order is not kept.
+  /// The next message by log time, those with equal times in the order of the file; nothing at the
+  /// end. Chunks that overlap in time are open together, up to the limit of a chunk's bytes; beyond
+  /// it their messages are not sorted.
   ///
-  /// Errors: Truncated (the file has no end; everything before was read), Malformed, TooLarge,
-  /// Unsupported, System. Read on after Malformed, TooLarge and Unsupported: at the next record.
+  /// Errors: Truncated (at the end of a truncated file), Malformed, TooLarge, Unsupported, System.
+  /// After Malformed, TooLarge and Unsupported the next call continues with the next chunk.
   Result<std::optional<StoredMessage>> next();
-  /// When that was logged. Errors: as next(), which does not give the same once more.
+  /// Its log time. Errors: as next(), each of them once.
   Result<std::optional<std::uint64_t>> next_time();
-
-  /// What next() has passed: schemas and channels.
-  Summary found;
 
   [[nodiscard]] int descriptor() const { return descriptor_.get(); }
   [[nodiscard]] std::uint64_t size() const { return size_; }
@@ -91,67 +86,72 @@ class Reader {
  private:
   struct RecordPlace {
     Opcode opcode{};
-    std::uint64_t content = 0, length = 0;  // where the content is
-    [[nodiscard]] std::uint64_t end() const { return content + length; }
+    std::uint64_t at = 0, length = 0;  // the latter of the content
+    [[nodiscard]] std::uint64_t content() const { return at + kRecordHead; }
+    [[nodiscard]] std::uint64_t end() const { return content() + length; }
   };
-  /// What is read at once: a chunk, or messages that are in none, one behind the other.
+  /// What is read at once: a chunk, or a run of messages outside of chunks.
   struct Part {
     std::uint64_t first = 0, last = 0;  // log times
     std::uint64_t at = 0, end = 0;      // in the file
-    bool is_chunk = false, has_index = false;
+    std::uint64_t indexed = 0;  // end of its MessageIndex records, of a chunk in the summary
+    std::uint64_t plain = 0;    // size of a chunk's messages [byte]
+    bool is_chunk = false;
+    bool is_counted = false;  // its messages are in Summary::counts
   };
   struct OpenPart {
-    std::shared_ptr<const std::vector<std::byte>> bytes;
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> messages;  // log times and places in it
-    std::size_t next = 0;
-    [[nodiscard]] std::uint64_t time() const { return messages[next].first; }
+    std::vector<std::byte> bytes;
+    std::size_t left = 0;  // messages to be read
+  };
+  struct Pending {
+    std::uint64_t time = 0, at = 0;  // in the part's bytes
+    std::shared_ptr<OpenPart> part;
   };
 
   Reader(std::string path, internal::Descriptor descriptor, std::uint64_t size,
          const ReaderLimits& limits)
       : path_(std::move(path)), descriptor_(std::move(descriptor)), size_(size), limits_(limits) {}
 
-  [[nodiscard]] Error damaged(const std::string& what, std::uint64_t at) const;
   [[nodiscard]] Error truncated(std::uint64_t at) const;
   Result<std::vector<std::byte>> read(std::uint64_t at, std::uint64_t size, std::uint64_t limit);
   /// The record at a place of the file. Errors: Truncated, System.
   Result<RecordPlace> record_at(std::uint64_t at);
-  /// Takes what is no message into `summary`. Errors: Malformed.
-  Status take(Opcode opcode, std::span<const std::byte> content, Summary& summary,
-              std::uint64_t at);
-  Result<bool> read_end(Summary& summary);
-  /// Looks at the heads of all records, once; continues behind one that is damaged.
-  Status scan();
-  /// Takes what a record says of the file as a whole.
-  Status scan_record(const RecordPlace& place, std::uint64_t at);
-  /// Counts in `summary` what only the contents of chunks say.
-  void count_contents(Summary& summary);
-  /// Whether the indexes behind a chunk, up to the next record, say that nothing selected is in it.
-  Result<bool> is_skipped(const Part& chunk);
-  /// The messages of a part in their order; takes what it declares into `summary`.
-  Result<OpenPart> open(const Part& part, Summary& summary);
-  /// Lets go of parts that are read.
-  void close_parts();
-  /// The part that has the next message; null at the end. Errors: as next().
-  Result<OpenPart*> front();
+  /// Adds a schema or channel to the summary. Errors: Malformed, TooLarge.
+  Status declare(const RecordPlace& place, std::span<const std::byte> content);
+  /// Reads the summary section, if there is one. Returns the chunks that it indexes, unless it
+  /// lacks the counts of messages.
+  Result<std::vector<Part>> read_summary();
+  /// Reads the heads of all records, other than these chunks and their indexes.
+  Status scan(const std::vector<Part>& chunks);
+  Status scan_record(const RecordPlace& place, bool is_counted);
+  void add_chunk(const Part& chunk);
+  void add_times(const Part& part);
+  /// Reads chunks whose messages are not counted, or whose channels are not known.
+  void count_contents();
+  /// Whether no message of a part is selected, by its times and indexes.
+  Result<bool> is_skipped(const Part& part);
+  /// Reads a part: its messages that are wanted, in the order of the file, and declarations.
+  Result<std::vector<Pending>> open(const Part& part,
+                                    const std::function<bool(const MessageRecord&)>& is_wanted);
+  /// Makes pending_[next_] the next message; false at the end. Errors: as next().
+  Result<bool> fill();
+  void pop();
 
   std::string path_;
   internal::Descriptor descriptor_;
   std::uint64_t size_ = 0;
   ReaderLimits limits_;
-  std::uint64_t kept_ = 0;  // of schemas and channels [byte]
+  std::uint64_t declared_ = 0;  // schemas and channels [byte]
+  Summary summary_;
+  std::vector<RecordPlace> metadata_;
+  std::uint64_t scanned_ = kMagic.size();  // end of the last complete record [byte]
+  std::vector<Part> parts_;                // by time
   std::optional<std::set<std::uint16_t>> selected_;
   std::uint64_t start_ = 0;
 
-  bool is_scanned_ = false;
-  std::uint64_t scanned_ = kMagic.size();  // how much of the file is whole records [byte]
-  Summary heads_;                          // what the heads of records say
-  std::vector<Part> parts_;                // by time, once they are read
-  std::vector<std::pair<std::string, RecordPlace>> metadata_;
-
-  bool is_sorted_ = false;
   std::size_t next_part_ = 0;
-  std::map<std::size_t, OpenPart> open_;  // by number of the part
+  std::vector<Pending> pending_;  // messages of open parts, by time
+  std::size_t next_ = 0;
   std::uint64_t open_bytes_ = 0, position_ = 0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The records that an MCAP file is made of: numbers, strings and maps to bytes and back. Pure.
-// Source: https://mcap.dev/spec
+// The records that an MCAP file is made of: numbers, strings, maps and lists to bytes and back.
+// Pure. Source: https://mcap.dev/spec
 
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace hc::mcap {
@@ -40,45 +41,71 @@ enum class Opcode : std::uint8_t {
 
 using Words = std::map<std::string, std::string>;
 
+struct SchemaRecord {
+  std::uint16_t id = 0;  ///< 0: no schema
+  std::string name, encoding, text;
+};
+
+struct ChannelRecord {
+  std::uint16_t id = 0, schema = 0;
+  std::string topic, encoding;
+  Words metadata;
+};
+
+/// What the data of a message follow.
+struct MessageRecord {
+  std::uint16_t channel = 0;
+  std::uint32_t sequence = 0;
+  std::uint64_t log_time = 0, publish_time = 0;  ///< [ns since the Unix epoch]
+};
+
+struct MetadataRecord {
+  std::string name;
+  Words words;
+};
+
 /// Writes records, one after the other.
 class RecordWriter {
  public:
   std::vector<std::byte> bytes;
 
-  /// Begins a record; end() gives it its length.
-  void begin(Opcode opcode) {
-    number(static_cast<std::uint8_t>(opcode));
+  void add(Opcode opcode, const auto&... fields) {
+    begin(opcode);
+    (put(fields), ...);
+    end();
+  }
+  /// Begins a record whose fields do not fit into one add(); end() gives it its length.
+  void begin(Opcode opcode, const auto&... fields) {
+    (put(opcode), put(std::uint64_t{0}));
     begin_ = bytes.size();
-    number(std::uint64_t{0});
+    (put(fields), ...);
   }
-  void end() {
-    const std::uint64_t length = bytes.size() - begin_ - sizeof(length);
-    std::memcpy(bytes.data() + begin_, &length, sizeof length);
-  }
+  void end() { set(begin_ - sizeof(std::uint64_t), std::uint64_t{bytes.size() - begin_}); }
 
-  template <typename T>
-  void number(T value) {
-    static_assert(std::is_integral_v<T>);
-    append(std::as_bytes(std::span(&value, 1)));
-  }
-  void string(std::string_view text) {
-    number(static_cast<std::uint32_t>(text.size()));
-    append(std::as_bytes(std::span(text)));
-  }
-  void words(const Words& map) {
-    std::size_t size = 0;
-    for (const auto& [key, value] : map) size += 8 + key.size() + value.size();
-    number(static_cast<std::uint32_t>(size));
-    for (const auto& [key, value] : map) {
-      string(key);
-      string(value);
-    }
-  }
   void append(std::span<const std::byte> more) {
     bytes.insert(bytes.end(), more.begin(), more.end());
   }
+  /// Writes a number over what is there.
+  void set(std::size_t at, auto number) { std::memcpy(&bytes[at], &number, sizeof number); }
 
  private:
+  template <typename T>
+  requires std::is_integral_v<T> || std::is_enum_v<T>
+  void put(T value) { append(std::as_bytes(std::span(&value, 1))); }
+  void put(std::string_view text) {
+    put(static_cast<std::uint32_t>(text.size()));
+    append(std::as_bytes(std::span(text)));
+  }
+  /// A map, or a list of pairs.
+  template <typename Pairs>
+  requires std::is_class_v<typename Pairs::value_type>
+  void put(const Pairs& pairs) {
+    put(std::uint32_t{0});
+    const std::size_t begin = bytes.size();
+    for (const auto& [first, second] : pairs) (put(first), put(second));
+    set(begin - sizeof(std::uint32_t), static_cast<std::uint32_t>(bytes.size() - begin));
+  }
+
   std::size_t begin_ = 0;
 };
 
@@ -91,28 +118,8 @@ class RecordReader {
   [[nodiscard]] bool at_end() const { return bytes_.empty() || !is_good_; }
   [[nodiscard]] std::size_t left() const { return bytes_.size(); }
 
-  template <typename T>
-  T number() {
-    T value{};
-    const auto taken = take(sizeof value);
-    if (is_good_) std::memcpy(&value, taken.data(), sizeof value);
-    return value;
-  }
-  std::string_view string() {
-    const auto taken = take(number<std::uint32_t>());
-    return {reinterpret_cast<const char*>(taken.data()), taken.size()};
-  }
-  /// The content of an array or map, whose length in bytes precedes it.
-  RecordReader list() { return RecordReader(take(number<std::uint32_t>())); }
-  Words words() {
-    Words map;
-    for (auto entries = list(); !entries.at_end();) {
-      const auto key = entries.string();
-      map[std::string(key)] = entries.string();
-      is_good_ = is_good_ && entries.is_good();
-    }
-    return map;
-  }
+  /// Reads fields one after the other.
+  void get(auto&... fields) { (get_one(fields), ...); }
   std::span<const std::byte> take(std::uint64_t size) {
     is_good_ = is_good_ && size <= bytes_.size();
     if (!is_good_) return {};
@@ -122,6 +129,31 @@ class RecordReader {
   }
 
  private:
+  template <typename T>
+  requires std::is_integral_v<T> || std::is_enum_v<T>
+  void get_one(T& value) {
+    const auto taken = take(sizeof value);
+    if (is_good_) std::memcpy(&value, taken.data(), sizeof value);
+  }
+  void get_one(std::string& text) {
+    const auto taken = take_list();
+    text.assign(reinterpret_cast<const char*>(taken.data()), taken.size());
+  }
+  template <typename Key, typename Value>
+  void get_one(std::map<Key, Value>& map) {
+    for (RecordReader entries(take_list()); !entries.at_end();) {
+      Key key{};
+      entries.get(key);
+      entries.get(map[std::move(key)]);
+      is_good_ = is_good_ && entries.is_good();
+    }
+  }
+  std::span<const std::byte> take_list() {
+    std::uint32_t size = 0;
+    get(size);
+    return take(size);
+  }
+
   std::span<const std::byte> bytes_;
   bool is_good_ = true;
 };

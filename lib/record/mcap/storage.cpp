@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <limits>
+#include <type_traits>
 
 #include <hc/base/format.h>
+#include <hc/base/uri.h>
 
 namespace hc::mcap {
 namespace {
@@ -43,24 +46,19 @@ std::uint64_t highest_number(const std::string& file) {
 }  // namespace
 
 Result<std::uint64_t> parse_bytes(std::string_view text) {
-  std::uint64_t number = 0;
-  if (text.empty()) return number;
-  const char* end = text.data() + text.size();
-  const auto [stop, status] = std::from_chars(text.data(), end, number);
-  const std::string_view unit(stop, static_cast<std::size_t>(end - stop));
-  const int shift = unit.empty() ? 0 : unit == "K" ? 10 : unit == "M" ? 20 : unit == "G" ? 30 : -1;
-  if (status != std::errc() || shift < 0 || number > std::uint64_t{1} << (63 - shift))
-    return Error{Code::Invalid,
-                 hc::format("\"{}\" is no number of bytes, such as 1G (of K, M and G)", text)};
-  return number << shift;
+  constexpr NumberRange kRange{0, std::numeric_limits<std::int64_t>::max(), true};
+  const auto bytes = number_option({"", "", {{"", std::string(text)}}}, "", 0, kRange);
+  if (bytes) return static_cast<std::uint64_t>(*bytes);
+  return Error{Code::Invalid,
+               hc::format("\"{}\" is no number of bytes, such as 1G (of K, M and G)", text)};
 }
 
-Result<Storage> Storage::make(const StorageOptions& options) {
+Result<Storage> Storage::make(const std::string& file, const StorageOptions& options) {
   if (options.keep > 0 && options.split == 0)
     return Error{Code::Invalid, "to keep so much, a recording has to be split into files"};
   if (options.last.count() > 0 && options.split > 0)
     return Error{Code::Invalid, "what is kept in memory is not split into files"};
-  Storage storage(options);
+  Storage storage(file, options);
   if (options.last.count() == 0)
     if (auto begun = storage.begin_file(0); !begun) return begun.error();
   return storage;
@@ -68,28 +66,28 @@ Result<Storage> Storage::make(const StorageOptions& options) {
 
 /// One file has the name that was given; of several each has a number.
 Status Storage::begin_file(std::uint64_t time) {
-  if (is_numbered()) number_ = std::max(number_, highest_number(options_.file));
-  auto file = File::create(is_numbered() ? numbered(options_.file, number_ + 1) : options_.file);
+  if (is_numbered()) number_ = std::max(number_, highest_number(name_)) + 1;
+  auto file = File::create(is_numbered() ? numbered(name_, number_) : name_);
   if (!file) return file.error();
-  ++number_;
   file_ = std::move(*file);
-  Status done;
-  for (const auto& schema : schemas_)
-    if (done) done = file_->add(schema);
-  for (const auto& channel : channels_)
-    if (done) done = file_->add(channel);
-  for (const auto& [name, metadata] : metadata_)
-    if (done) done = file_->add(metadata);
-  for (const auto& message : lasting_)
-    if (done) done = write(message, time);
-  return done;
+  if (!is_numbered()) name_ = file_->path();
+  for (const auto& each : repeated_)
+    if (auto written = write(each, time); !written) return written;
+  return {};
 }
 
-Status Storage::write(const Lasting& message, std::uint64_t time) {
-  ChunkBuilder chunk;
-  const std::span<const std::byte> data[] = {message.data};
-  chunk.add({message.channel, message.sequence, time, time}, data);
-  return file_->add(packer_->pack(chunk));
+Status Storage::write(const Repeated& record, std::uint64_t time) {
+  auto add = [&](const auto& each) {
+    if constexpr (!std::is_same_v<decltype(each), const Lasting&>) {
+      return file_->add(each);
+    } else {
+      ChunkBuilder chunk;
+      const std::span<const std::byte> data[] = {each.data};
+      chunk.add({each.channel, each.sequence, time, time}, data);
+      return file_->add(chunk.pack());
+    }
+  };
+  return std::visit(add, record);
 }
 
 std::vector<std::string> Storage::files() const {
@@ -115,43 +113,30 @@ void Storage::remove_old() {
   }
 }
 
-Status Storage::add(SchemaRecord schema) {
-  schemas_.push_back(std::move(schema));
-  return file_ ? file_->add(schemas_.back()) : Status();
+Status Storage::add(Repeated record) {
+  if (const auto* metadata = std::get_if<MetadataRecord>(&record))
+    std::erase_if(repeated_, [&](const Repeated& each) {
+      const auto* older = std::get_if<MetadataRecord>(&each);
+      return older != nullptr && older->name == metadata->name;
+    });
+  const auto* lasting = std::get_if<Lasting>(&record);
+  const auto time = lasting != nullptr ? lasting->log_time : 0;
+  repeated_.push_back(std::move(record));
+  return file_ ? write(repeated_.back(), time) : Status();
 }
 
-Status Storage::add(ChannelRecord channel) {
-  channels_.push_back(std::move(channel));
-  return file_ ? file_->add(channels_.back()) : Status();
-}
-
-Status Storage::add(MetadataRecord metadata) {
-  auto& newest = metadata_[metadata.name];
-  newest = std::move(metadata);
-  return file_ ? file_->add(newest) : Status();
-}
-
-Status Storage::add(Lasting message) {
-  lasting_.push_back(std::move(message));
-  return file_ ? write(lasting_.back(), lasting_.back().log_time) : Status();
-}
-
-Status Storage::add(const ChunkBuilder& messages) {
-  auto chunk = packer_->pack(messages);
-  if (file_) {
-    auto added = file_->add(chunk);
-    if (!added) lost_ += chunk.messages;
-    if (!added || options_.split == 0 || file_->size() < options_.split) return added;
+Status Storage::add(Chunk chunk) {
+  if (file_ && options_.split > 0 && file_->size() >= options_.split) {
     if (auto ended = end_file(); !ended) return ended;
     if (options_.keep > 0) remove_old();
-    return begin_file(chunk.info.end);
+    if (auto begun = begin_file(chunk.begin); !begun) return begun;
   }
+  if (file_) return file_->add(chunk);
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 30;  // [byte]
+  const auto last = static_cast<std::uint64_t>(options_.last.count()), now = chunk.end;
   in_memory_ += chunk.bytes.size();
-  const auto now = chunk.info.end;
   memory_.push_back(std::move(chunk));
-  const auto last = static_cast<std::uint64_t>(options_.last.count());
-  while (memory_.size() > 1 &&
-         (memory_.front().info.end + last < now || in_memory_ > options_.memory)) {
+  while (memory_.size() > 1 && (memory_.front().end + last < now || in_memory_ > kMost)) {
     in_memory_ -= memory_.front().bytes.size();
     memory_.pop_front();
   }
@@ -159,7 +144,7 @@ Status Storage::add(const ChunkBuilder& messages) {
 }
 
 Result<std::string> Storage::save() {
-  auto done = begin_file(memory_.empty() ? 0 : memory_.front().info.begin);
+  auto done = begin_file(memory_.empty() ? 0 : memory_.front().begin);
   const std::string name = file_ ? file_->path() : "";
   for (const auto& chunk : memory_)
     if (done) done = file_->add(chunk);
