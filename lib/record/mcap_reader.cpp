@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams of MTP in a file of MCAP (doc/recordings.md, "In the file").
+// Streams of MTP in MCAP files (doc/recordings.md, "In the file").
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -88,13 +88,14 @@ class McapReader final : public Reader {
   Result<std::map<std::string, mcap::Words>> metadata() override { return reader_.metadata(); }
 
  private:
-  /// Keeps what the next message of a topic may need; of one chunk, since that is its memory.
+  /// Keeps a message that may have the elements of the next one on the topic of MTP. Both are in
+  /// the same chunk, so those of other chunks, and their memory, are released.
   void keep(const std::string& topic, StoredMessage stored) {
     if (!beside_.empty() && beside_.begin()->second.owner != stored.owner) beside_.clear();
     beside_[topic] = std::move(stored);
   }
 
-  /// The message of MTP out of the two that stand for it.
+  /// The message of MTP, with the elements of the one beside it where they are there.
   Result<Message> rebuild(const StoredMessage& stored) {
     const auto& topic = stored.channel->topic;
     auto wrong = [&](const std::string& what) {

@@ -64,22 +64,21 @@ class MessageReader final : public Reader {
   Result<std::vector<StreamInfo>> streams(bool counted) override {
     StreamInfo info{name_, "", 0, 0, 0, {}};
     if (!counted) return std::vector{std::move(info)};
-    auto source = hc::open_source(place_.uri, options_);
-    if (!source) return source.error();
-    LogTimes times;
+    auto all = read_messages(place_, options_);
+    if (!all) return all.error();
     Message message;
-    Result<Got> got = Got::Message;
-    while ((got = (*source)->take(message)) && *got == Got::Message) {
-      times.add(message.header.time);
-      if (info.begin == 0) info.begin = times.last;
-      if (info.messages++ == 0) info.type = name(message.header.info.type);
+    for (auto got = (*all)->take(message); got && *got == Got::Message;
+         got = (*all)->take(message)) {
+      info.end = (*all)->log_time();
+      if (info.messages++ > 0) continue;
+      info.begin = info.end;
+      info.type = name(message.header.info.type);
     }
-    info.end = times.last;
     return std::vector{std::move(info)};
   }
 
  private:
-  /// Has the next message in `ahead_`.
+  /// Reads the next message into `ahead_`, unless there is one.
   Result<Got> look() {
     while (!ahead_) {
       Message message;
@@ -92,7 +91,7 @@ class MessageReader final : public Reader {
     return Got::Message;
   }
 
-  /// The first time that a message of the file has, if it is near its begin; else 0.
+  /// The time of the first message with a time near the begin of the file, or 0.
   std::int64_t first_time() {
     constexpr std::uint64_t kNear = std::uint64_t{64} << 20;  // [byte]
     if (std::exchange(has_looked_, true) || place_.kind == Place::Kind::Link) return 0;

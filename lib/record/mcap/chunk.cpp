@@ -52,36 +52,33 @@ Chunk ChunkBuilder::pack() const {
   return chunk;
 }
 
-Result<std::vector<std::byte>> unpack_chunk(std::span<const std::byte> content,
-                                            std::uint64_t limit) {
-  RecordReader reader(content);
+Result<Bytes> unpack_chunk(const Bytes& content, std::uint64_t limit) {
+  RecordReader reader(content.span);
   std::uint64_t plain_size = 0, stored_size = 0;
   std::uint32_t crc = 0;
   std::string compression;
   reader.take(16);  // first and last log time
   reader.get(plain_size, crc, compression, stored_size);
-  const auto stored = reader.take(stored_size);
+  Bytes bytes{reader.take(stored_size), content.owner};
   if (!reader.is_good()) return damaged("its lengths do not add up");
   if (plain_size > limit)
     return Error{Code::TooLarge, "MCAP chunk: it holds " + std::to_string(plain_size) +
                                      " bytes, more than the limit of " + std::to_string(limit)};
-  std::vector<std::byte> plain;
-  if (compression.empty()) {
-    plain.assign(stored.begin(), stored.end());
-  } else if (compression == "zstd") {
-    auto expanded = expand_zstd(stored, plain_size);
+  if (compression == "zstd") {
+    auto expanded = expand_zstd(bytes.span, plain_size);
     if (!expanded) return expanded.error();
-    plain = std::move(*expanded);
-  } else {
+    const auto plain = std::make_shared<const std::vector<std::byte>>(std::move(*expanded));
+    bytes = {*plain, plain};
+  } else if (!compression.empty()) {
     return Error{Code::Unsupported,
                  "MCAP chunk: compression \"" + compression.substr(0, 20) +
                      "\" is not known here; `mcap compress --compression zstd` changes it"};
   }
-  if (plain.size() != plain_size)
-    return damaged("it holds " + std::to_string(plain.size()) + " bytes, and says " +
+  if (bytes.span.size() != plain_size)
+    return damaged("it holds " + std::to_string(bytes.span.size()) + " bytes, and says " +
                    std::to_string(plain_size));
-  if (crc != 0 && crc32(plain) != crc) return damaged("its CRC is wrong");
-  return plain;
+  if (crc != 0 && crc32(bytes.span) != crc) return damaged("its CRC is wrong");
+  return bytes;
 }
 
 }  // namespace hc::mcap

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -13,6 +14,12 @@
 #include <record/mcap/records.h>
 
 namespace hc::mcap {
+
+/// Bytes, and what keeps them in memory.
+struct Bytes {
+  std::span<const std::byte> span;
+  std::shared_ptr<const void> owner;
+};
 
 /// A chunk as it is written to a file: its record, followed by its MessageIndex records.
 struct Chunk {
@@ -55,12 +62,12 @@ class ChunkBuilder {
 /// @param limit  of their size. [byte]
 ///
 /// Errors: Malformed (lengths, zstd or CRC are wrong), TooLarge, Unsupported (another compression).
-Result<std::vector<std::byte>> unpack_chunk(std::span<const std::byte> content,
-                                            std::uint64_t limit);
+Result<Bytes> unpack_chunk(const Bytes& content, std::uint64_t limit);
 
-// By libzstd in chunk_zstd.cpp; a build without it has no_chunk_zstd.cpp in its place.
+// In chunk_zstd.cpp, or in no_chunk_zstd.cpp if libzstd is missing. Unlike hc::expand() they bound
+// the memory for a chunk only by its limit: blank images of 64 MB and more have to be read again.
 
-/// The bytes compressed; empty where this build lacks the library.
+/// The bytes compressed; empty if this build lacks the library.
 std::vector<std::byte> compress_zstd(std::span<const std::byte> plain);
 
 /// Errors: Malformed; Unsupported (this build lacks the library).

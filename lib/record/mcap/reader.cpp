@@ -287,24 +287,26 @@ Result<bool> Reader::is_skipped(const Part& part) {
 
 Result<std::vector<Reader::Pending>> Reader::open(
     const Part& part, const std::function<bool(const MessageRecord&)>& is_wanted) {
-  auto bytes = read(part.at, part.end - part.at, limits_.chunk_bytes);
-  if (!bytes) return bytes.error();
+  auto read_bytes = read(part.at, part.end - part.at, limits_.chunk_bytes);
+  if (!read_bytes) return read_bytes.error();
+  const auto owner = std::make_shared<const std::vector<std::byte>>(std::move(*read_bytes));
+  Bytes bytes{*owner, owner};
   if (part.is_chunk) {
-    RecordReader record(*bytes);
+    RecordReader record(bytes.span);
     const auto [opcode, content] = take_record(record);
     if (opcode != Opcode::Chunk) return damaged("there is no chunk where one should be", part.at);
-    auto plain = unpack_chunk(content, limits_.chunk_bytes);
+    auto plain = unpack_chunk({content, owner}, limits_.chunk_bytes);
     if (!plain)
       return Error{plain.error().code,
                    plain.error().detail + ", at byte " + std::to_string(part.at)};
-    bytes = std::move(plain);
+    bytes = std::move(*plain);
   }
   const auto opened = std::make_shared<OpenPart>();
-  opened->bytes = std::move(*bytes);
+  opened->bytes = std::move(bytes);
   std::vector<Pending> messages;
-  RecordReader records(opened->bytes);
+  RecordReader records(opened->bytes.span);
   while (!records.at_end()) {
-    const std::uint64_t at = opened->bytes.size() - records.left();
+    const std::uint64_t at = opened->bytes.span.size() - records.left();
     const auto [opcode, content] = take_record(records);
     if (!records.is_good()) return damaged("a record reaches over the end of its chunk", part.at);
     if (opcode == Opcode::Schema || opcode == Opcode::Channel)
@@ -338,7 +340,7 @@ Result<bool> Reader::fill() {
     if (!opened) return opened.error();
     if (opened->empty()) continue;
     opened->front().part->left = opened->size();
-    open_bytes_ += opened->front().part->bytes.size();
+    open_bytes_ += opened->front().part->bytes.span.size();
     pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(next_));
     next_ = 0;
     std::ranges::move(*opened, std::back_inserter(pending_));
@@ -349,7 +351,7 @@ Result<bool> Reader::fill() {
 
 void Reader::pop() {
   auto part = std::move(pending_[next_++].part);
-  if (--part->left == 0) open_bytes_ -= part->bytes.size();
+  if (--part->left == 0) open_bytes_ -= part->bytes.span.size();
 }
 
 void Reader::start_at(std::uint64_t log_time) {
@@ -368,11 +370,11 @@ Result<std::optional<StoredMessage>> Reader::next() {
   if (!filled) return filled.error();
   if (!*filled) return std::optional<StoredMessage>();
   const auto part = pending_[next_].part;
-  RecordReader record(std::span(part->bytes).subspan(pending_[next_].at));
+  RecordReader record(part->bytes.span.subspan(pending_[next_].at));
   pop();
   const auto content = take_record(record).second;
   RecordReader reader(content);
-  StoredMessage stored{read_head(reader), nullptr, nullptr, {}, part};
+  StoredMessage stored{read_head(reader), nullptr, nullptr, {}, part->bytes.owner};
   stored.data = content.last(reader.left());
   const auto channel = summary_.channels.find(stored.record.channel);
   if (channel == summary_.channels.end())

@@ -100,7 +100,7 @@ class Reader {
     bool is_counted = false;  // its messages are in Summary::counts
   };
   struct OpenPart {
-    std::vector<std::byte> bytes;
+    Bytes bytes;
     std::size_t left = 0;  // messages to be read
   };
   struct Pending {
