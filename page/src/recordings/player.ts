@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { elementsOf, headerLine, infoOf, scalarBytes, scalarCount, type Message } from "../mtp";
-import { Signal, type Arrival, type Unsubscribe } from "../server";
+import { Listeners, Signal, type Unsubscribe } from "../server";
 import type { Source } from "../views";
 import type { Track } from "./track";
 import { expandZstd } from "./zstd";
@@ -10,11 +10,8 @@ const pastOfPlots = 30; // [s] that are read again after a jump
 const smallMessage = 4096; // [byte]
 
 /** A stream of a recording, at the time of its player. */
-export class ReplaySource implements Source {
+export class ReplaySource extends Listeners implements Source {
   readonly isReplay = true;
-  private readonly messages = new Set<(arrival: Arrival) => void | Promise<void>>();
-  private readonly headers = new Signal<string>();
-  private readonly problems = new Signal<string>();
   private shown = -1;
   private kind = "";
   private busy = false;
@@ -22,29 +19,18 @@ export class ReplaySource implements Source {
   constructor(
     private readonly track: Track,
     private readonly ended: (source: ReplaySource) => void,
-  ) {}
+  ) {
+    super();
+  }
 
   get port(): string {
     return this.track.port;
   }
 
-  on(event: "message", listener: (arrival: Arrival) => void | Promise<void>): Unsubscribe;
-  on(event: "header" | "problem", listener: (text: string) => void): Unsubscribe;
-  on(
-    event: "message" | "header" | "problem",
-    listener: ((arrival: Arrival) => void | Promise<void>) | ((text: string) => void),
-  ): Unsubscribe {
-    if (event === "header") return this.headers.on(listener as (text: string) => void);
-    if (event === "problem") return this.problems.on(listener as (text: string) => void);
-    const consumer = listener as (arrival: Arrival) => void | Promise<void>;
-    this.messages.add(consumer);
-    return () => this.messages.delete(consumer);
-  }
-
   setWidth(): void {}
 
-  close(): void {
-    this.messages.clear();
+  override close(): void {
+    super.close();
     this.ended(this);
   }
 
@@ -65,7 +51,7 @@ export class ReplaySource implements Source {
         first = Math.max(from + 1, last - mostAtOnce + 1);
       }
       this.shown = last;
-      for (let index = first; index <= last; ++index) await this.give(index);
+      for (let index = first; index <= last; ++index) await this.show(index);
     } catch (error) {
       this.problems.set(error instanceof Error ? error.message : String(error));
     } finally {
@@ -73,15 +59,13 @@ export class ReplaySource implements Source {
     }
   }
 
-  private async give(index: number): Promise<void> {
+  private async show(index: number): Promise<void> {
     const message = await expanded(await this.track.message(index));
     const { header } = message;
     const kind = `${header.info} ${header.coord} ${header.width} ${header.height}`;
     if (kind !== this.kind || index === this.shown) this.headers.set(headerLine(header));
     this.kind = kind;
-    const at = Date.now();
-    const arrival = { message, at, bytes: message.elements.byteLength };
-    await Promise.all([...this.messages].map((consumer) => consumer(arrival)));
+    await this.give({ message, at: Date.now(), bytes: message.elements.byteLength });
   }
 }
 

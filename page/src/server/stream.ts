@@ -19,28 +19,11 @@ export interface Arrival {
   readonly bytes: number;
 }
 
-/**
- * The messages of an output. The newest only: a listener that returns a promise holds the stream
- * up until it is settled.
- */
-export class Stream {
-  private readonly headers = new Signal<string>();
-  private readonly problems = new Signal<string>();
+/** Those who listen to the messages of an output. */
+export class Listeners {
+  protected readonly headers = new Signal<string>();
+  protected readonly problems = new Signal<string>();
   private readonly consumers = new Set<(arrival: Arrival) => void | Promise<void>>();
-  private readonly socket: Socket;
-  private askedWidth?: number; // with the path
-
-  constructor(
-    readonly port: string,
-    private options: StreamOptions = {},
-  ) {
-    this.socket = new Socket(() => this.path(), {
-      open: () => this.opened(),
-      text: (text) => this.headers.set(text.trimEnd()),
-      binary: (bytes) => void this.receive(bytes),
-      lost: (code, reason, retry) => this.problems.set(problemOf(port, code, reason, retry)),
-    });
-  }
 
   /** Each message; the next one comes when the promises of all listeners are settled. */
   on(event: "message", listener: (arrival: Arrival) => void | Promise<void>): Unsubscribe;
@@ -59,6 +42,36 @@ export class Stream {
     return () => this.consumers.delete(consumer);
   }
 
+  close(): void {
+    this.consumers.clear();
+  }
+
+  protected async give(arrival: Arrival): Promise<void> {
+    await Promise.all([...this.consumers].map((consumer) => consumer(arrival)));
+  }
+}
+
+/**
+ * The messages of an output. The newest only: a listener that returns a promise holds the stream
+ * up until it is settled.
+ */
+export class Stream extends Listeners {
+  private readonly socket: Socket;
+  private askedWidth?: number; // with the path
+
+  constructor(
+    readonly port: string,
+    private options: StreamOptions = {},
+  ) {
+    super();
+    this.socket = new Socket(() => this.path(), {
+      open: () => this.opened(),
+      text: (text) => this.headers.set(text.trimEnd()),
+      binary: (bytes) => void this.receive(bytes),
+      lost: (code, reason, retry) => this.problems.set(problemOf(port, code, reason, retry)),
+    });
+  }
+
   /** The last header line as it was sent. */
   get header(): string | undefined {
     return this.headers.value;
@@ -75,9 +88,9 @@ export class Stream {
     this.socket.reopen();
   }
 
-  close(): void {
+  override close(): void {
     this.socket.close();
-    this.consumers.clear();
+    super.close();
   }
 
   private path(): string {
@@ -98,8 +111,7 @@ export class Stream {
   private async receive(bytes: Uint8Array<ArrayBuffer>): Promise<void> {
     const at = Date.now();
     try {
-      const arrival = { message: readMessage(bytes), at, bytes: bytes.length };
-      await Promise.all([...this.consumers].map((consumer) => consumer(arrival)));
+      await this.give({ message: readMessage(bytes), at, bytes: bytes.length });
     } catch (error) {
       if (!(error instanceof MtpError)) console.error(error);
       this.problems.set(`${this.port}: ${error instanceof Error ? error.message : String(error)}`);
