@@ -16,9 +16,9 @@ void add_agent(CLI::App& app) {
       "agent", "Start modules for hc run on another host, which starts this through ssh");
   verb->callback([] {
     if (::isatty(STDIN_FILENO) == 1)
-      throw Failure({hc::Code::Invalid,
-                     "hc run starts this through ssh, for modules with host = \"NAME\"; see "
-                     "spec/graph.md"});
+      throw Failure(hc::Code::Invalid,
+                    "hc run starts this through ssh, for modules with host = \"NAME\"; see "
+                    "spec/graph.md");
     allow_descriptors();
     hc::hosts::AgentOptions options;
     options.stop = hc::stop_descriptor();

@@ -24,17 +24,10 @@ void run(const CatOptions& options) {
   auto source = open_named(options.uri, options.of, options.limit);
   std::unique_ptr<hc::Sink> raw;
   if (options.raw) raw = open_sink("-");
-  Skipper skipper("hc cat");
   hc::Message message;
   std::uint64_t damaged = 0;  // whole messages, whose compressed elements are
   for (std::uint64_t shown = 0; options.count == 0 || shown < options.count;) {
-    try {
-      if (!receive(*source, message, options.uri)) break;
-    } catch (const Failure& failure) {
-      if (!options.skip) throw;
-      skipper.skip(*source, failure, options.uri);
-      continue;
-    }
+    if (!receive(*source, message, options.uri, "hc cat", options.skip)) break;
     auto expanded = options.raw ? hc::Result<hc::Message>(message) : hc::expand(message);
     if (!expanded) {
       if (damaged++ == 0)
@@ -46,7 +39,6 @@ void run(const CatOptions& options) {
                    : options.json ? write_json(*expanded, message.header, print)
                                   : print(to_readable(*expanded));
     if (!is_read) break;
-    skipper.whole_message();
     ++shown;
   }
   if (raw != nullptr) static_cast<void>(raw->close());

@@ -25,9 +25,6 @@ void add_check(CLI::App& app) {
       is_missing = true;
     }
     if (is_missing) throw Failure(2);
-    auto counted = [](std::size_t count, std::string_view what) {
-      return hc::format("{} {}{}", count, what, count == 1 ? "" : "s");
-    };
     print(hc::format(
         "{}: {}, {}: {}\n", options->file, counted(plan.modules.size(), "module"),
         counted(plan.links.size(), "link"),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common.h"
 
+#include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -20,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void check_word(const std::string& word) {
-  if (word.empty()) throw Failure({hc::Code::Invalid, "a link or file cannot be \"\""});
+  if (word.empty()) throw Failure(hc::Code::Invalid, "a link or file cannot be \"\"");
   if (hc::record::place_of(word).uri.scheme == "inproc")
     throw Failure(word, hc::Error{hc::Code::Invalid, "inproc links threads of one program"});
 }
@@ -71,15 +72,20 @@ bool receive(hc::Source& source, hc::Message& message, const std::string& uri) {
   return value_or_fail(std::move(got), uri);
 }
 
-void Skipper::skip(hc::Source& source, const Failure& failure, const std::string& uri) {
+bool receive(hc::Source& source, hc::Message& message, const std::string& uri,
+             std::string_view verb, bool is_skipping) {
+  using hc::Code;
   // Each place may cost as much reading as its header promises, so there is an end to it.
   constexpr int kMostInARow = 1000;
-  using hc::Code;
-  bool is_damage = failure.code == Code::Malformed || failure.code == Code::TooLarge ||
-                   failure.code == Code::Unsupported || failure.code == Code::Truncated;
-  if (!is_damage || ++in_a_row_ > kMostInARow) throw Failure(failure);
-  say(hc::format("{}: {}", verb_, failure.what()));
-  if (auto resumed = source.resume(); !resumed) throw Failure(uri, resumed.error());
+  for (int in_a_row = 1;; ++in_a_row) try {
+      return receive(source, message, uri);
+    } catch (const Failure& failure) {
+      const bool is_damage = failure.code == Code::Malformed || failure.code == Code::TooLarge ||
+                             failure.code == Code::Unsupported || failure.code == Code::Truncated;
+      if (!is_skipping || !is_damage || in_a_row > kMostInARow) throw;
+      say(hc::format("{}: {}", verb, failure.what()));
+      if (auto resumed = source.resume(); !resumed) throw Failure(uri, resumed.error());
+    }
 }
 
 bool send(hc::Sink& sink, const hc::Message& message, const std::string& uri) {
@@ -90,14 +96,14 @@ bool send(hc::Sink& sink, const hc::Message& message, const std::string& uri) {
 }
 
 std::string losses_in_words(const hc::Traffic& traffic) {
-  std::string reasons;
+  std::vector<std::string> reasons;
   for (auto [count, reason] : {std::pair(traffic.throttled, "throttled"),
                                {traffic.dropped_newer, "dropped (newer arrived)"},
                                {traffic.dropped_memory, "dropped (no memory left)"},
                                {traffic.dropped_disconnect, "lost without a reader"},
                                {traffic.dropped_timeout, "dropped (the reader hung)"}})
-    if (count > 0) reasons += hc::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
-  return reasons;
+    if (count > 0) reasons.push_back(hc::format("{} {}", count, reason));
+  return joined(reasons);
 }
 
 void say_losses(std::string_view verb, std::string_view uri, const hc::Traffic& traffic) {
@@ -118,6 +124,14 @@ void allow_descriptors() {
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kWanted) return;
   limit.rlim_cur = std::min(kWanted, limit.rlim_max);
   ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+TerminalSize terminal_size() {
+  winsize size{};
+  for (const int terminal : {STDOUT_FILENO, STDERR_FILENO})
+    if (::ioctl(terminal, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
+      return {size.ws_col, size.ws_row};
+  return {};
 }
 
 void say(std::string_view lines) {
@@ -147,6 +161,16 @@ std::vector<std::string> shipped_graphs() {
   return {names.begin(), names.end()};
 }
 
+std::string joined(const std::vector<std::string>& words, std::string_view between) {
+  std::string text;
+  for (const auto& word : words) text.append(text.empty() ? "" : between).append(word);
+  return text;
+}
+
+std::string counted(std::uint64_t number, std::string_view what) {
+  return hc::format("{} {}{}", number, what, number == 1 ? "" : "s");
+}
+
 std::string seconds_in_words(double seconds) {
   constexpr std::int64_t kMinute = 60, kHour = 60 * kMinute, kDay = 24 * kHour;
   auto whole = static_cast<std::int64_t>(seconds);
@@ -156,14 +180,12 @@ std::string seconds_in_words(double seconds) {
   return hc::format("{} d", whole / kDay);
 }
 
-std::string bytes_in_words(double bytes) {
+std::string bytes_in_words(std::uint64_t bytes) {
   constexpr const char* kUnits[] = {"B", "kB", "MB", "GB", "TB"};
+  auto size = static_cast<double>(bytes);
   std::size_t unit = 0;
-  while (bytes >= 1000 && unit + 1 < std::size(kUnits)) {
-    bytes /= 1000;
-    ++unit;
-  }
-  return unit == 0 ? hc::format("{} B", bytes) : hc::format("{:.3g} {}", bytes, kUnits[unit]);
+  for (; size >= 1000 && unit + 1 < std::size(kUnits); ++unit) size /= 1000;
+  return unit == 0 ? hc::format("{} B", bytes) : hc::format("{:.3g} {}", size, kUnits[unit]);
 }
 
 Progress::Progress(std::string what)

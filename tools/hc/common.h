@@ -27,8 +27,9 @@ struct Failure : std::runtime_error {
         code(error.code),
         detail(error.detail),
         status(status_of(error.code)) {}
+  Failure(hc::Code what, std::string why) : Failure(hc::Error{what, std::move(why)}) {}
   Failure(std::string_view who, const hc::Error& error)
-      : Failure(hc::Error{error.code, std::string(who) + ": " + error.detail}) {}
+      : Failure(error.code, std::string(who) + ": " + error.detail) {}
   /// Without a line: it has been logged.
   explicit Failure(int exit_status) : std::runtime_error(""), status(exit_status) {}
 
@@ -45,6 +46,12 @@ struct Failure : std::runtime_error {
 template <typename T>
 T value_or_fail(hc::Result<T> result, std::string_view who) {
   if (!result) throw Failure(who, result.error());
+  return std::move(*result);
+}
+
+template <typename T>
+T value_or_fail(hc::Result<T> result) {
+  if (!result) throw Failure(result.error());
   return std::move(*result);
 }
 
@@ -67,18 +74,10 @@ std::unique_ptr<hc::Sink> open_file_sink(const std::string& path);
 /// Takes the next message; false at the end, or when we are asked to stop.
 bool receive(hc::Source& source, hc::Message& message, const std::string& uri);
 
-/// For --skip: continues behind damaged bytes, which `failure` describes, and says so. Everything
-/// else is thrown again, and so is the damage when it does not end.
-class Skipper {
- public:
-  explicit Skipper(std::string verb) : verb_(std::move(verb)) {}
-  void skip(hc::Source& source, const Failure& failure, const std::string& uri);
-  void whole_message() { in_a_row_ = 0; }
-
- private:
-  std::string verb_;
-  int in_a_row_ = 0;
-};
+/// The same, which continues behind damaged bytes, and says so as `verb`. Everything else is
+/// thrown, and so is the damage when it does not end, or `is_skipping` is not set.
+bool receive(hc::Source& source, hc::Message& message, const std::string& uri,
+             std::string_view verb, bool is_skipping);
 
 /// Sends a message; false when nobody reads any more.
 bool send(hc::Sink& sink, const hc::Message& message, const std::string& uri);
@@ -96,12 +95,23 @@ bool print(std::string_view text);
 /// to their limit.
 void allow_descriptors();
 
+/// Of the terminal, with 80 x 24 where it is not known. [character]
+struct TerminalSize {
+  std::size_t width = 80, height = 24;
+};
+TerminalSize terminal_size();
+
 /// One line to the person, on standard error.
 void say(std::string_view line);
 
 using hc::find_program;
 using hc::module_folder;
 using hc::module_names;
+
+/// "a, b, c"
+std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
+/// "1 message", "2 messages"
+std::string counted(std::uint64_t number, std::string_view what);
 
 /// A graph file by its name: that file, or else one of the graphs that came with hc, with or
 /// without ".toml".
@@ -110,7 +120,7 @@ std::string find_graph(const std::string& name);
 std::vector<std::string> shipped_graphs();
 
 /// "1.44 MB"
-std::string bytes_in_words(double bytes);
+std::string bytes_in_words(std::uint64_t bytes);
 
 /// "12 s", "3:05 min", "4:00 h", "12 d"
 std::string seconds_in_words(double seconds);

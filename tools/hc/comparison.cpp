@@ -10,6 +10,7 @@
 #include <span>
 
 #include <hc/base/format.h>
+#include <hc/mtp/element.h>
 
 namespace tool {
 namespace {
@@ -40,55 +41,18 @@ std::string difference_of(const hc::Message& recorded, const hc::Message& replay
   return "";
 }
 
-std::string difference_of_elements(const hc::Message& a, const hc::Message& b, double tolerance) {
-  using hc::Scalar;
-  switch (a.header.info.scalar) {
-    case Scalar::U8:
-      return difference_of<std::uint8_t>(a, b, tolerance);
-    case Scalar::I8:
-      return difference_of<std::int8_t>(a, b, tolerance);
-    case Scalar::U16:
-      return difference_of<std::uint16_t>(a, b, tolerance);
-    case Scalar::I16:
-      return difference_of<std::int16_t>(a, b, tolerance);
-    case Scalar::U32:
-      return difference_of<std::uint32_t>(a, b, tolerance);
-    case Scalar::I32:
-      return difference_of<std::int32_t>(a, b, tolerance);
-    case Scalar::U64:
-      return difference_of<std::uint64_t>(a, b, tolerance);
-    case Scalar::I64:
-      return difference_of<std::int64_t>(a, b, tolerance);
-    case Scalar::F32:
-      return difference_of<float>(a, b, tolerance);
-    case Scalar::F64:
-      return difference_of<double>(a, b, tolerance);
-  }
-  return "";
-}
-
-/// One recording, of which a second either way of what is looked at is held.
-class Reader {
- public:
-  explicit Reader(const NextMessage& next) : next_(next) {}
-
-  /// The next message, with the time that it has: its own, or that of the one before it.
-  std::optional<std::pair<std::int64_t, hc::Message>> take() {
-    hc::Message message;
-    if (!next_(message)) return std::nullopt;
-    if (message.header.time != 0) time_ = message.header.time;
-    return std::pair(time_, message.keep());
-  }
-
- private:
-  const NextMessage& next_;
-  std::int64_t time_ = 0;
-};
-
 struct KeptMessage {
   hc::Message message;
   bool is_matched = false;
 };
+using Messages = std::multimap<std::int64_t, KeptMessage>;  // by time
+
+/// Takes the next message, with its time, or that of the one before it where it has none.
+bool take(const NextMessage& next, std::int64_t& time, hc::Message& message) {
+  if (!next(message)) return false;
+  if (message.header.time != 0) time = message.header.time;
+  return true;
+}
 
 }  // namespace
 
@@ -103,13 +67,13 @@ std::string difference(const hc::Message& recorded, const hc::Message& replayed,
   };
   for (const auto& [name, field] : fields)
     if (a.*field != b.*field) return both(name, a.*field, b.*field);
-  if (recorded.elements.size() == replayed.elements.size() &&
-      std::equal(recorded.elements.begin(), recorded.elements.end(), replayed.elements.begin()))
-    return "";
+  if (std::ranges::equal(recorded.elements, replayed.elements)) return "";
   if (a.info.type == hc::MatrixType::String)
     return both("text", "\"" + std::string(recorded.characters()) + "\"",
                 "\"" + std::string(replayed.characters()) + "\"");
-  return difference_of_elements(recorded, replayed, tolerance.number);
+  return hc::visit_scalar(a.info.scalar, [&](auto zero) {
+    return difference_of<decltype(zero)>(recorded, replayed, tolerance.number);
+  });
 }
 
 bool Comparison::is_same(const Tolerance& tolerance) const {
@@ -129,42 +93,42 @@ std::string Comparison::text() const {
 Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
                    const Tolerance& tolerance) {
   Comparison result;
-  Reader kept(recorded), again(replayed);
-  std::multimap<std::int64_t, KeptMessage> held;  // of the replay, by time
-  bool has_more = true;
+  Messages held;  // of the replay, a second either way of what is looked at
+  std::int64_t time = 0, again_time = 0;
   std::optional<std::int64_t> begin;
-  auto note = [&](const hc::Header& header, std::int64_t time, const std::string& what) {
+  hc::Message message;
+  auto note = [&](const hc::Header& header, std::int64_t at, const std::string& what) {
     if (result.first.empty())
       result.first = hc::format("seq {}, {:.3f} s after the first: {}", header.seq,
-                                static_cast<double>(time - begin.value_or(time)) * 1e-9, what);
+                                static_cast<double>(at - begin.value_or(at)) * 1e-9, what);
   };
-  auto drop_until = [&](std::multimap<std::int64_t, KeptMessage>::iterator end) {
+  auto hold_next = [&] {
+    hc::Message other;
+    if (!take(replayed, again_time, other)) return false;
+    ++result.replayed;
+    held.emplace(again_time, KeptMessage{other.keep()});
+    return true;
+  };
+  auto drop_until = [&](Messages::iterator end) {
     for (auto each = held.begin(); each != end; each = held.erase(each)) {
       if (each->second.is_matched) continue;
       ++result.extra;
       note(each->second.message.header, each->first, "not recorded, and replayed");
     }
   };
-  while (const auto next = kept.take()) {
-    const auto& [time, message] = *next;
+  for (bool has_more = true; take(recorded, time, message);) {
     begin = begin.value_or(time);
     ++result.recorded;
     const auto reach = time + tolerance.time + kDisorder;
-    while (has_more && (held.empty() || std::prev(held.end())->first <= reach)) {
-      auto other = again.take();
-      has_more = other.has_value();
-      if (!has_more) break;
-      ++result.replayed;
-      held.emplace(other->first, KeptMessage{std::move(other->second)});
-    }
+    while (has_more && (held.empty() || std::prev(held.end())->first <= reach))
+      has_more = hold_next();
     drop_until(held.lower_bound(time - tolerance.time - kDisorder));
-    const auto first = held.lower_bound(time - tolerance.time);
-    const auto end = held.upper_bound(time + tolerance.time);
     bool is_found = false;
     std::string what;
     KeptMessage* nearest = nullptr;
     std::int64_t distance = 0;
-    for (auto each = first; each != end; ++each) {
+    const auto end = held.upper_bound(time + tolerance.time);
+    for (auto each = held.lower_bound(time - tolerance.time); each != end; ++each) {
       auto& candidate = each->second;
       // One by one where times are equal; else what is said at a time, as often as it is.
       if (tolerance.time == 0 && candidate.is_matched) continue;
@@ -190,11 +154,7 @@ Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
       note(message.header, time, "recorded, and not replayed");
     }
   }
-  while (auto other = again.take()) {
-    ++result.replayed;
-    held.emplace(other->first, KeptMessage{std::move(other->second)});
-    drop_until(held.lower_bound(std::prev(held.end())->first - kDisorder));
-  }
+  while (hold_next()) drop_until(held.lower_bound(std::prev(held.end())->first - kDisorder));
   drop_until(held.end());
   return result;
 }

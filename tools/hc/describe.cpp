@@ -17,12 +17,12 @@ void add_describe(CLI::App& app) {
   verb->callback([name] {
     std::string program = find_program(*name);
     if (program.empty())
-      throw Failure(hc::Error{hc::Code::NotFound, "no module \"" + *name + "\"" +
-                                                      hc::suggestion(*name, module_names())});
+      throw Failure(hc::Code::NotFound,
+                    "no module \"" + *name + "\"" + hc::suggestion(*name, module_names()));
     auto text = value_or_fail(hc::describe_program(program), *name);
     auto json = nlohmann::ordered_json::parse(text, nullptr, false);
     if (json.is_discarded())
-      throw Failure(hc::Error{hc::Code::Malformed, *name + " --describe prints no JSON"});
+      throw Failure(hc::Code::Malformed, *name + " --describe prints no JSON");
     print(json.dump(2) + "\n");
   });
 }

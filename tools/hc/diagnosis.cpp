@@ -9,6 +9,8 @@
 #include <hc/base/format.h>
 #include <hc/base/uri.h>
 
+#include "common.h"
+
 namespace tool {
 namespace {
 
@@ -36,37 +38,34 @@ std::string folder_of(std::string_view path) {
   return folder.empty() ? "." : folder;
 }
 
-void add_end(const std::string& module, const std::string& text, bool is_input, Needs& needs) {
-  auto uri = hc::parse_uri(text);
-  if (!uri) return;
-  if (uri->scheme == "tcp-listen") {
-    needs.ports.push_back({module, text, uri->rest});
-  } else if (uri->scheme == "file") {
-    needs.paths.push_back(
-        {module, "link " + text, is_input ? uri->rest : folder_of(uri->rest), !is_input});
-  } else if (uri->scheme == "unix-listen" && !uri->rest.starts_with('@')) {
-    needs.paths.push_back({module, "link " + text, folder_of(uri->rest), true});
-  }
+Need need_of_path(const std::string& module, const std::string& what, const std::string& path,
+                  bool is_written) {
+  const auto place = is_written ? folder_of(path) : path;
+  return {module, what + ": " + place, (is_written ? "write " : "read ") + place};
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
+void add_end(const std::string& module, const std::string& text, bool is_input, Needs& needs) {
+  const auto uri = hc::parse_uri(text);
+  if (!uri) return;
+  const auto link = "link " + text;
+  if (uri->scheme == "tcp-listen")
+    needs.places.push_back({module, link, "listen " + uri->rest});
+  else if (uri->scheme == "file" || (uri->scheme == "unix-listen" && !uri->rest.starts_with('@')))
+    needs.places.push_back(
+        need_of_path(module, link, uri->rest, !is_input || uri->scheme != "file"));
 }
 
 std::string gigabytes(std::uint64_t bytes) {
   return hc::format("{:.1f} GB", static_cast<double>(bytes) / 1e9);
 }
 
-void add_devices(std::vector<Finding>& findings, const std::string& what,
-                 const std::vector<Device>& devices, std::string_view none) {
-  std::vector<std::string> open, closed;
-  for (const auto& device : devices) (device.opens ? open : closed).push_back(device.path);
-  if (!open.empty()) findings.push_back({Mark::Ok, what, joined(open)});
+void add_devices(std::vector<Finding>& findings, const Devices& devices) {
+  const auto& [kind, where, open, closed] = devices;
+  if (!open.empty()) findings.push_back({Mark::Ok, kind, joined(open)});
   if (!closed.empty())
-    findings.push_back({Mark::Note, what, joined(closed) + ": may not be opened by this user"});
-  if (devices.empty()) findings.push_back({Mark::Note, what, std::string(none)});
+    findings.push_back({Mark::Note, kind, joined(closed) + ": may not be opened by this user"});
+  if (open.empty() && closed.empty())
+    findings.push_back({Mark::Note, kind, "none (" + where + ")"});
 }
 
 void add_limits(std::vector<Finding>& findings, const Facts& facts) {
@@ -81,46 +80,25 @@ void add_limits(std::vector<Finding>& findings, const Facts& facts) {
                   in_words(facts.processes), is_low ? ": few for a large graph (ulimit)" : "")});
 }
 
-Finding finding_of(const NeededPath& needed, const PathState& state) {
-  auto marked = [&](Mark mark, std::string_view text) {
-    return Finding{mark, needed.module, hc::format("{}: {}{}", needed.what, needed.path, text)};
-  };
-  if (!state.is_there) return marked(Mark::Missing, " does not exist");
-  if (needed.is_written && !state.is_folder) return marked(Mark::Missing, " is not a folder");
-  if (needed.is_written && !state.is_writable)
-    return marked(Mark::Missing, " is not writable for this user");
-  if (!needed.is_written && !state.is_readable)
-    return marked(Mark::Missing, " is not readable for this user");
-  return marked(Mark::Ok, "");
-}
-
-std::string_view name(Mark mark) {
-  switch (mark) {
-    case Mark::Ok:
-      return "ok";
-    case Mark::Missing:
-      return "missing";
-    case Mark::Wrong:
-      return "wrong";
-    case Mark::Note:
-      break;
-  }
-  return "note";
-}
+constexpr std::string_view kMarks[] = {"ok", "missing", "wrong", "note"};  // in the order of Mark
 
 }  // namespace
 
-bool path_of_parameter(std::string_view name, std::string_view value, NeededPath& path) {
-  if (!looks_like_path(value)) return false;
+std::optional<Need> need_of_parameter(const std::string& module, std::string_view name,
+                                      std::string_view value) {
+  if (!looks_like_path(value)) return std::nullopt;
   const bool is_device = value.starts_with("/dev/");
   const bool is_written = !is_device && has_word(name, {"save", "output", "log", "record"});
   const bool is_read = is_device || has_word(name, {"source", "file", "path", "folder", "directory",
                                                     "device", "model", "config"});
-  if (!is_written && !is_read) return false;
-  path.what = "parameter " + std::string(name);
-  path.path = is_written ? folder_of(value) : std::string(value);
-  path.is_written = is_written;
-  return true;
+  if (!is_written && !is_read) return std::nullopt;
+  return need_of_path(module, "parameter " + std::string(name), std::string(value), is_written);
+}
+
+std::vector<std::string> Needs::questions() const {
+  std::vector<std::string> questions;
+  for (const auto& place : places) questions.push_back(place.question);
+  return questions;
 }
 
 Needs needs_of(const hc::Plan& plan) {
@@ -130,10 +108,9 @@ Needs needs_of(const hc::Plan& plan) {
     const auto& given = module.parameters;
     if (std::filesystem::path(module.program).filename() == "view" && !given.contains("save"))
       needs.viewers.push_back(module.name);
-    for (const auto& [name, value] : given) {
-      NeededPath path{module.name, "", "", false};
-      if (path_of_parameter(name, value, path)) needs.paths.push_back(path);
-    }
+    for (const auto& [name, value] : given)
+      if (auto need = need_of_parameter(module.name, name, value))
+        needs.places.push_back(std::move(*need));
     for (const auto& end : module.ends) add_end(module.name, end.uri, end.is_input, needs);
   }
   return needs;
@@ -153,13 +130,9 @@ std::vector<Finding> diagnose(const Facts& facts) {
   findings.push_back({Mark::Ok, "processors", hc::format("{}", facts.processors)});
   findings.push_back({facts.free_memory < kLittleMemory ? Mark::Note : Mark::Ok, "memory",
                       gigabytes(facts.memory) + ", " + gigabytes(facts.free_memory) + " free"});
-  add_devices(findings, "camera", facts.cameras, "none (/dev/video*)");
-  add_devices(findings, "sound", facts.sounds, "none (/dev/snd)");
+  for (const auto& devices : facts.devices) add_devices(findings, devices);
   if (!facts.sound_cards.empty())
     findings.push_back({Mark::Ok, "sound", joined(facts.sound_cards)});
-  add_devices(findings, "serial", facts.serials, "none (/dev/ttyUSB*, ttyACM*, ttyS*)");
-  add_devices(findings, "joystick", facts.joysticks, "none (/dev/input/js*, event*)");
-  add_devices(findings, "graphics", facts.renderers, "none (/dev/dri)");
   findings.push_back(
       facts.display.empty()
           ? Finding{Mark::Note, "display", "none: view can only save images; or use xvfb-run"}
@@ -177,16 +150,11 @@ std::vector<Finding> diagnose(const Facts& facts) {
 
 std::vector<Finding> diagnose(const Needs& needs, const Facts& facts) {
   std::vector<Finding> findings;
-  for (const auto& needed : needs.paths) {
-    auto known = facts.paths.find(needed.path);
+  for (const auto& place : needs.places) {
+    const auto known = facts.problems.find(place.question);
+    const auto problem = known == facts.problems.end() ? ": was not looked for" : known->second;
     findings.push_back(
-        finding_of(needed, known == facts.paths.end() ? PathState{} : known->second));
-  }
-  for (const auto& needed : needs.ports) {
-    auto known = facts.ports.find(needed.port);
-    const std::string error = known == facts.ports.end() ? "" : known->second;
-    findings.push_back({error.empty() ? Mark::Ok : Mark::Missing, needed.module,
-                        "link " + needed.uri + (error.empty() ? "" : ": " + error)});
+        {problem.empty() ? Mark::Ok : Mark::Missing, place.module, place.text + problem});
   }
   for (const auto& viewer : needs.viewers)
     if (facts.display.empty())
@@ -208,8 +176,8 @@ std::string as_text(const std::vector<Finding>& findings) {
   for (const auto& finding : findings) widest = std::max(widest, finding.what.size());
   std::string text;
   for (const auto& finding : findings)
-    text +=
-        hc::format("{:<7}  {:<{}}  {}\n", name(finding.mark), finding.what, widest, finding.text);
+    text += hc::format("{:<7}  {:<{}}  {}\n", kMarks[static_cast<std::size_t>(finding.mark)],
+                       finding.what, widest, finding.text);
   return text;
 }
 

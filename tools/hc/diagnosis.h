@@ -2,6 +2,7 @@
 #pragma once
 // From facts, and from what a graph needs, to the lines of `hc doctor`. Pure.
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,32 +26,27 @@ struct Finding {
   std::string text;
 };
 
-/// A path that a run opens.
-struct NeededPath {
-  std::string module, what;  ///< "parameter source"
-  std::string path;          ///< of the file or device; of the folder where it is to be written
-  bool is_written = false;
-};
-
-/// A TCP port where a run listens.
-struct NeededPort {
-  std::string module, uri;
-  std::string port;  ///< [HOST:]PORT
+/// A file, device, folder or TCP port that a run opens.
+struct Need {
+  std::string module;
+  std::string text;      ///< "parameter source: /data/a.jpg"
+  std::string question;  ///< of gather_facts(): "read /data/a.jpg"
 };
 
 /// The resources that a graph needs.
 struct Needs {
   std::size_t modules = 0;
   std::vector<std::string> viewers;  ///< modules `view` that do not save
-  std::vector<NeededPath> paths;
-  std::vector<NeededPort> ports;
+  std::vector<Need> places;
+
+  [[nodiscard]] std::vector<std::string> questions() const;
 };
 
 /// What of a plan is to be looked for on this machine: ports where its links listen, files of its
-/// links, and parameters that name a file or a device (see path_of_parameter).
+/// links, and parameters that name a file or a device (see need_of_parameter).
 Needs needs_of(const hc::Plan& plan);
 
-/// Whether a parameter names a path, and which. It does
+/// The path that a parameter names, if it does. It does
 ///
 /// - where the value begins with /dev/ or a word of its name is source, file, path, folder,
 ///   directory, device, model or config: what is read must be there;
@@ -59,12 +55,13 @@ Needs needs_of(const hc::Plan& plan);
 /// and the value begins with / or ./ or ../, or holds a /, and is no URI, pipeline (!), pattern (%,
 /// *, ?) or text of several lines. Names are words with _ between them. A bare name is not looked
 /// for: it may be anything. A pattern or pipeline that names a device is left to its module too.
-bool path_of_parameter(std::string_view name, std::string_view value, NeededPath& path);
+std::optional<Need> need_of_parameter(const std::string& module, std::string_view name,
+                                      std::string_view value);
 
 /// What this machine has.
 std::vector<Finding> diagnose(const Facts& facts);
 
-/// What the graph lacks here. @param facts  with the paths and ports of `needs`.
+/// What the graph lacks here. @param facts  with the questions of `needs` answered.
 std::vector<Finding> diagnose(const Needs& needs, const Facts& facts);
 
 /// Whether something is missing or wrong.

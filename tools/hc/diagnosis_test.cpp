@@ -15,6 +15,7 @@ Facts good_facts() {
   facts.processors = 4;
   facts.memory = 16'000'000'000;
   facts.free_memory = 8'000'000'000;
+  facts.devices = {{"camera", "/dev/video*"}};
   facts.modules = {"camera", "view"};
   return facts;
 }
@@ -35,7 +36,7 @@ TEST(Doctor, DevicesThatAreNotThereAreNotesAndNoIllness) {
 
 TEST(Doctor, DevicesThatMayNotBeOpenedAreReported) {
   auto facts = good_facts();
-  facts.cameras = {{"/dev/video0", true}, {"/dev/video1", false}};
+  facts.devices = {{"camera", "/dev/video*", {"/dev/video0"}, {"/dev/video1"}}};
   auto findings = diagnose(facts);
   EXPECT_EQ(find(findings, "camera", Mark::Ok)->text, "/dev/video0");
   EXPECT_EQ(find(findings, "camera", Mark::Note)->text,
@@ -71,34 +72,31 @@ TEST(Doctor, LowLimitsAreNotes) {
 
 TEST(Doctor, ParametersThatNamePaths) {
   struct Case {
-    const char *name, *value, *path;  // path: null where none is named
-    bool is_written;
+    const char *name, *value, *question;  // null where no path is named
   };
   const Case cases[] = {
-      {"source", "/data/a.jpg", "/data/a.jpg", false},
-      {"right_source", "./a.jpg", "./a.jpg", false},
-      {"model_file", "models/face.onnx", "models/face.onnx", false},
-      {"port", "/dev/ttyUSB0", "/dev/ttyUSB0", false},
-      {"save", "/out/depth.png", "/out", true},
-      {"save", "pictures/", "pictures", true},
-      {"log_file", "logs/a.txt", "logs", true},
+      {"source", "/data/a.jpg", "read /data/a.jpg"},
+      {"right_source", "./a.jpg", "read ./a.jpg"},
+      {"model_file", "models/face.onnx", "read models/face.onnx"},
+      {"port", "/dev/ttyUSB0", "read /dev/ttyUSB0"},
+      {"save", "/out/depth.png", "write /out"},
+      {"save", "pictures/", "write pictures"},
+      {"log_file", "logs/a.txt", "write logs"},
       // What could be anything is left alone.
-      {"source", "0", nullptr, false},
-      {"source", "a.jpg", nullptr, false},
-      {"source", "http://robot/stream", nullptr, false},
-      {"source", "videotestsrc ! video/x-raw ! appsink", nullptr, false},
-      {"source", "/data/left_%03d.png", nullptr, false},
-      {"topic", "head/eyes", nullptr, false},
-      {"profile", "/a/b", nullptr, false},
-      {"unit", "m/s", nullptr, false},
-      {"path", "", nullptr, false},
+      {"source", "0", nullptr},
+      {"source", "a.jpg", nullptr},
+      {"source", "http://robot/stream", nullptr},
+      {"source", "videotestsrc ! video/x-raw ! appsink", nullptr},
+      {"source", "/data/left_%03d.png", nullptr},
+      {"topic", "head/eyes", nullptr},
+      {"profile", "/a/b", nullptr},
+      {"unit", "m/s", nullptr},
+      {"path", "", nullptr},
   };
   for (const auto& each : cases) {
-    NeededPath path;
-    EXPECT_EQ(path_of_parameter(each.name, each.value, path), each.path != nullptr) << each.value;
-    if (each.path == nullptr) continue;
-    EXPECT_EQ(path.path, each.path);
-    EXPECT_EQ(path.is_written, each.is_written) << each.value;
+    const auto need = need_of_parameter("", each.name, each.value);
+    EXPECT_EQ(need.has_value(), each.question != nullptr) << each.value;
+    if (need) EXPECT_EQ(need->question, each.question);
   }
 }
 
@@ -125,28 +123,24 @@ TEST(Doctor, WhatAPlanNamesOutsideOfItself) {
   auto needs = needs_of(some_plan());
   EXPECT_EQ(needs.modules, 2U);
   EXPECT_EQ(needs.viewers, std::vector<std::string>{"window"});
-  ASSERT_EQ(needs.paths.size(), 3U);
-  EXPECT_EQ(needs.paths[0].path, "/none.jpg");
-  EXPECT_EQ(needs.paths[1].path, "/focus.mtp");
-  EXPECT_EQ(needs.paths[2].path, "logs");
-  EXPECT_TRUE(needs.paths[2].is_written);
-  ASSERT_EQ(needs.ports.size(), 1U);
-  EXPECT_EQ(needs.ports[0].port, "7000");
+  EXPECT_EQ(needs.questions(), (std::vector<std::string>{"read /none.jpg", "listen 7000",
+                                                         "read /focus.mtp", "write logs"}));
 }
 
 TEST(Doctor, WhatARunWouldMiss) {
   auto needs = needs_of(some_plan());
   auto facts = good_facts();
   facts.processors = 1;
-  facts.paths["/focus.mtp"] = {.is_there = true};
-  facts.paths["logs"] = {.is_there = true, .is_readable = true, .is_folder = true};
-  facts.ports["7000"] = "tcp-listen:7000: Address already in use";
+  facts.problems = {{"read /none.jpg", " does not exist"},
+                    {"read /focus.mtp", " is not readable for this user"},
+                    {"write logs", " is not writable for this user"},
+                    {"listen 7000", ": tcp-listen:7000: Address already in use"}};
   EXPECT_EQ(as_text(diagnose(needs, facts)),
             "missing  eye         parameter source: /none.jpg does not exist\n"
-            "missing  eye         link file:/focus.mtp: /focus.mtp is not readable for this user\n"
-            "missing  eye         link logs/eye.mtp: logs is not writable for this user\n"
             "missing  eye         link tcp-listen:7000?readers=1: tcp-listen:7000: Address already"
             " in use\n"
+            "missing  eye         link file:/focus.mtp: /focus.mtp is not readable for this user\n"
+            "missing  eye         link logs/eye.mtp: logs is not writable for this user\n"
             "missing  window      a display; its parameter save does without one\n"
             "note     processors  1 for 2 modules\n");
 }
@@ -155,10 +149,7 @@ TEST(Doctor, AGraphThatMissesNothing) {
   auto needs = needs_of(some_plan());
   auto facts = good_facts();
   facts.display = "DISPLAY=:0";
-  facts.paths["/none.jpg"] = {.is_there = true, .is_readable = true};
-  facts.paths["/focus.mtp"] = facts.paths["/none.jpg"];
-  facts.paths["logs"] = {
-      .is_there = true, .is_readable = true, .is_folder = true, .is_writable = true};
+  for (const auto& question : needs.questions()) facts.problems[question] = "";
   auto findings = diagnose(needs, facts);
   EXPECT_FALSE(is_ill(findings));
   EXPECT_EQ(findings.size(), 4U);

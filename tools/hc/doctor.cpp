@@ -14,14 +14,13 @@ namespace {
 std::vector<Finding> examine_graph(hc::LoadOptions options, Needs& needs) {
   const auto hosts = make_hosts();
   options.hosts = hosts.get();
-  auto planned = hc::make_loader(options)->load(nullptr, -1);
-  if (!planned) throw Failure(planned.error());
+  const auto planned = value_or_fail(hc::make_loader(options)->load(nullptr, -1));
   std::vector<Finding> findings;
-  for (const auto& problem : planned->problems) findings.push_back({Mark::Wrong, "graph", problem});
-  if (planned->plan) {
+  for (const auto& problem : planned.problems) findings.push_back({Mark::Wrong, "graph", problem});
+  if (planned.plan) {
     findings.push_back({Mark::Ok, "graph", options.file + ": no problems found"});
-    needs = needs_of(part_of(*planned->plan, ""));
-    for (auto& finding : diagnose(*planned->plan, *hosts)) findings.push_back(std::move(finding));
+    needs = needs_of(part_of(*planned.plan, ""));
+    for (auto& finding : diagnose(*planned.plan, *hosts)) findings.push_back(std::move(finding));
   } else {
     findings.push_back({Mark::Note, "graph", "correct this first; the rest was not checked"});
   }
@@ -32,10 +31,7 @@ void run(const hc::LoadOptions& options) {
   Needs needs;
   std::vector<Finding> findings;
   if (!options.file.empty()) findings = examine_graph(options, needs);
-  std::vector<std::string> paths, ports;
-  for (const auto& path : needs.paths) paths.push_back(path.path);
-  for (const auto& port : needs.ports) ports.push_back(port.port);
-  const Facts facts = gather_facts(paths, ports);
+  const Facts facts = gather_facts(needs.questions());
   for (auto& finding : diagnose(needs, facts)) findings.push_back(std::move(finding));
   auto machine = diagnose(facts);
   machine.insert(machine.end(), findings.begin(), findings.end());

@@ -79,16 +79,16 @@ Drawing drawing_of(const hc::Plan& plan, const std::string& title) {
   Drawing drawing;
   drawing.title = title;
   for (const auto& module : plan.modules) {
-    auto program = std::filesystem::path(module.program).filename().string();
-    drawing.boxes.push_back({module.name, program == module.name ? "" : program, module.group});
-    auto& words = drawing.boxes.back().words;
-    if (!module.mode.empty()) words += (words.empty() ? "mode: " : ", mode: ") + module.mode;
+    std::vector<std::string> words = {std::filesystem::path(module.program).filename()};
+    if (words.front() == module.name) words.clear();
+    if (!module.mode.empty()) words.push_back("mode: " + module.mode);
+    drawing.boxes.push_back({module.name, joined(words), module.group});
   }
   for (const auto& link : plan.links) {
-    std::string words = link.keep == "all" ? "" : "keep " + link.keep;
-    for (const auto& [key, value] : link.policy)
-      words.append(words.empty() ? "" : ", ").append(key).append(" ").append(value);
-    drawing.arrows.push_back({link.from, link.to, words});
+    std::vector<std::string> words;
+    if (link.keep != "all") words.push_back("keep " + link.keep);
+    for (const auto& [key, value] : link.policy) words.push_back(key + " " + value);
+    drawing.arrows.push_back({link.from, link.to, joined(words)});
   }
   return drawing;
 }

@@ -15,11 +15,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string question_of(const Needs& needs) {
-  Json question = {{"paths", Json::array()}, {"ports", Json::array()}};
-  for (const auto& path : needs.paths) question["paths"].push_back(path.path);
-  for (const auto& port : needs.ports) question["ports"].push_back(port.port);
-  return question.dump(-1, ' ', false, Json::error_handler_t::replace);
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 /// Errors: Malformed.
@@ -28,9 +25,7 @@ hc::Result<Facts> facts_of(const std::string& answer) try {
   Facts facts;
   facts.display = json.at("display");
   facts.processors = json.at("processors");
-  for (const auto& [path, state] : json.at("paths").items())
-    facts.paths[path] = {state.at(0), state.at(1), state.at(2), state.at(3)};
-  json.at("ports").get_to(facts.ports);
+  json.at("problems").get_to(facts.problems);
   return facts;
 } catch (const Json::exception& error) {
   return hc::Error{hc::Code::Malformed, error.what()};
@@ -55,7 +50,7 @@ std::vector<Finding> diagnose(const hc::Plan& plan, hc::Hosts& hosts) {
     const auto host = hosts.find(name);
     hc::Result<std::string> answer = hc::Error{hc::Code::Closed, "it is not connected"};
     const auto served = hosts.serve([&] {
-      if (host) answer = host->examine(question_of(needs), hc::stop_descriptor());
+      if (host) answer = host->examine(text_of(needs.questions()), hc::stop_descriptor());
     });
     if (!served) answer = served.error();
     auto facts = answer ? facts_of(*answer) : answer.error();
@@ -76,18 +71,13 @@ std::vector<Finding> diagnose(const hc::Plan& plan, hc::Hosts& hosts) {
 
 std::string examine(const std::string& question) {
   const auto asked = Json::parse(question, nullptr, false);
-  const auto list = [&](const char* key) {
-    return asked.is_object() ? asked.value(key, std::vector<std::string>())
-                             : std::vector<std::string>();
-  };
-  const Facts facts = gather_facts(list("paths"), list("ports"));
-  Json answer = {{"display", facts.display},
-                 {"processors", facts.processors},
-                 {"paths", Json::object()},
-                 {"ports", facts.ports}};
-  for (const auto& [path, state] : facts.paths)
-    answer["paths"][path] = {state.is_there, state.is_readable, state.is_folder, state.is_writable};
-  return answer.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::vector<std::string> questions;
+  if (asked.is_array())
+    for (const auto& each : asked)
+      if (each.is_string()) questions.push_back(each);
+  const Facts facts = gather_facts(questions);
+  return text_of(
+      {{"display", facts.display}, {"processors", facts.processors}, {"problems", facts.problems}});
 }
 
 }  // namespace tool

@@ -123,40 +123,34 @@ std::size_t processors() {
   return static_cast<std::size_t>(CPU_COUNT(&set));
 }
 
-/// The files of a folder whose names begin with one of these words and end with a digit.
-std::vector<Device> devices(const std::string& folder,
-                            std::initializer_list<std::string_view> beginnings, int access) {
-  std::vector<Device> found;
-  std::error_code missing;
-  for (const auto& entry : fs::directory_iterator(folder, missing)) {
-    const std::string name = entry.path().filename().string();
-    if (std::any_of(beginnings.begin(), beginnings.end(), [&](std::string_view beginning) {
-          return name.starts_with(beginning) && name.back() >= '0' && name.back() <= '9';
-        }))
-      found.push_back({entry.path().string(), ::access(entry.path().c_str(), access) == 0});
-  }
-  std::sort(found.begin(), found.end(), [](const Device& a, const Device& b) {
-    return std::pair(a.path.size(), a.path) < std::pair(b.path.size(), b.path);
-  });
-  return found;
-}
-
 /// Whether a line of the mainboard leads to a chip: the kernel has names for more than there are.
-bool is_real_line(const Device& device) {
-  const auto name = fs::path(device.path).filename().string();
+bool is_real_line(const std::string& name) {
   if (!name.starts_with("ttyS")) return true;
   std::ifstream file("/sys/class/tty/" + name + "/type");
   int type = 0;
   return file >> type && type != 0;
 }
 
-std::vector<Device> sounds() {
-  auto found = devices("/dev/snd", {"controlC"}, R_OK | W_OK);
-  std::error_code missing;  // pcmC0D0p plays, pcmC0D0c hears
-  for (const auto& entry : fs::directory_iterator("/dev/snd", missing))
-    if (entry.path().filename().string().starts_with("pcm"))
-      found.push_back({entry.path().string(), ::access(entry.path().c_str(), R_OK | W_OK) == 0});
-  return found;
+/// The files of a folder whose names begin with one of these words and end with a digit or one of
+/// the letters of `ends`.
+Devices find(const char* kind, const char* where, const char* folder,
+             std::initializer_list<std::string_view> begins, int access = R_OK | W_OK,
+             std::string_view ends = "") {
+  std::vector<std::pair<std::size_t, std::string>> found;  // by length, so that 10 follows 9
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(folder, missing)) {
+    const std::string name = entry.path().filename().string();
+    const bool has_end =
+        (name.back() >= '0' && name.back() <= '9') || ends.find(name.back()) != ends.npos;
+    if (has_end && is_real_line(name) &&
+        std::ranges::any_of(begins, [&](auto begin) { return name.starts_with(begin); }))
+      found.emplace_back(name.size(), entry.path().string());
+  }
+  std::ranges::sort(found);
+  Devices devices{kind, where};
+  for (const auto& [size, path] : found)
+    (::access(path.c_str(), access) == 0 ? devices.open : devices.closed).push_back(path);
+  return devices;
 }
 
 /// From lines like " 0 [Loopback       ]: Loopback - Loopback".
@@ -175,25 +169,25 @@ std::string display() {
   return "";
 }
 
-PathState look_at(const std::string& path) {
-  PathState state;
+/// What is wrong with what a question asks for; empty: nothing.
+std::string problem_of(const std::string& question) {
+  const auto what = question.substr(0, question.find(' '));
+  const auto place = question.substr(std::min(question.size(), what.size() + 1));
+  if (what == "listen") {  // for a moment
+    auto source = hc::open_source({"tcp-listen", place, {}}, hc::LinkOptions());
+    return source ? "" : ": " + source.error().detail;
+  }
   std::error_code missing;
-  state.is_there = fs::exists(path, missing);
-  state.is_folder = fs::is_directory(path, missing);
-  state.is_readable = ::access(path.c_str(), R_OK) == 0;
-  state.is_writable = ::access(path.c_str(), W_OK) == 0;
-  return state;
-}
-
-/// Why nobody can listen there; empty: one can, as this did for a moment.
-std::string try_to_listen(const std::string& port) {
-  auto source = hc::open_source({"tcp-listen", port, {}}, hc::LinkOptions());
-  return source ? "" : source.error().detail;
+  const bool is_written = what == "write";
+  if (!fs::exists(place, missing)) return " does not exist";
+  if (is_written && !fs::is_directory(place, missing)) return " is not a folder";
+  if (::access(place.c_str(), is_written ? W_OK : R_OK) == 0) return "";
+  return is_written ? " is not writable for this user" : " is not readable for this user";
 }
 
 }  // namespace
 
-Facts gather_facts(const std::vector<std::string>& paths, const std::vector<std::string>& ports) {
+Facts gather_facts(const std::vector<std::string>& questions) {
   Facts facts;
   facts.kernel = kernel_features();
   utsname system{};
@@ -204,21 +198,21 @@ Facts gather_facts(const std::vector<std::string>& paths, const std::vector<std:
   if (struct sysinfo memory{}; ::sysinfo(&memory) == 0)
     facts.memory = std::uint64_t{memory.totalram} * memory.mem_unit;
   facts.free_memory = free_memory();
-  facts.cameras = devices("/dev", {"video"}, R_OK | W_OK);
-  facts.sounds = sounds();
+  facts.devices = {
+      find("camera", "/dev/video*", "/dev", {"video"}),
+      // pcmC0D0p plays, pcmC0D0c hears
+      find("sound", "/dev/snd", "/dev/snd", {"controlC", "pcm"}, R_OK | W_OK, "pc"),
+      find("serial", "/dev/ttyUSB*, ttyACM*, ttyS*", "/dev", {"ttyUSB", "ttyACM", "ttyS"}),
+      find("joystick", "/dev/input/js*, event*", "/dev/input", {"js", "event"}, R_OK),
+      find("graphics", "/dev/dri", "/dev/dri", {"card", "render"})};
   facts.sound_cards = sound_cards();
-  facts.serials = devices("/dev", {"ttyUSB", "ttyACM", "ttyS"}, R_OK | W_OK);
-  std::erase_if(facts.serials, [](const Device& device) { return !is_real_line(device); });
-  facts.joysticks = devices("/dev/input", {"js", "event"}, R_OK);
-  facts.renderers = devices("/dev/dri", {"card", "render"}, R_OK | W_OK);
   facts.display = display();
   facts.has_graphviz = !find_program("dot").empty();
   for (const auto& name : module_names()) {
     bool starts = ::access((module_folder() / name).c_str(), X_OK) == 0;
     (starts ? facts.modules : facts.broken_modules).push_back(name);
   }
-  for (const auto& path : paths) facts.paths[path] = look_at(path);
-  for (const auto& port : ports) facts.ports[port] = try_to_listen(port);
+  for (const auto& question : questions) facts.problems[question] = problem_of(question);
   return facts;
 }
 

@@ -16,18 +16,10 @@ struct Feature {
   std::string error;  ///< empty: it can
 };
 
-/// A device file that may be there.
-struct Device {
-  std::string path;
-  bool opens = true;  ///< it may be opened for what it is for
-};
-
-/// A path, seen by this user.
-struct PathState {
-  bool is_there = false;
-  bool is_readable = false;
-  bool is_folder = false;
-  bool is_writable = false;
+/// Device files of a kind that may be there.
+struct Devices {
+  std::string kind, where;                          ///< "camera", "/dev/video*"
+  std::vector<std::string> open = {}, closed = {};  ///< that this user may use, or not
 };
 
 struct Facts {
@@ -37,18 +29,18 @@ struct Facts {
   std::uint64_t processes = 0;                ///< this user may have; the largest number: any
   std::size_t processors = 0;                 ///< that this process may use
   std::uint64_t memory = 0, free_memory = 0;  ///< [byte]
-  std::vector<Device> cameras, sounds, serials, joysticks, renderers;
-  std::vector<std::string> sound_cards;      ///< their names
-  std::string display;                       ///< the variable that names one, with its value
-  bool has_graphviz = false;                 ///< `dot` is there
-  std::vector<std::string> modules;          ///< that can be started
-  std::vector<std::string> broken_modules;   ///< in the folder of the modules, but not executable
-  std::map<std::string, PathState> paths;    ///< those that were asked for
-  std::map<std::string, std::string> ports;  ///< [HOST:]PORT: why nobody can listen, or empty
+  std::vector<Devices> devices;
+  std::vector<std::string> sound_cards;     ///< their names
+  std::string display;                      ///< the variable that names one, with its value
+  bool has_graphviz = false;                ///< `dot` is there
+  std::vector<std::string> modules;         ///< that can be started
+  std::vector<std::string> broken_modules;  ///< in the folder of the modules, but not executable
+  /// By questions that were asked: what is wrong, " does not exist"; empty: nothing.
+  std::map<std::string, std::string> problems;
 };
 
-/// Examines this machine, these paths and these TCP ports ([HOST:]PORT).
-Facts gather_facts(const std::vector<std::string>& paths = {},
-                   const std::vector<std::string>& ports = {});
+/// Examines this machine, and answers questions: "read PATH" of a file or device, "write FOLDER",
+/// "listen [HOST:]PORT" by TCP.
+Facts gather_facts(const std::vector<std::string>& questions);
 
 }  // namespace tool

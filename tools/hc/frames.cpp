@@ -67,12 +67,10 @@ RunningGraph choose_graph(const FramesOptions& options, const std::vector<std::s
   try {
     return choose_running(options.of.empty() ? stem : options.of);
   } catch (const Failure& failure) {
-    std::string movers;
-    for (const auto& output : outputs) movers += (movers.empty() ? "" : ", ") + output;
-    throw Failure({failure.code,
-                   hc::format("{}; from {} to {} a frame is moved by {}: run the graph (--of NAME "
-                              "where its name is another), or give a recording with --in FOLDER",
-                              failure.detail, options.source, options.target, movers)});
+    throw Failure(failure.code,
+                  hc::format("{}; from {} to {} a frame is moved by {}: run the graph (--of NAME "
+                             "where its name is another), or give a recording with --in FOLDER",
+                             failure.detail, options.source, options.target, joined(outputs)));
   }
 }
 
@@ -100,8 +98,7 @@ void observe(GraphFrames& frames, const FramesOptions& options,
         feed(frames, message, outputs[i]);
     // What is missing at an end, the transform's error tells.
     if (is_known() || Clock::now() - heard > kPatience) return;
-    const auto ready = hc::wait_readable(descriptors, hc::stop_descriptor(), kPatience);
-    if (!ready) throw Failure(ready.error());
+    value_or_fail(hc::wait_readable(descriptors, hc::stop_descriptor(), kPatience));
   }
 }
 
@@ -117,16 +114,14 @@ std::string text_of(const GraphFrames& frames, const FramesOptions& options) {
                       numbers.z());
   };
   const Eigen::Matrix3d R = T.linear();
-  std::string words;
   const auto chain =
       value_or_fail(frames.tree.chain(options.target, options.source), options.graph.file);
-  for (const auto& frame : chain) words += (words.empty() ? "" : " -> ") + frame;
   return hc::format("{} to {}, {}\n", options.source, options.target,
                     is_fixed ? "fixed" : hc::format("at {} ns", time)) +
          row("translation [m]", T.translation()) + row("rotation", R.row(0)) + row("", R.row(1)) +
          row("", R.row(2)) +
          row("roll, pitch, yaw [degree]", hc::frames::angles_of(R) * (180 / std::numbers::pi)) +
-         hc::format("  {:<28} {}\n", "chain", words);
+         hc::format("  {:<28} {}\n", "chain", joined(chain, " -> "));
 }
 
 void run(const FramesOptions& options) {

@@ -27,11 +27,9 @@ hc::LoadedGraph load_graph(std::string_view verb, const std::string& file,
                            hc::GraphLoader& loader) {
   auto loaded = loader.load(nullptr, -1);
   std::error_code unknown;
-  if (!loaded && !std::filesystem::exists(file, unknown)) {
-    std::string shipped;
-    for (const auto& name : shipped_graphs()) shipped += (shipped.empty() ? "" : ", ") + name;
-    throw Failure({loaded.error().code, loaded.error().detail + "; shipped graphs: " + shipped});
-  }
+  if (!loaded && !std::filesystem::exists(file, unknown))
+    throw Failure(loaded.error().code,
+                  loaded.error().detail + "; shipped graphs: " + joined(shipped_graphs()));
   if (!loaded) throw Failure(loaded.error());
   if (loaded->plan) return std::move(*loaded);
   for (const auto& line : loaded->problems) say(hc::format("hc {}: error: {}", verb, line));

@@ -5,13 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <map>
-#include <optional>
-
-#include <nlohmann/json.hpp>
 
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
+#include <hc/contract/description.h>
 
 #include "common.h"
 #include "drawing.h"
@@ -32,24 +29,21 @@ struct GraphOptions {
 /// Has Graphviz draw an image.
 void write_svg(const std::string& dot, const std::string& path) {
   if (find_program("dot").empty())
-    throw Failure(hc::Error{hc::Code::NotFound, "dot is not installed; install graphviz"});
+    throw Failure(hc::Code::NotFound, "dot is not installed; install graphviz");
   // The file's name is no part of the command, whatever letters it has.
   ::setenv("HC_SVG", path.c_str(), 1);
   FILE* pipe = ::popen("dot -Tsvg -o \"$HC_SVG\"", "we");
-  if (pipe == nullptr) throw Failure(hc::Error{hc::Code::System, "dot cannot be started"});
+  if (pipe == nullptr) throw Failure(hc::Code::System, "dot cannot be started");
   std::fwrite(dot.data(), 1, dot.size(), pipe);
   if (int status = ::pclose(pipe); status != 0)
-    throw Failure(hc::Error{hc::Code::System, hc::format("dot failed: {} not written", path)});
+    throw Failure(hc::Code::System, hc::format("dot failed: {} not written", path));
 }
 
 void draw(const GraphOptions& options) {
   auto drawing = [&] {
     if (!options.file.file.empty())
       return drawing_of(load_plan("graph", options.file), options.file.file);
-    auto graph = choose_running(options.running);
-    auto state = Observer(graph).next_measured();
-    if (!state) throw Failure(hc::Error{hc::Code::Closed, graph.text() + " has ended"});
-    return drawing_of(*state);
+    return drawing_of(state_of(choose_running(options.running), true));
   }();
   if (!options.svg.empty())
     write_svg(as_dot(drawing), options.svg);
@@ -57,50 +51,22 @@ void draw(const GraphOptions& options) {
     print(options.as_dot ? as_dot(drawing) : as_text(drawing, ::isatty(STDOUT_FILENO) == 0));
 }
 
-/// "0 to 100", "fast or slow"; empty where every value is in range.
-std::string range_text(const nlohmann::json& parameter) {
-  std::string text;
-  for (const auto& choice : parameter.value("choices", nlohmann::json::array()))
-    text += (text.empty() ? "" : " or ") + choice.get<std::string>();
-  for (const char* limit : {"min", "max"})
-    if (auto found = parameter.find(limit); found != parameter.end())
-      text += (limit == std::string_view("min") ? "from "
-               : text.empty()                   ? "to "
-                                                : " to ") +
-              (found->is_string() ? found->get<std::string>() : found->dump());
-  return text;
-}
-
-/// What a module's program says of its parameters: objects by their names.
-std::map<std::string, nlohmann::json> parameters_of(const RunningGraph& graph,
-                                                    const hc::ModuleState& module) {
-  std::map<std::string, nlohmann::json> parameters;
+/// What a module's program says of its parameters, by name; none where it says nothing.
+std::vector<hc::ParameterState> parameters_of(const RunningGraph& graph,
+                                              const hc::ModuleState& module) {
   const auto answer = command_graph(graph, {"describe " + module.name});
-  const auto description =
-      nlohmann::json::parse(answer.empty() ? "" : answer.front(), nullptr, false);
-  if (!description.is_object()) return parameters;
-  const bool has_control = description.value("control", false);
-  for (auto parameter : description.value("parameters", nlohmann::json::array())) {
-    parameter["fixed"] = parameter.value("fixed", false) || !has_control;
-    parameters[parameter.at("name")] = parameter;
-  }
-  return parameters;
-}
-
-hc::GraphState state_of(const RunningGraph& graph) {
-  auto state = Observer(graph).next();
-  if (!state) throw Failure({hc::Code::Closed, graph.text() + " has ended"});
-  return *state;
+  auto description = hc::parse_description(answer.empty() ? "" : answer.front());
+  if (!description) return {};
+  for (auto& parameter : description->parameters)
+    parameter.options.fixed = parameter.options.fixed || !description->control;
+  std::ranges::sort(description->parameters, {}, &hc::ParameterState::name);
+  return std::move(description->parameters);
 }
 
 const hc::ModuleState& find_module(const hc::GraphState& state, const std::string& name) {
-  std::vector<std::string> known;
-  for (const auto& module : state.modules) {
-    if (module.name == name) return module;
-    known.push_back(module.name);
-  }
-  throw Failure(
-      {hc::Code::Invalid, hc::format("no module \"{}\"{}", name, hc::suggestion(name, known))});
+  if (const auto* found = hc::find_named(state.modules, name)) return *found;
+  throw Failure(hc::Code::Invalid, hc::format("no module \"{}\"{}", name,
+                                              hc::suggestion(name, hc::names_of(state.modules))));
 }
 
 /// Adds a line for each parameter that is wanted: its value, and its range and default.
@@ -111,28 +77,24 @@ void add_parameters(const RunningGraph& graph, const hc::GraphState& state, cons
   const std::string wanted = dot < what.size() ? what.substr(dot + 1) : "";
   auto add = [&](const hc::ModuleState& module) {
     const auto parameters = parameters_of(graph, module);
-    std::vector<std::string> known;
-    bool is_found = wanted.empty();
-    for (const auto& [name, parameter] : parameters) {
-      known.push_back(name);
+    if (!wanted.empty() && hc::find_named(parameters, wanted) == nullptr)
+      throw Failure(hc::Code::Invalid,
+                    hc::format("module {} has no parameter \"{}\"{}", module.name, wanted,
+                               hc::suggestion(wanted, hc::names_of(parameters))));
+    for (const auto& parameter : parameters) {
+      const auto& [name, unit, doc, options, standard, value] = parameter;
       if (!wanted.empty() && name != wanted) continue;
-      is_found = true;
-      const auto& value = parameter.at("default");
-      const std::string standard = value.is_string() ? value.get<std::string>() : value.dump();
       const auto found = module.parameters.find(name);
-      const std::string unit = parameter.value("unit", ""), range = range_text(parameter);
-      std::string words =
-          hc::format("{}{}", found == module.parameters.end() ? standard : found->second,
-                     unit.empty() ? "" : " " + unit);
-      std::string about =
-          (range.empty() ? "" : range + ", ") + "default " + (standard.empty() ? "\"\"" : standard);
-      if (parameter.at("fixed")) about += ", set restarts the module";
-      rows.push_back({module.name + "." + name + " = " + words, about});
+      const std::string now = found == module.parameters.end() ? hc::text(standard) : found->second;
+      const auto range =
+          options.choices.empty() ? hc::range_in_words(options) : joined(options.choices, " or ");
+      const auto otherwise = hc::text(standard);
+      rows.push_back(
+          {hc::format("{}.{} = {}{}", module.name, name, now, unit.empty() ? "" : " " + unit),
+           hc::format("{}default {}{}", range.empty() ? "" : range + ", ",
+                      otherwise.empty() ? "\"\"" : otherwise,
+                      options.fixed ? ", set restarts the module" : "")});
     }
-    if (!is_found)
-      throw Failure(
-          {hc::Code::Invalid, hc::format("module {} has no parameter \"{}\"{}", module.name, wanted,
-                                         hc::suggestion(wanted, known))});
   };
   if (!what.empty()) add(find_module(state, what.substr(0, dot)));
   for (const auto& module : state.modules)
@@ -158,7 +120,7 @@ void get(const RunningGraph& graph, const std::vector<std::string>& wanted) {
 void change(const GraphOptions& options, const std::vector<std::string>& commands) {
   for (const auto& command : commands)
     if (command.find('\n') != std::string::npos)
-      throw Failure(hc::Error{hc::Code::Invalid, "a command is one line"});
+      throw Failure(hc::Code::Invalid, "a command is one line");
   for (const auto& remark : command_graph(choose_running(options.running), commands))
     say("hc graph: " + remark);
 }

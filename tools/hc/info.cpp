@@ -61,25 +61,23 @@ void print_senders(const std::map<std::int32_t, Sender>& senders) {
                  "duration", "rate", "lost", "duplicates", "matrices");
   for (const auto& [src, sender] : senders) {
     bool timed = sender.seconds() > 0;
-    std::string types;
-    for (const auto& type : sender.types) types += (types.empty() ? "" : "; ") + type;
+    const auto types = joined({sender.types.begin(), sender.types.end()}, "; ");
     text += hc::format(
         "{:>6} {:>9} {:>9} {:>9} {:>8} {:>6} {:>10}  {}\n", src, sender.messages,
-        bytes_in_words(static_cast<double>(sender.bytes)),
-        timed ? hc::format("{:.3f} s", sender.seconds()) : "-",
+        bytes_in_words(sender.bytes), timed ? hc::format("{:.3f} s", sender.seconds()) : "-",
         timed ? hc::format("{:.3g} Hz", static_cast<double>(sender.messages - 1) / sender.seconds())
               : "-",
         sender.lost, sender.repeated, types);
     if (sender.restarts > 0)
-      text += hc::format("{:>6} seq restarted {} time{}\n", "", sender.restarts,
-                         sender.restarts == 1 ? "" : "s");
+      text += hc::format("{:>6} seq restarted {}\n", "", counted(sender.restarts, "time"));
   }
   print(text);
 }
 
 /// The streams of a recording, and topics beside them.
-void print_streams(const std::vector<hc::record::StreamInfo>& streams, double seconds,
+void print_streams(const std::vector<hc::record::StreamInfo>& streams, std::int64_t duration,
                    const std::string& size) {
+  const double seconds = static_cast<double>(duration) * 1e-9;
   std::string text = hc::format("{:<32} {:>9} {:>8}  {}\n", "stream", "messages", "rate", "type");
   std::uint64_t messages = 0;
   for (const auto& each : streams) {
@@ -88,22 +86,20 @@ void print_streams(const std::vector<hc::record::StreamInfo>& streams, double se
                        seconds > 0 ? hc::format("{:.3g} Hz", count / seconds) : "-", each.type);
     messages += each.messages;
   }
-  print(text + hc::format("{} message{}, {}, {:.3f} s\n", messages, messages == 1 ? "" : "s", size,
-                          seconds));
+  print(text + hc::format("{}, {}, {:.3f} s\n", counted(messages, "message"), size, seconds));
 }
 
 void print_folder(const hc::record::Place& place, std::uint64_t limit) {
   const auto streams = value_or_fail(open_recording({place}, limit)->streams(true), place.text());
   std::int64_t begin = 0, end = 0;
-  double size = 0;
+  std::uintmax_t size = 0;
   for (const auto& each : streams) {
     if (each.begin != 0) begin = begin == 0 ? each.begin : std::min(begin, each.begin);
     end = std::max(end, each.end);
     std::error_code missing;
-    size += static_cast<double>(
-        std::filesystem::file_size(hc::record::stream_file(place.path, each.name), missing));
+    size += std::filesystem::file_size(hc::record::stream_file(place.path, each.name), missing);
   }
-  print_streams(streams, static_cast<double>(end - begin) * 1e-9, bytes_in_words(size));
+  print_streams(streams, end - begin, bytes_in_words(size));
 }
 
 /// What the summary of a recording in MCAP says, whoever wrote it; its messages are not read.
@@ -124,11 +120,9 @@ void print_mcap(const std::string& path) {
                        0,
                        {}});
   }
-  print_streams(
-      streams, static_cast<double>(summary.end - summary.begin) * 1e-9,
-      hc::format("{} in {} chunk{} of {}", bytes_in_words(static_cast<double>(reader.size())),
-                 summary.chunks, summary.chunks == 1 ? "" : "s",
-                 bytes_in_words(static_cast<double>(summary.plain))));
+  print_streams(streams, static_cast<std::int64_t>(summary.end - summary.begin),
+                hc::format("{} in {} of {}", bytes_in_words(reader.size()),
+                           counted(summary.chunks, "chunk"), bytes_in_words(summary.plain)));
   if (!summary.metadata.empty())
     print(hc::format("{} records of metadata, such as {}\n", summary.metadata.size(),
                      summary.metadata.front()));
@@ -152,31 +146,24 @@ void run(const InfoOptions& options) {
   std::map<std::int32_t, Sender> senders;
   hc::Message message;
   Progress progress("hc info");
-  Skipper skipper("hc info");
   std::optional<Failure> fault;
-  for (std::uint64_t taken = 0; options.count == 0 || taken < options.count;) {
+  for (std::uint64_t taken = 0; options.count == 0 || taken < options.count; ++taken) {
     try {
-      if (!receive(*source, message, options.uri)) break;
+      if (!receive(*source, message, options.uri, "hc info", options.skip)) break;
     } catch (const Failure& failure) {
-      if (options.skip) {
-        skipper.skip(*source, failure, options.uri);
-        continue;
-      }
       fault = failure;
       break;
     }
-    skipper.whole_message();
-    ++taken;
     senders[message.header.src].add(message);
     auto traffic = source->traffic();
-    progress.show(-1, hc::format("{} messages, {}", traffic.messages,
-                                 bytes_in_words(static_cast<double>(traffic.bytes))));
+    progress.show(-1,
+                  hc::format("{} messages, {}", traffic.messages, bytes_in_words(traffic.bytes)));
   }
   // Also where the end is corrupt.
   print_senders(senders);
   auto traffic = source->traffic();
-  print(hc::format("{} message{}, {}\n", traffic.messages, traffic.messages == 1 ? "" : "s",
-                   bytes_in_words(static_cast<double>(traffic.bytes))));
+  print(
+      hc::format("{}, {}\n", counted(traffic.messages, "message"), bytes_in_words(traffic.bytes)));
   say_losses("hc info", options.uri, traffic);
   if (fault) throw Failure(*fault);
 }

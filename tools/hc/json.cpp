@@ -5,7 +5,7 @@
 
 #include <hc/base/json_string.h>
 
-#include "number.h"
+#include "readable.h"
 
 namespace tool {
 namespace {
@@ -70,16 +70,6 @@ bool write_rows_of_text(const hc::Message& message, std::string& json, const Wri
 }
 
 }  // namespace
-
-std::string to_json(const hc::Message& message) {
-  std::string json;
-  write_json(message, message.header, [&](std::string_view piece) {
-    json += piece;
-    return true;
-  });
-  json.pop_back();
-  return json;
-}
 
 bool write_json(const hc::Message& message, const hc::Header& header, const Write& write) {
   std::string json = "{\"version\":1";

@@ -3,17 +3,14 @@
 // A message as one line of JSON (spec/mtp-1.md, section 8).
 
 #include <functional>
-#include <string>
 #include <string_view>
 
 #include <hc/mtp/message.h>
 
 namespace tool {
 
-/// The JSON form without a line end. Compressed elements become null: expand first.
-std::string to_json(const hc::Message& message);
-
-/// Writes the JSON form and a line end piece by piece, of some 64 KiB.
+/// Writes the JSON form and a line end piece by piece, of some 64 KiB. Compressed elements become
+/// null: expand first.
 ///
 /// @param header  written in place of the message's: that with which compressed elements came.
 /// @param write  takes a piece; false ends it.

@@ -8,6 +8,17 @@
 namespace tool {
 namespace {
 
+/// The JSON form without a line end.
+std::string to_json(const hc::Message& message) {
+  std::string json;
+  write_json(message, message.header, [&](std::string_view piece) {
+    json += piece;
+    return true;
+  });
+  json.pop_back();
+  return json;
+}
+
 // The vectors of spec/vectors hold the rest; tests/conformance reads them through hc cat --json.
 
 TEST(Json, IsOneLineOfNamedFields) {

@@ -9,11 +9,10 @@
 #include <filesystem>
 #include <system_error>
 
-#include <nlohmann/json.hpp>
-
-#include <graph/run.h>
+#include <graph/programs.h>
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
+#include <hc/contract/description.h>
 #include <hc/os/program.h>
 #include <transports/all.h>
 
@@ -51,10 +50,8 @@ std::vector<std::string> module_arguments(const std::string& program,
       arguments[1].find_first_of("/:=") != std::string::npos)
     return arguments;
   const auto text = hc::describe_program(program);
-  const auto description = nlohmann::json::parse(text ? *text : "", nullptr, false);
-  const auto inputs =
-      description.is_object() ? description.value("inputs", nlohmann::json::array()) : nullptr;
-  if (inputs.size() != 1) return arguments;
+  const auto description = hc::parse_description(text ? *text : "");
+  if (!description || description->inputs.size() != 1) return arguments;
   std::string of;
   auto found = std::find(arguments.begin(), arguments.end(), "--of");
   if (found != arguments.end() && found + 1 != arguments.end()) {
@@ -65,7 +62,7 @@ std::vector<std::string> module_arguments(const std::string& program,
   if (!graph) return arguments;
   auto uri = tool::value_or_fail(hc::tap_uri(*graph, arguments[1]), arguments[1]);
   uri.options.emplace_back("reconnect", "5");  // a restart of the module, but not the graph's end
-  arguments[1] = "--in=" + inputs[0].at("name").get<std::string>() + "=" + uri.text();
+  arguments[1] = "--in=" + description->inputs[0].name + "=" + uri.text();
   return arguments;
 }
 
@@ -122,66 +119,47 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "hc " HC_VERSION);
   app.require_subcommand(1);
   app.footer(footer);
-  tool::add_run(app);
-  tool::add_check(app);
-  tool::add_doctor(app);
-  tool::add_frames(app);
-  tool::add_graph(app);
-  tool::add_ps(app);
-  tool::add_top(app);
-  tool::add_trace(app);
-  tool::add_cat(app);
-  tool::add_info(app);
-  tool::add_send(app);
-  tool::add_record(app);
-  tool::add_play(app);
-  tool::add_replay(app);
-  tool::add_describe(app);
-  tool::add_new(app);
-  tool::add_key(app);
-  tool::add_agent(app);
-  tool::add_manual(app);
+  using namespace tool;
+  for (const auto add : {add_run, add_check, add_doctor, add_frames, add_graph, add_ps, add_top,
+                         add_trace, add_cat, add_info, add_send, add_record, add_play, add_replay,
+                         add_describe, add_new, add_key, add_agent, add_manual})
+    add(app);
 
   if (argc == 1) {
-    tool::print(kOverview);
+    print(kOverview);
     return kUsage;
   }
   offer_python_package();
-  std::string first = argv[1];
-  auto verbs = app.get_subcommands([&](const CLI::App* verb) { return verb->get_name() == first; });
-  bool is_verb = !verbs.empty();
+  const std::string first = argv[1];
+  const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
+  const bool is_verb =
+      std::ranges::any_of(verbs, [&](const auto* verb) { return verb->get_name() == first; });
+  const std::string who = is_verb ? "hc " + first : "hc";
   try {
-    if (!first.empty() && first[0] != '-' && !is_verb) become_module(first, argv + 1);
-  } catch (const tool::Failure& failure) {
-    tool::say(hc::format("hc {}: {}", first, failure.what()));
-    return failure.status;
-  }
-  if (!first.empty() && first[0] != '-' && !is_verb) {
-    std::vector<std::string> known = tool::module_names();
-    for (const auto* verb : app.get_subcommands([](const CLI::App*) { return true; }))
-      known.push_back(verb->get_name());
-    tool::say(hc::format("hc: unknown command or module \"{}\"{}; see hc --help", first,
-                         hc::suggestion(first, known)));
-    return kUsage;
-  }
-  try {
+    if (!is_verb && !first.empty() && first[0] != '-') {
+      become_module(first, argv + 1);
+      auto known = module_names();
+      for (const auto* verb : verbs) known.push_back(verb->get_name());
+      say(hc::format("hc: unknown command or module \"{}\"{}; see hc --help", first,
+                     hc::suggestion(first, known)));
+      return kUsage;
+    }
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ExtrasError& error) {
-    tool::say(
-        hc::format("hc{}: {}{}", is_verb ? " " + first : "", error.what(), meant_option(app)));
+    say(hc::format("{}: {}{}", who, error.what(), meant_option(app)));
     return kUsage;
   } catch (const CLI::ParseError& error) {
     // Help and version come this way too.
     if (error.get_exit_code() == 0) return app.exit(error);
-    tool::say(hc::format("hc{}: {}", is_verb ? " " + first : "", error.what()));
+    say(hc::format("{}: {}", who, error.what()));
     return kUsage;
-  } catch (const tool::Failure& failure) {
+  } catch (const Failure& failure) {
     const bool is_silent = failure.status == 0 || *failure.what() == '\0';
-    if (!is_silent) tool::say(hc::format("hc {}: {}", first, failure.what()));
+    if (!is_silent) say(hc::format("hc {}: {}", first, failure.what()));
     return failure.status;
   } catch (const std::exception& error) {
-    tool::say(hc::format("hc {}: {}", first, error.what()));
+    say(hc::format("hc {}: {}", first, error.what()));
     return 1;
   }
 }

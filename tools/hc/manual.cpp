@@ -13,19 +13,13 @@ std::vector<const CLI::App*> verbs_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
-std::string with_blanks(const std::vector<std::string>& words) {
-  std::string text;
-  for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
-  return text;
-}
-
 /// Options and verbs behind a verb.
 std::string words_of(const CLI::App& verb) {
   std::vector<std::string> words;
   for (const auto* each : verbs_of(verb)) words.push_back(each->get_name());
   for (const auto* option : verb.get_options())
     for (const auto& name : option->get_lnames()) words.push_back("--" + name);
-  return with_blanks(words);
+  return joined(words, " ");
 }
 
 std::string bash_completion(const CLI::App& app) {

@@ -48,7 +48,7 @@ void write_file(const fs::path& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary);
   file << text;
   file.close();
-  if (!file) throw Failure(hc::Error{hc::Code::System, path.string() + " cannot be written"});
+  if (!file) throw Failure(hc::Code::System, path.string() + " cannot be written");
   if (text.starts_with("#!"))
     fs::permissions(path, fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
                     fs::perm_options::add);
@@ -71,16 +71,16 @@ std::string build_commands() {
 
 void begin(const NewOptions& options) {
   if (!is_snake_case(options.name))
-    throw Failure(hc::Error{hc::Code::Invalid,
-                            hc::format("a module's name is snake_case, of at most {} letters, "
-                                       "not \"{}\"",
-                                       kMaxModuleName, options.name)});
+    throw Failure(hc::Code::Invalid,
+                  hc::format("a module's name is snake_case, of at most {} letters, "
+                             "not \"{}\"",
+                             kMaxModuleName, options.name));
   const fs::path folder = (fs::path(options.folder) / options.name).lexically_normal();
   std::error_code error;
   if (fs::exists(fs::symlink_status(folder, error)))
-    throw Failure(hc::Error{hc::Code::Invalid, folder.string() + " already exists"});
+    throw Failure(hc::Code::Invalid, folder.string() + " already exists");
   fs::create_directories(folder, error);
-  if (error) throw Failure(hc::Error{hc::Code::System, folder.string() + ": " + error.message()});
+  if (error) throw Failure(hc::Code::System, folder.string() + ": " + error.message());
   for (const auto& file : options.is_python ? python_template() : cpp_template()) {
     std::string path(file.path), text(file.text);
     replace_all(path, "@NAME@", options.name);

@@ -38,17 +38,14 @@ RunningGraph choose_running(const std::string& wanted) {
   const char* variable = std::getenv("HC_GRAPH");
   const std::string name = !wanted.empty() || variable == nullptr ? wanted : variable;
   auto graphs = find_running();
-  std::vector<std::string> names;
-  names.reserve(graphs.size());
-  for (const auto& graph : graphs) names.push_back(graph.name);
+  const auto names = hc::names_of(graphs);
   std::erase_if(graphs, [&](const auto& graph) {
     return !name.empty() && graph.name != name && graph.text() != name;
   });
   if (graphs.empty())
-    throw Failure(hc::Error{hc::Code::NotFound,
-                            name.empty() ? "no graph is running here"
-                                         : hc::format("no graph \"{}\" is running{}", name,
-                                                      hc::suggestion(name, names))});
+    throw Failure(hc::Code::NotFound, name.empty() ? "no graph is running here"
+                                                   : hc::format("no graph \"{}\" is running{}",
+                                                                name, hc::suggestion(name, names)));
   for (bool (*is_near)(int) : {is_of_this_terminal, is_of_this_folder}) {
     if (graphs.size() == 1 || !name.empty()) break;
     std::vector<RunningGraph> near;
@@ -57,10 +54,9 @@ RunningGraph choose_running(const std::string& wanted) {
     if (near.size() == 1) return near.front();
   }
   if (graphs.size() == 1) return graphs.front();
-  std::string list;
-  for (const auto& graph : graphs) list += (list.empty() ? "" : ", ") + graph.text();
-  throw Failure(
-      hc::Error{hc::Code::Invalid, "several graphs are running; pass --of NAME: " + list});
+  std::vector<std::string> list;
+  for (const auto& graph : graphs) list.push_back(graph.text());
+  throw Failure(hc::Code::Invalid, "several graphs are running; pass --of NAME: " + joined(list));
 }
 
 Observer::Observer(const RunningGraph& graph)
@@ -81,9 +77,8 @@ std::optional<hc::GraphState> Observer::next(const std::vector<int>& inputs) {
     if (!ready && ready.error().code == hc::Code::Stopped) return std::nullopt;
     if (!ready) throw Failure(ready.error());
     if (*ready == descriptors.size())
-      throw Failure(
-          hc::Error{hc::Code::Closed,
-                    client_.graph().text() + " has not answered for 5 s; it may be stopped"});
+      throw Failure(hc::Code::Closed,
+                    client_.graph().text() + " has not answered for 5 s; it may be stopped");
     if (*ready > 0) return state_;
     if (auto turned = loop_->turn(std::chrono::milliseconds(0)); !turned)
       throw Failure(turned.error());
@@ -99,18 +94,23 @@ std::optional<hc::GraphState> Observer::next_measured() {
   return next();
 }
 
+hc::GraphState state_of(const RunningGraph& graph, bool is_measured) {
+  Observer observer(graph);
+  auto state = is_measured ? observer.next_measured() : observer.next();
+  if (!state) throw Failure(hc::Code::Closed, graph.text() + " has ended");
+  return std::move(*state);
+}
+
 std::vector<std::string> command_graph(const RunningGraph& graph,
                                        const std::vector<std::string>& commands) {
   auto answer = value_or_fail(hc::ask(graph, commands, hc::stop_descriptor()), graph.text());
   if (answer.is_ok) return answer.rows;
   for (std::size_t i = 0; i + 1 < answer.rows.size(); ++i) say("hc: " + answer.rows[i]);
-  throw Failure(hc::Error{hc::Code::Invalid, answer.rows.back()});
+  throw Failure(hc::Code::Invalid, answer.rows.back());
 }
 
 std::unique_ptr<hc::Source> open_port(const RunningGraph& graph, const std::string& port) {
-  auto opened = hc::open_tap(graph, port, link_options(kDefaultLimit));
-  if (!opened) throw Failure(opened.error());
-  return std::move(*opened);
+  return value_or_fail(hc::open_tap(graph, port, link_options()));
 }
 
 bool is_running_port(const std::string& text, const std::string& of) {
@@ -125,7 +125,6 @@ bool is_running_port(const std::string& text, const std::string& of) {
   } catch (const Failure&) {
     return false;  // one of several graphs may be meant, or it is another user's
   }
-  return false;
 }
 
 std::optional<RunningGraph> graph_of_port(const std::string& text, const std::string& of) {
@@ -134,7 +133,7 @@ std::optional<RunningGraph> graph_of_port(const std::string& text, const std::st
   if (!hc::is_port_name(text)) return std::nullopt;
   if (std::filesystem::exists(text, missing) && !is_running_port(text, of)) return std::nullopt;
   if (find_running().empty())
-    throw Failure({hc::Code::NotFound, text + ": no such file, and no graph is running here"});
+    throw Failure(hc::Code::NotFound, text + ": no such file, and no graph is running here");
   return choose_running(of);
 }
 
@@ -144,8 +143,8 @@ std::unique_ptr<hc::Source> open_named(const std::string& text, const std::strin
   if (!graph) return open_source(text, limit);
   auto opened = hc::open_tap(*graph, text, link_options(limit));
   if (opened) return std::move(*opened);
-  throw Failure({opened.error().code,
-                 (of.empty() ? text + ": no such file, and " : "") + opened.error().detail});
+  throw Failure(opened.error().code,
+                (of.empty() ? text + ": no such file, and " : "") + opened.error().detail);
 }
 
 }  // namespace tool

@@ -41,6 +41,10 @@ class Observer {
   bool is_new_ = false, has_ended_ = false;
 };
 
+/// A state of a graph. Fails where it has ended.
+/// @param is_measured  as of next_measured().
+hc::GraphState state_of(const RunningGraph& graph, bool is_measured = false);
+
 /// Has a graph do what the commands say, a row each; gives what it answers, and fails with what is
 /// wrong.
 std::vector<std::string> command_graph(const RunningGraph& graph,

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <csignal>
 #include <mutex>
+#include <thread>
 #include <utility>
 
 #include <hc/base/format.h>
@@ -71,21 +72,15 @@ Outbox::Outbox(int descriptor) : shared_(std::make_shared<Shared>(descriptor)) {
   sigset_t all, before;
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
-  writer_ = std::thread([shared = shared_] { shared->write(); });
+  std::thread([shared = shared_] { shared->write(); }).detach();
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 Outbox::~Outbox() {
   finish();
-  std::unique_lock lock(shared_->mutex);
+  const std::lock_guard lock(shared_->mutex);
   shared_->is_ending = true;
   shared_->changed.notify_all();
-  const bool is_stuck = !shared_->is_done();
-  lock.unlock();
-  if (is_stuck)
-    writer_.detach();
-  else
-    writer_.join();
 }
 
 void Outbox::say(std::string_view line) {

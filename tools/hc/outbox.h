@@ -7,7 +7,6 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <thread>
 
 namespace tool {
 
@@ -33,8 +32,7 @@ class Outbox {
  private:
   struct Shared;
 
-  std::shared_ptr<Shared> shared_;  // with the thread, which may stay blocked in a write
-  std::thread writer_;
+  std::shared_ptr<Shared> shared_;        // with the thread, which may stay blocked in a write
   std::size_t unread_ = ~std::size_t{0};  // the number of pieces when the reader stopped reading
 };
 

@@ -65,7 +65,7 @@ double parse_speed(const std::string& text) {
   const char* end = text.data() + text.size();
   auto [stop, status] = std::from_chars(text.data(), end, speed);
   if (status != std::errc() || stop != end || !(speed >= 1e-6 && speed <= 1e6))
-    throw Failure(hc::Error{hc::Code::Invalid, "--speed is a number from 1e-6 to 1e6, or max"});
+    throw Failure(hc::Code::Invalid, "--speed is a number from 1e-6 to 1e6, or max");
   return speed;
 }
 

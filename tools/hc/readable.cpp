@@ -11,8 +11,6 @@
 #include <hc/mtp/coords.h>
 #include <hc/mtp/rows.h>
 
-#include "number.h"
-
 namespace tool {
 namespace {
 

@@ -64,15 +64,15 @@ void take_words(const std::string& source, const std::string& file, RecordOption
   if (!file.empty()) options.links.insert(options.links.begin(), source);
   if (!options.links.empty()) return;
   if (is_running_port(options.file, options.of))
-    throw Failure({hc::Code::Invalid,
-                   hc::format("{} is a port of a running graph: give a FILE behind it to record "
-                              "it, or ./{} for a file of that name",
-                              options.file, options.file)});
+    throw Failure(hc::Code::Invalid,
+                  hc::format("{} is a port of a running graph: give a FILE behind it to record "
+                             "it, or ./{} for a file of that name",
+                             options.file, options.file));
   if (::isatty(STDIN_FILENO) == 1)
-    throw Failure({hc::Code::Invalid,
-                   hc::format("nothing to record to {}: give a source before it (a URI, a file or "
-                              "MODULE.PORT of a running graph), or pipe messages in",
-                              options.file)});
+    throw Failure(hc::Code::Invalid,
+                  hc::format("nothing to record to {}: give a source before it (a URI, a file or "
+                             "MODULE.PORT of a running graph), or pipe messages in",
+                             options.file));
   options.links = {"-"};
 }
 
@@ -83,7 +83,7 @@ class Recording {
     for (const auto& word : options.links) {
       const auto place = hc::record::place_of(word);
       if (is_file(place, options.file))
-        throw Failure(hc::Error{hc::Code::Invalid, word + " is the file that is written"});
+        throw Failure(hc::Code::Invalid, word + " is the file that is written");
       const bool is_port = graph_of_port(word, options.of).has_value();
       if (!is_port && is_recording(place))
         recordings.push_back(place);
@@ -111,8 +111,8 @@ class Recording {
         if (links_[i].source != nullptr) open.push_back(links_[i].source.get());
       }
       const auto& written = writer_->written();
-      progress.show(-1, hc::format("{} messages, {}", written.messages,
-                                   bytes_in_words(static_cast<double>(written.bytes))));
+      progress.show(-1,
+                    hc::format("{} messages, {}", written.messages, bytes_in_words(written.bytes)));
       if (is_enough() || (reader_ == nullptr && open.empty())) break;
       poll();
       if (!any) static_cast<void>(waits.wait(open, kPeriod));

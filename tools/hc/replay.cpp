@@ -49,35 +49,25 @@ struct ReplayOptions {
   double timeout = 300;
 };
 
-/// A folder for what is sent, removed at the end unless a person has named it.
-class Folder {
- public:
-  explicit Folder(const std::string& given) : is_kept_(!given.empty()) {
-    std::error_code failed;
-    if (is_kept_) {
-      path_ = given;
-      fs::create_directories(path_, failed);
-      if (failed) throw Failure({hc::Code::System, given + ": " + failed.message()});
-      return;
-    }
-    std::string name = fs::temp_directory_path(failed) / "hc-replay-XXXXXX";
-    if (failed || ::mkdtemp(name.data()) == nullptr)
-      throw Failure({hc::Code::System, name + ": no folder could be made"});
-    path_ = name;
+/// The folder for what is sent: that which a person has named, or a new one.
+fs::path make_folder(const std::string& given) {
+  std::error_code failed;
+  if (!given.empty()) {
+    fs::create_directories(given, failed);
+    if (failed) throw Failure(hc::Code::System, given + ": " + failed.message());
+    return given;
   }
-  ~Folder() {
-    std::error_code failed;
-    if (!is_kept_) fs::remove_all(path_, failed);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
+  std::string name = fs::temp_directory_path(failed) / "hc-replay-XXXXXX";
+  if (failed || ::mkdtemp(name.data()) == nullptr)
+    throw Failure(hc::Code::System, name + ": no folder could be made");
+  return name;
+}
 
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  bool is_kept_;
-  fs::path path_;
-};
+void check_known(const std::string& name, const std::set<std::string>& known) {
+  if (!known.contains(name))
+    throw Failure(hc::Code::Invalid, "no module or recorded output \"" + name + "\"" +
+                                         hc::suggestion(name, {known.begin(), known.end()}));
+}
 
 /// Settings "[MODULE[.PORT]=]VALUE": the most exact one counts.
 class Settings {
@@ -91,7 +81,7 @@ class Settings {
       const char* end = number.data() + number.size();
       const auto [stop, status] = std::from_chars(number.data(), end, value);
       if (status != std::errc() || stop != end || !(value >= 0))
-        throw Failure({hc::Code::Invalid, option + " is [MODULE[.PORT]=]NUMBER, not " + word});
+        throw Failure(hc::Code::Invalid, option + " is [MODULE[.PORT]=]NUMBER, not " + word);
       values_[equals == std::string::npos ? "" : word.substr(0, equals)] = value;
     }
   }
@@ -103,9 +93,7 @@ class Settings {
   }
   void check(const std::set<std::string>& known) const {
     for (const auto& [name, value] : values_)
-      if (!name.empty() && !known.contains(name))
-        throw Failure({hc::Code::Invalid, "no module or recorded output \"" + name + "\"" +
-                                              hc::suggestion(name, {known.begin(), known.end()})});
+      if (!name.empty()) check_known(name, known);
   }
 
  private:
@@ -211,7 +199,6 @@ class Replay {
       : options_(options),
         recording_(options.recording),
         plan_(load()),
-        folder_(options.out),
         numbers_("--tolerance", options.numbers, 0),
         times_("--time-tolerance", options.times, 0),
         shares_("--share", options.shares, 1) {
@@ -221,10 +208,17 @@ class Replay {
       for (const auto& output : recorded_outputs(module)) known.insert(module.name + "." + output);
     }
     for (const auto* settings : {&numbers_, &times_, &shares_}) settings->check(known);
-    Settings("--except", with_values(options.except), 0).check(known);
+    for (const auto& name : options.except) check_known(name, known);
   }
+  ~Replay() {
+    std::error_code failed;
+    if (options_.out.empty() && !folder_.empty()) fs::remove_all(folder_, failed);
+  }
+  Replay(const Replay&) = delete;
+  Replay& operator=(const Replay&) = delete;
 
   void run() {
+    folder_ = make_folder(options_.out);
     std::size_t differing = 0, compared = 0;
     for (const auto& module : plan_.modules) {
       if (hc::stop_requested()) throw Failure(0);
@@ -243,10 +237,10 @@ class Replay {
       }
     }
     if (!options_.check) return;
-    if (compared == 0) throw Failure({hc::Code::NotFound, "nothing to compare"});
+    if (compared == 0) throw Failure(hc::Code::NotFound, "nothing to compare");
     if (differing > 0)
-      throw Failure({hc::Code::Malformed, hc::format("{} of {} outputs differ from the recording",
-                                                     differing, compared)});
+      throw Failure(hc::Code::Malformed,
+                    hc::format("{} of {} outputs differ from the recording", differing, compared));
   }
 
  private:
@@ -254,16 +248,9 @@ class Replay {
     auto graph = options_.graph;
     if (graph.file.empty()) graph.file = recording_.graph_file();
     if (graph.file.empty())
-      throw Failure({hc::Code::Invalid, "give --graph FILE: " + options_.recording +
-                                            " does not say which graph was run"});
+      throw Failure(hc::Code::Invalid, "give --graph FILE: " + options_.recording +
+                                           " does not say which graph was run");
     return load_plan("replay", graph);
-  }
-
-  static std::vector<std::string> with_values(const std::vector<std::string>& names) {
-    std::vector<std::string> words;
-    words.reserve(names.size());
-    for (const auto& name : names) words.push_back(name + "=0");
-    return words;
   }
 
   /// Ports of a module, without its trace.
@@ -321,7 +308,7 @@ class Replay {
       if (!end.is_input) continue;
       const auto number = links[end.port]++;
       const auto writer = writer_of(module, end);
-      const auto file = folder_.path() / hc::format("{}.{}.{}.in", module.name, end.port, number);
+      const auto file = folder_ / hc::format("{}.{}.{}.in", module.name, end.port, number);
       if (is_known)
         write_handled(recording_, writer, end.port, number, steps, file);
       else
@@ -332,9 +319,9 @@ class Replay {
       const auto end = std::ranges::find_if(
           module.ends, [&](const auto& each) { return !each.is_input && each.port == port; });
       add("--out", end != module.ends.end() ? *end : hc::PlannedEnd{false, port, "", ""},
-          folder_.path() / (module.name + "." + port + ".mtp"));
+          folder_ / (module.name + "." + port + ".mtp"));
     }
-    const fs::path clock = folder_.path() / (module.name + ".clock");
+    const fs::path clock = folder_ / (module.name + ".clock");
     if (is_known) write_steps(steps, clock);
     words.insert(words.end(), {"--clock", is_known ? "file:" + clock.string() : "messages"});
     return words;
@@ -345,41 +332,35 @@ class Replay {
     const auto command = command_of(module);
     auto process = value_or_fail(Process::start(command, Process::Capture::Errors), module.name);
     const auto end = std::chrono::steady_clock::now() + hc::duration(options_.timeout);
-    const std::array output = {process.output()}, has_ended = {process.ended()};
     std::string said;
     std::array<char, 4096> piece{};
-    while (true) {
+    std::optional<int> status;
+    for (bool is_open = true; is_open || !(status = process.poll_status());) {
       const auto left =
           std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
       if (left.count() <= 0)
-        throw Failure({hc::Code::Closed,
-                       hc::format("{} has not ended after {} s; --timeout gives it more, --except "
-                                  "leaves it out",
-                                  module.name, options_.timeout)});
-      auto ready = hc::wait_readable(output, hc::stop_descriptor(), left);
+        throw Failure(hc::Code::Closed,
+                      hc::format("{} has not ended after {} s; --timeout gives it more, --except "
+                                 "leaves it out",
+                                 module.name, options_.timeout));
+      const std::array watched = {is_open ? process.output() : process.ended()};
+      const auto ready = hc::wait_readable(watched, hc::stop_descriptor(), left);
       if (!ready) throw Failure(module.name, ready.error());
-      if (*ready == 0) {
-        const auto size = ::read(output[0], piece.data(), piece.size());
-        if (size <= 0) break;
-        said.append(piece.data(), static_cast<std::size_t>(size));
-        if (said.size() > kMostSaid) said.erase(0, said.size() - kMostSaid);
-      }
+      if (*ready != 0 || !is_open) continue;
+      const auto size = ::read(watched[0], piece.data(), piece.size());
+      is_open = size > 0;
+      if (is_open) said.append(piece.data(), static_cast<std::size_t>(size));
+      if (said.size() > kMostSaid) said.erase(0, said.size() - kMostSaid);
     }
-    std::optional<int> status;
-    while (!(status = process.poll_status()))
-      if (auto ended =
-              hc::wait_readable(has_ended, hc::stop_descriptor(), std::chrono::milliseconds(100));
-          !ended)
-        throw Failure(module.name, ended.error());
     if (*status == 0) return;
     said.erase(0, said.find_last_of('\n', said.size() < 2 ? 0 : said.size() - 2) + 1);
     while (said.ends_with('\n')) said.pop_back();
-    throw Failure(
-        {hc::Code::Closed, hc::format("{} failed with status {}: {}", module.name, *status, said)});
+    throw Failure(hc::Code::Closed,
+                  hc::format("{} failed with status {}: {}", module.name, *status, said));
   }
 
   bool compare_output(const std::string& output) {
-    const std::string again = folder_.path() / (output + ".mtp");
+    const std::string again = folder_ / (output + ".mtp");
     const auto source = recording_.open(output), made = open_file_source(again, kDefaultLimit);
     auto expand = [](hc::Message& message, const std::string& place) {
       message = value_or_fail(hc::expand(message), place);
@@ -405,7 +386,7 @@ class Replay {
   const ReplayOptions& options_;
   const GraphRecording recording_;
   hc::Plan plan_;
-  Folder folder_;
+  fs::path folder_;  // removed at the end, unless it was named
   Settings numbers_, times_, shares_;
 };
 

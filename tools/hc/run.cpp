@@ -19,7 +19,8 @@
 #include "common.h"
 #include "graph.h"
 #include "observer.h"
-#include "status_line.h"
+#include "outbox.h"
+#include "screen.h"
 #include "verbs.h"
 
 namespace tool {
@@ -36,10 +37,6 @@ struct RunOptions {
 /// Set by SIGUSR1: what is kept of the last time is to be saved.
 volatile std::sig_atomic_t save_requested = 0;
 
-std::string counted(std::uint64_t number, std::string_view what) {
-  return hc::format("{} {}{}", number, what, number == 1 ? "" : "s");
-}
-
 /// What a run came to, for a person: a few lines, the modules' results among them.
 void print_summary(const RunOptions& options, const hc::RunReport& report) {
   hc::Traffic sum;
@@ -50,18 +47,19 @@ void print_summary(const RunOptions& options, const hc::RunReport& report) {
   }
   for (const auto& module : report.state.modules)
     restarts += static_cast<std::uint64_t>(module.restarts);
-  std::string text = hc::format(
-      "{} ran for {}: {}{}, {} ({})\n", options.graph.file, seconds_in_words(report.state.uptime),
-      counted(report.state.modules.size(), "module"),
-      restarts > 0 ? ", " + counted(restarts, "restart") : "", counted(sum.messages, "message"),
-      bytes_in_words(static_cast<double>(sum.bytes)));
+  std::string text = hc::format("{} ran for {}: {}{}, {} ({})\n", options.graph.file,
+                                seconds_in_words(report.state.uptime),
+                                counted(report.state.modules.size(), "module"),
+                                restarts > 0 ? ", " + counted(restarts, "restart") : "",
+                                counted(sum.messages, "message"), bytes_in_words(sum.bytes));
   for (const auto& line : report.results) text += "  " + line.line() + "\n";
-  std::string lost;
+  std::vector<std::string> lost;
   for (auto [count, word] : {std::pair(sum.throttled, "throttled"),
                              {sum.lost() - sum.throttled, "dropped"},
                              {ignored, "ignored out of focus"}})
-    if (count > 0) lost += hc::format("{}{} {}", lost.empty() ? "  " : ", ", count, word);
-  if (!lost.empty()) text += lost + (options.links ? "\n" : " (--links: at which links)\n");
+    if (count > 0) lost.push_back(hc::format("{} {}", count, word));
+  if (!lost.empty())
+    text += "  " + joined(lost) + (options.links ? "\n" : " (--links: at which links)\n");
   print(text);
 }
 
@@ -73,11 +71,9 @@ void print_links(const hc::GraphState& state) {
   for (const auto& link : state.links) {
     std::string name = link.from + " → " + link.to;
     const auto& sent = link.traffic;
-    std::string lost;
-    if (sent.lost() > 0) lost = "  " + losses_in_words(sent);
     text += hc::format("{:<{}}  {:>8} message{}  {:>9}{}\n", name, widest, sent.messages,
-                       sent.messages == 1 ? " " : "s",
-                       bytes_in_words(static_cast<double>(sent.bytes)), lost);
+                       sent.messages == 1 ? " " : "s", bytes_in_words(sent.bytes),
+                       sent.lost() > 0 ? "  " + losses_in_words(sent) : "");
   }
   print(text);
 }
@@ -99,7 +95,7 @@ void check_name(const RunOptions& options) {
   for (const auto& graph : find_running()) {
     if (graph.name != name) continue;
     if (!options.name.empty())
-      throw Failure({hc::Code::Invalid, "--as " + name + ": " + graph.text() + " is running"});
+      throw Failure(hc::Code::Invalid, "--as " + name + ": " + graph.text() + " is running");
     if (!options.quiet && ::isatty(STDERR_FILENO) == 1)
       say(hc::format("hc run: {} is running too; this one is {}.{} (--as gives it a name)",
                      graph.text(), name, ::getpid()));
@@ -112,7 +108,7 @@ void check_writable(const std::filesystem::path& folder, std::error_code failed)
   const auto path = folder.empty() ? "." : folder.string();
   if (!failed && ::access(path.c_str(), W_OK | X_OK) != 0)
     failed.assign(errno, std::generic_category());
-  if (failed) throw Failure({hc::Code::System, path + ": " + failed.message()});
+  if (failed) throw Failure(hc::Code::System, path + ": " + failed.message());
 }
 
 /// Where the module `recorder` records. What an earlier run has recorded there stays.
@@ -126,8 +122,8 @@ void take_record(const RunOptions& options, hc::LoadOptions& load) {
   const auto given = hc::record::place_of_streams(options.record);
   const bool is_mcap = given.kind == hc::record::Place::Kind::Mcap;
   if (!is_mcap && !load.recorder.empty())
-    throw Failure({hc::Code::Invalid, "--" + load.recorder.begin()->first +
-                                          " is for recordings in MCAP: --record FILE.mcap"});
+    throw Failure(hc::Code::Invalid, "--" + load.recorder.begin()->first +
+                                         " is for recordings in MCAP: --record FILE.mcap");
   const auto place = hc::record::free_place(given, is_numbered);
   std::error_code failed;
   if (!is_mcap) std::filesystem::create_directories(place.path, failed);
@@ -141,8 +137,8 @@ void take_record(const RunOptions& options, hc::LoadOptions& load) {
 }
 
 /// Logs the reason as everything else was logged: its reader may have ended.
-[[noreturn]] void fail(StatusLine& status, const hc::Error& error) {
-  status.say("hc run: " + error.text());
+[[noreturn]] void fail(Outbox& lines, const hc::Error& error) {
+  lines.say("hc run: " + error.text());
   throw Failure(Failure(error).status);
 }
 
@@ -159,20 +155,19 @@ void run(RunOptions options) {
   load_options.hosts = hosts.get();
   auto loader = hc::make_loader(load_options);
   auto graph = load_graph("run", options.graph.file, *loader);
-  StatusLine status(!options.quiet);
+  Outbox lines(STDERR_FILENO);
+  const bool has_status = !options.quiet && ::isatty(STDERR_FILENO) == 1;
   if (const auto& unlinked = graph.plan->unlinked; !options.record.empty() && !unlinked.empty()) {
-    std::string list;
-    for (const auto& output : unlinked) list += (list.empty() ? "" : ", ") + output;
-    status.say("graph: not recorded, as not linked: " + list);
+    lines.say("graph: not recorded, as not linked: " + joined(unlinked));
   }
   hc::RunOptions run_options;
   run_options.stop = hc::stop_descriptor();
   run_options.with_module_lines = !options.quiet;
   run_options.event = [&](const hc::LogLine& line) {
-    if (!options.quiet || line.level != hc::Level::Info) status.say(line.line());
+    if (!options.quiet || line.level != hc::Level::Info) lines.say(line.line());
   };
   run_options.state = [&, recorder = graph.recorder](const hc::GraphState& state) {
-    status.show(state);
+    if (has_status) lines.show(status_line(state).substr(0, terminal_size().width - 1));
     if (std::exchange(save_requested, 0) == 0) return;
     for (const auto& module : state.modules)
       if (module.name == recorder && module.process > 0) ::kill(module.process, SIGUSR1);
@@ -182,15 +177,14 @@ void run(RunOptions options) {
   run_options.loader = loader.get();
   run_options.hosts = hosts.get();
   auto report = hc::run_graph(std::move(graph), run_options);
-  status.finish();
-  if (!report) fail(status, report.error());
+  lines.finish();
+  if (!report) fail(lines, report.error());
   print_summary(options, *report);
   if (options.links) print_links(report->state);
-  std::string given_up;
+  std::vector<std::string> given_up;
   for (const auto& module : report->state.modules)
-    if (module.status == hc::ModuleStatus::GivenUp)
-      given_up += (given_up.empty() ? "" : ", ") + module.name;
-  if (!given_up.empty()) fail(status, {hc::Code::Closed, "given up: " + given_up});
+    if (module.status == hc::ModuleStatus::GivenUp) given_up.push_back(module.name);
+  if (!given_up.empty()) fail(lines, {hc::Code::Closed, "given up: " + joined(given_up)});
   if (report->has_errors()) throw Failure(1);  // they are in the summary
 }
 

@@ -52,18 +52,23 @@ std::string short_count(std::uint64_t count) {
   return count == 0 ? "-" : short_number(static_cast<double>(count));
 }
 
+double messages_per_second(const hc::GraphState& state) {
+  double rate = 0;
+  for (const auto& link : state.links) rate += link.per_second;
+  return rate;
+}
+
 std::string heading(const hc::GraphState& state) {
-  double rate = 0, load = 0;
+  double load = 0;
   std::size_t up = 0;
   for (const auto& module : state.modules) {
     up += module.status == hc::ModuleStatus::Running ? 1 : 0;
     load += module.processor;
   }
-  for (const auto& link : state.links) rate += link.per_second;
   const auto focus = state.focus_in_words(), stopped = state.stopped_in_words();
   return hc::format("{}: {} {}, {}/{} modules up, {} messages/s, {:.0f} % CPU{}", state.name,
                     state.is_stopping ? "stopping" : "running", seconds_in_words(state.uptime), up,
-                    state.modules.size(), short_number(rate), 100 * load,
+                    state.modules.size(), short_number(messages_per_second(state)), 100 * load,
                     focus.empty() ? "" : ", focus " + focus) +
          (stopped.empty() ? "" : ", " + stopped);
 }
@@ -85,17 +90,12 @@ struct Column {
   std::string (*cell)(const Row& row);
 };
 
+/// The cells of a row; null: the headings.
 template <typename Row>
-std::string cells(const std::vector<Column<Row>>& columns, const Row& row) {
+std::string cells(const std::vector<Column<Row>>& columns, const Row* row = nullptr) {
   std::string text;
-  for (const auto& column : columns) text += in_front(column.cell(row), column.width);
-  return text;
-}
-
-template <typename Row>
-std::string names(const std::vector<Column<Row>>& columns) {
-  std::string text;
-  for (const auto& column : columns) text += in_front(column.name, column.width);
+  for (const auto& [name, width, cell] : columns)
+    text += in_front(row != nullptr ? cell(*row) : name, width);
   return text;
 }
 
@@ -139,7 +139,7 @@ Line host_line(const hc::HostState& host) {
 void add_modules(const hc::GraphState& state, std::vector<Line>& lines) {
   const std::vector<Column<hc::ModuleState>> columns = {
       {"CPU", 7, [](const auto& m) { return hc::format("{:.1f}%", 100 * m.processor); }},
-      {"MEMORY", 9, [](const auto& m) { return bytes_in_words(static_cast<double>(m.memory)); }},
+      {"MEMORY", 9, [](const auto& m) { return bytes_in_words(m.memory); }},
       {"RESTARTS", 9, [](const auto& m) { return std::to_string(m.restarts); }},
   };
   constexpr std::size_t kMaxName = 24, kMaxMode = 12;
@@ -155,14 +155,14 @@ void add_modules(const hc::GraphState& state, std::vector<Line>& lines) {
     mode = std::max(mode, std::min(kMaxMode, length(mode_of(module))));
   }
   lines.push_back(
-      {fitted("MODULE", name) + names(columns) + "  " + fitted("MODE", mode) + " STATUS", false,
+      {fitted("MODULE", name) + cells(columns) + "  " + fitted("MODE", mode) + " STATUS", false,
        false, true});
   for (const auto& module : state.modules) {
     auto status = status_text(module);
     if (!module.last_line.empty())
       status += hc::format(" | {} ({} ago)", module.last_line,
                            seconds_in_words(std::max(0.0, module.last_line_age)));
-    const auto text = fitted(full_name(module), name) + cells(columns, module) + "  " +
+    const auto text = fitted(full_name(module), name) + cells(columns, &module) + "  " +
                       fitted(mode_of(module), mode) + " " + status;
     lines.push_back({text, module.in_workspace, is_in_trouble(module),
                      !module.in_focus && !is_in_trouble(module)});
@@ -189,7 +189,7 @@ void add_links(const hc::GraphState& state, std::size_t width, std::vector<Line>
   std::set<std::string> down;
   for (const auto& module : state.modules)
     if (module.status != hc::ModuleStatus::Running) down.insert(module.name);
-  lines.push_back({fitted("LINK", name) + names(columns), false, false, true});
+  lines.push_back({fitted("LINK", name) + cells(columns), false, false, true});
   for (const auto& link : state.links) {
     std::string notes;
     auto note = [&](const std::string& text) {
@@ -200,7 +200,7 @@ void add_links(const hc::GraphState& state, std::size_t width, std::vector<Line>
     note(losses_in_words(link.traffic));
     if (link.ignored > 0) note("ignored: not in focus");
     if (link.traffic.bad > 0) note(std::to_string(link.traffic.bad) + " bad");
-    const auto text = fitted(link.from + " → " + link.to, name) + cells(columns, link) + notes;
+    const auto text = fitted(link.from + " → " + link.to, name) + cells(columns, &link) + notes;
     lines.push_back({text, link.in_workspace, !link.status.empty()});
   }
 }
@@ -222,6 +222,19 @@ std::string painted(Line line, const Screen& screen) {
 }
 
 }  // namespace
+
+std::string status_line(const hc::GraphState& state) {
+  using enum hc::ModuleStatus;
+  std::vector<std::string> modules;
+  for (const auto status : {Running, Starting, Stalled, Waiting, Stopping, Ended, GivenUp})
+    if (const auto count = std::ranges::count(state.modules, status, &hc::ModuleState::status);
+        count > 0)
+      modules.push_back(hc::format("{} {}", count, hc::name(status)));
+  const auto focus = state.focus_in_words(), stopped = state.stopped_in_words();
+  return hc::format("{} | {:.0f} messages/s{}{}", joined(modules), messages_per_second(state),
+                    focus.empty() ? "" : " | focus: " + focus,
+                    stopped.empty() ? "" : " | " + stopped);
+}
 
 bool is_in_trouble(const hc::ModuleState& module) {
   using enum hc::ModuleStatus;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What `hc top` shows: a graph's state as lines of a terminal. Pure.
+// What `hc top` and `hc run` show: a graph's state as lines of a terminal. Pure.
 
 #include <cstddef>
 #include <string>
@@ -27,6 +27,9 @@ struct Bid {
 /// A graph's state, at most as large as the screen, each line with a line feed. What is in the
 /// global workspace is bold; what is in trouble is red, and comes first.
 std::string draw(const hc::GraphState& state, const std::vector<Bid>& bids, const Screen& screen);
+
+/// "5 running, 1 given up | 1230 messages/s | focus: track"
+std::string status_line(const hc::GraphState& state);
 
 /// Whether a module is in trouble, by its status or by the last line of its log: devices and peers
 /// that a module waits for do not end it.

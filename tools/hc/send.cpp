@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc send: makes one message, from the command line or from a file.
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <optional>
-#include <system_error>
 
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
@@ -47,7 +44,7 @@ E named(std::optional<E> value, const std::string& kind, const std::string& name
   std::string hint = hc::suggestion(name, known);
   if (hint.empty())
     for (const auto& each : known) hint += (hint.empty() ? "; there are: " : ", ") + each;
-  throw Failure(hc::Error{hc::Code::Invalid, hc::format("no {} \"{}\"{}", kind, name, hint)});
+  throw Failure(hc::Code::Invalid, hc::format("no {} \"{}\"{}", kind, name, hint));
 }
 
 hc::MatrixType type_named(const std::string& name) {
@@ -76,7 +73,7 @@ hc::Message message_of_numbers(const SendOptions& options) {
     auto error = hc::find_error(header.info);
     if (!error) break;
     if (options.components != 0 || error->rule != 18)
-      throw Failure(hc::Error{hc::Code::Invalid, hc::format("R{}: {}", error->rule, error->what)});
+      throw Failure(hc::Code::Invalid, hc::format("R{}: {}", error->rule, error->what));
   }
   std::size_t elements = options.numbers.size() / header.info.components;
   std::size_t width = options.width > 0 ? static_cast<std::size_t>(options.width)
@@ -84,11 +81,11 @@ hc::Message message_of_numbers(const SendOptions& options) {
                                                                         : elements;
   std::size_t height = width == 0 ? 0 : elements / width;
   if (width * height * header.info.components != options.numbers.size())
-    throw Failure(hc::Error{
+    throw Failure(
         hc::Code::Invalid,
         hc::format("{} numbers do not make {} of {} components each", options.numbers.size(),
                    options.width > 0 ? hc::format("rows of {} elements", width) : "elements",
-                   header.info.components)});
+                   header.info.components));
   header.width = static_cast<std::int32_t>(width);
   header.height = static_cast<std::int32_t>(height);
   if (auto valid = hc::check(header); !valid) throw Failure(valid.error());
@@ -104,7 +101,7 @@ hc::Message message_of_numbers(const SendOptions& options) {
 
 hc::Message message_of_npy(const SendOptions& options) {
   std::ifstream file(options.npy, std::ios::binary);
-  if (!file) throw Failure(hc::Error{hc::Code::NotFound, options.npy + ": cannot be read"});
+  if (!file) throw Failure(hc::Code::NotFound, options.npy + ": cannot be read");
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
   auto message = value_or_fail(read_npy(std::as_bytes(std::span(bytes))), options.npy);
   if (options.has_type) message.header.info.type = type_named(options.type);
@@ -115,35 +112,20 @@ hc::Message message_of_npy(const SendOptions& options) {
 /// The camera module reads images, with libraries that hc does not link: its one message, over a
 /// pipe that becomes our standard input.
 hc::Message message_of_image(const SendOptions& options) {
-  std::string program = find_program("camera");
-  std::vector<std::string> words = {program, "--count=1", "--source=" + options.image,
-                                    "--name=hc send"};
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (auto& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-
-  int ends[2];
-  pid_t child = -1;
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  int failed = ::pipe2(ends, O_CLOEXEC) == 0 ? 0 : errno;
-  if (failed == 0) {
-    ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-    failed = ::posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
-    ::close(ends[1]);
-    ::dup2(ends[0], STDIN_FILENO);
-    ::close(ends[0]);
-  }
-  ::posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0)
-    throw Failure(hc::Error{hc::Code::NotFound, "module camera, which reads images: " +
-                                                    std::generic_category().message(failed)});
+  const std::string program = find_program("camera");
+  if (program.empty())
+    throw Failure(hc::Code::NotFound, "module camera, which reads images: it is not there");
+  // The file's name is no part of the command, whatever letters it has.
+  ::setenv("HC_CAMERA", program.c_str(), 1);
+  ::setenv("HC_IMAGE", options.image.c_str(), 1);
+  FILE* pipe =
+      ::popen("exec \"$HC_CAMERA\" --count=1 --source=\"$HC_IMAGE\" --name='hc send'", "re");
+  if (pipe == nullptr || ::dup2(::fileno(pipe), STDIN_FILENO) < 0)
+    throw Failure(hc::Code::System, "module camera cannot be started");
   auto source = open_source("-", kDefaultLimit);
   hc::Message message;
-  bool came = receive(*source, message, options.image);
-  int status = 0;
-  ::waitpid(child, &status, 0);
+  const bool came = receive(*source, message, options.image);
+  ::pclose(pipe);
   if (!came) throw Failure(1);  // camera has said why
   return message.keep();
 }
@@ -155,7 +137,7 @@ void check(const SendOptions& options) {
   if (!options.image.empty()) given.emplace_back("--image");
   if (!options.npy.empty()) given.emplace_back("--npy");
   if (!options.numbers.empty()) given.emplace_back("numbers");
-  auto refuse = [](const std::string& what) { throw Failure(hc::Error{hc::Code::Invalid, what}); };
+  auto refuse = [](const std::string& what) { throw Failure(hc::Code::Invalid, what); };
   if (given.empty() && !options.has_type)
     refuse("nothing to send: give numbers, --text, --image or --npy");
   if (given.size() > 1) refuse(given[0] + " and " + given[1] + " do not go together");

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc top: what a running graph does, live.
 #include <poll.h>
-#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -39,12 +38,8 @@ class Page {
   }
 
   static Screen screen() {
-    winsize size{};
-    Screen screen;
-    if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
-      screen = {size.ws_col, size.ws_row, false};
-    --screen.height;  // the cursor's line stays empty
-    return screen;
+    const auto size = terminal_size();
+    return {size.width, size.height - 1};  // the cursor's line stays empty
   }
 
   /// Puts a page over the last one without flicker.
@@ -143,7 +138,7 @@ void top(const TopOptions& options) {
   const auto graph = choose_running(options.graph);
   Observer observer(graph);
   auto state = observer.next_measured();
-  if (!state) throw Failure(hc::Error{hc::Code::Closed, graph.text() + " has ended"});
+  if (!state) throw Failure(hc::Code::Closed, graph.text() + " has ended");
   const bool is_live = !options.once && ::isatty(STDOUT_FILENO) == 1;
   if (options.json) {
     while (state && print(to_json(*state) + "\n") && !options.once) state = observer.next();

@@ -75,8 +75,8 @@ void check_port(const std::string& port, const Links& links) {
     for (const auto& each : {from, to})
       if (each.find(':') == std::string::npos) known.push_back(each);
   if (std::ranges::find(known, port) == known.end())
-    throw Failure(
-        {hc::Code::Invalid, "no linked port \"" + port + "\"" + hc::suggestion(port, known)});
+    throw Failure(hc::Code::Invalid,
+                  "no linked port \"" + port + "\"" + hc::suggestion(port, known));
 }
 
 Collected collect(const TraceOptions& options) {
@@ -84,19 +84,18 @@ Collected collect(const TraceOptions& options) {
   // Modules tell twice a second.
   constexpr auto kLast = 1s;
   const auto graph = choose_running(options.of);
-  const auto state = Observer(graph).next();
-  if (!state) throw Failure({hc::Code::Closed, graph.text() + " has ended"});
+  const auto state = state_of(graph);
   Collected collected;
   auto& links = collected.traced.links;
-  for (const auto& link : state->links) links.emplace_back(link.from, link.to);
+  for (const auto& link : state.links) links.emplace_back(link.from, link.to);
   if (!options.port.empty()) check_port(options.port, links);
   const auto wanted = upstream_of(module_of(options.port), links);
   struct Watched {
     std::string module;
-    std::unique_ptr<hc::Source> source;  // null once it has ended
+    std::unique_ptr<hc::Source> source;
   };
   std::vector<Watched> watched;
-  for (const auto& module : state->modules) {
+  for (const auto& module : state.modules) {
     if (options.perfetto.empty() && !wanted.contains(module.name)) continue;
     if (module.status != hc::ModuleStatus::Running) continue;
     auto source =
@@ -112,18 +111,15 @@ Collected collect(const TraceOptions& options) {
   const auto end = begin + hc::duration(options.duration) + kLast;
   Progress progress("hc trace");
   while (MonotonicClock::now() < end && !hc::stop_requested()) {
-    std::vector<hc::Source*> open;
-    for (auto& each : watched) {
-      if (each.source == nullptr) continue;
+    std::erase_if(watched, [&](const Watched& each) {
       auto got = each.source->take(message);
       for (; got && *got == hc::Got::Message; got = each.source->take(message))
         collected.add(each.module, message);
-      if (!got || *got == hc::Got::End)
-        each.source.reset();
-      else
-        open.push_back(each.source.get());
-    }
-    if (open.empty()) break;
+      return !got || *got == hc::Got::End;
+    });
+    if (watched.empty()) break;
+    std::vector<hc::Source*> open;
+    for (const auto& each : watched) open.push_back(each.source.get());
     progress.show((MonotonicClock::now() - begin) / std::chrono::duration<double>(end - begin),
                   hc::format("{} events", collected.events));
     static_cast<void>(waits.wait(open, {}, 100ms));
@@ -143,8 +139,8 @@ Collected read_recording(const TraceOptions& options) {
     while (recording.receive(*source, message, output)) collected.add(module, message);
   }
   if (collected.traced.events.empty())
-    throw Failure({hc::Code::NotFound, options.recording + " has no MODULE" + std::string(kSuffix) +
-                                           "; hc run --record writes them"});
+    throw Failure(hc::Code::NotFound, options.recording + " has no MODULE" + std::string(kSuffix) +
+                                          "; hc run --record writes them");
   if (!options.graph.file.empty())
     for (const auto& link : load_plan("trace", options.graph).links)
       collected.traced.links.emplace_back(link.from, link.to);
@@ -240,7 +236,7 @@ std::string json_of(const std::string& port, const std::vector<PathSummary>& sum
 
 void trace(const TraceOptions& options) {
   if (options.port.empty() && options.perfetto.empty())
-    throw Failure({hc::Code::Invalid, "give MODULE.PORT, or --perfetto FILE for all modules"});
+    throw Failure(hc::Code::Invalid, "give MODULE.PORT, or --perfetto FILE for all modules");
   const auto collected = options.recording.empty() ? collect(options) : read_recording(options);
   if (!options.perfetto.empty())
     if (auto written = hc::replace_file(options.perfetto, to_chrome_trace(collected.traced));
@@ -252,15 +248,15 @@ void trace(const TraceOptions& options) {
   const auto module = module_of(options.port);
   if (!collected.traced.events.contains(module))
     throw Failure(
-        {hc::Code::NotFound,
-         module + " reports nothing of its messages: it does not run, or takes no commands"});
+        hc::Code::NotFound,
+        module + " reports nothing of its messages: it does not run, or takes no commands");
   const auto paths = find_paths(collected.traced, options.port);
   // Each message has at most one critical path that is whole.
   const auto messages = static_cast<std::size_t>(
       std::ranges::count_if(paths, [](const auto& path) { return path.is_critical; }));
   if (paths.empty())
-    throw Failure({hc::Code::NotFound,
-                   "no message of " + options.port + " could be traced to where it began"});
+    throw Failure(hc::Code::NotFound,
+                  "no message of " + options.port + " could be traced to where it began");
   const auto summaries = summarise(paths);
   print(options.json ? json_of(options.port, summaries, messages, collected.lost)
                      : table_of(summaries, messages));

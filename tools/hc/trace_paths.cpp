@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -142,6 +143,14 @@ class PathFinder {
     found_.push_back(std::move(path));
   }
 
+  /// Walks on, where the path is critical only if this input is.
+  template <typename Walk>
+  void branch(bool is_critical, const Walk& walk) {
+    const bool was_critical = std::exchange(is_critical_, is_critical_ && is_critical);
+    walk();
+    is_critical_ = was_critical;
+  }
+
   /// The path ends at an input.
   void arrive(const std::string& name, const Visit& visit) {
     Step step{name, visit.port, "", false, 0, 0, 0};
@@ -220,15 +229,12 @@ class PathFinder {
     for (const auto& [to, sending] : inputs)
       if (sending->moment > last->moment) last = sending;
     for (const auto& [to, sending] : inputs) {
-      const bool was_critical = is_critical_;
-      is_critical_ = is_critical_ && sending == last;
       Step through = other;
       through.in = to.substr(to.find('.') + 1);
       through.processing = visit.took - sending->moment;
       back_.push_back(std::move(through));
-      leave(*sending);
+      branch(sending == last, [&, from = sending] { leave(*from); });
       back_.pop_back();
-      is_critical_ = was_critical;
     }
     back_.pop_back();
   }
@@ -274,8 +280,6 @@ class PathFinder {
       if (renews ? std::get<2>(visit->key) < std::get<2>(last->key) : visit->took > last->took)
         last = visit;
     for (const auto& [port, visit] : inputs) {
-      const bool was_critical = is_critical_;
-      is_critical_ = is_critical_ && visit == last;
       Step step{sending.module, port, sending.port, false, 0, 0, 0, renews};
       // A handler that is still running counts up to here.
       const auto running = visit->ended && *visit->ended <= sending.moment
@@ -283,8 +287,7 @@ class PathFinder {
                                : sending.moment - *visit->began;
       step.processing = running;
       step.waiting = sending.moment - visit->took - running;
-      before(sending.module, *visit, std::move(step));
-      is_critical_ = was_critical;
+      branch(visit == last, [&, at = visit] { before(sending.module, *at, std::move(step)); });
     }
   }
 
@@ -349,8 +352,7 @@ std::vector<PathSummary> summarise(const std::vector<MessagePath>& paths) {
       summary.durations.push_back(
           {spread([i](const MessagePath& path) { return path.steps[i].link; }),
            spread([i](const MessagePath& path) { return path.steps[i].waiting; }),
-           spread([i](const MessagePath& path) { return path.steps[i].processing; }),
-           spread([i](const MessagePath& path) { return path.steps[i].sum(); })});
+           spread([i](const MessagePath& path) { return path.steps[i].processing; })});
   }
   std::ranges::stable_sort(summaries, [](const auto& a, const auto& b) {
     return std::tie(a.critical, a.messages) > std::tie(b.critical, b.messages);

@@ -72,7 +72,7 @@ Spread spread_of(std::vector<std::int64_t> durations);
 struct PathSummary {
   std::vector<Step> steps;  ///< their names
   struct Durations {
-    Spread link, waiting, processing, sum;
+    Spread link, waiting, processing;
   };
   std::vector<Durations> durations;        ///< of each step
   Spread age, total;                       ///< as MessagePath
