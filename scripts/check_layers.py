@@ -27,7 +27,7 @@ ALLOWED = {
     "graphics": "base",
     "room": "base graphics",
     "sound": "base os",
-    "web": "base os mtp link client",
+    "web": "base os mtp link client tls",
     "ros": "base mtp contract compress frames",
     "record": "base os mtp contract link ros",
     "tls": "base os link",

@@ -7,7 +7,7 @@
 #include <openssl/err.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
-#include <openssl/x509.h>
+#include <openssl/x509v3.h>
 
 #include <hc/os/descriptor.h>
 #include <tls/context.h>
@@ -21,6 +21,8 @@ using Key = std::unique_ptr<EVP_PKEY, Free<EVP_PKEY_free>>;
 Certificate certificate_for(EVP_PKEY& key) {
   Certificate certificate(X509_new());
   constexpr long kVersion3 = 2;
+  const std::unique_ptr<X509_EXTENSION, Free<X509_EXTENSION_free>> hosts(
+      X509V3_EXT_conf_nid(nullptr, nullptr, NID_subject_alt_name, "DNS:localhost,IP:127.0.0.1"));
   auto* name = certificate ? X509_get_subject_name(certificate.get()) : nullptr;
   if (name == nullptr || X509_set_version(certificate.get(), kVersion3) != 1 ||
       ASN1_INTEGER_set(X509_get_serialNumber(certificate.get()), 1) != 1 ||
@@ -30,7 +32,8 @@ Certificate certificate_for(EVP_PKEY& key) {
       X509_NAME_add_entry_by_txt(name, "CN", MBSTRING_ASC,
                                  reinterpret_cast<const unsigned char*>("hypercolumn"), -1, -1,
                                  0) != 1 ||
-      X509_set_issuer_name(certificate.get(), name) != 1 ||
+      X509_set_issuer_name(certificate.get(), name) != 1 || !hosts ||
+      X509_add_ext(certificate.get(), hosts.get(), -1) != 1 ||
       X509_sign(certificate.get(), &key, EVP_sha256()) == 0)
     return nullptr;
   return certificate;

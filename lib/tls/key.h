@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Keys by which the two ends of a TLS link know each other: P-256, in a file with a certificate
-// that nobody but its owner has signed, and whose dates and names nobody looks at.
+// that nobody but its owner has signed, whose dates are those of all times, and whose names, which
+// only browsers look at, are those of this host.
 
 #include <string>
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <span>
 
+#include <openssl/crypto.h>
 #include <openssl/evp.h>
 #include <openssl/hmac.h>
 
@@ -46,11 +47,7 @@ bool is_address(std::string_view name) {
 
 /// Compares in a time that does not say how much of it was right.
 bool is_same(std::string_view a, std::string_view b) {
-  if (a.size() != b.size()) return false;
-  unsigned different = 0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    different |= static_cast<unsigned>(static_cast<unsigned char>(a[i] ^ b[i]));
-  return different == 0;
+  return a.size() == b.size() && ::CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
 /// HMAC-SHA256 in hexadecimal digits.

@@ -1,132 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <web/identity.h>
 
-#include <fcntl.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
-#include <openssl/x509v3.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include <openssl/x509.h>
 
 #include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
-#include <sstream>
 
-#include <hc/os/program.h>
+#include <tls/key.h>
 
 namespace hc::web {
-
 namespace {
 
-template <auto kFree>
-struct Free {
-  template <typename T>
-  void operator()(T* object) const {
-    kFree(object);
-  }
-};
-using Key = std::unique_ptr<EVP_PKEY, Free<EVP_PKEY_free>>;
-using Certificate = std::unique_ptr<X509, Free<X509_free>>;
-using Bio = std::unique_ptr<BIO, Free<BIO_free_all>>;
+namespace fs = std::filesystem;
 
-Error failed(const std::string& what) {
-  return {Code::System, "certificate: cannot " + what};
+/// What `read` reads of PEM; null where that is not there. @param free  of OpenSSL, for it.
+template <typename Object, typename Free>
+std::unique_ptr<Object, Free> read_pem(Object* read(BIO*, Object**, pem_password_cb*, void*),
+                                       Free free, const std::string& text) {
+  const std::unique_ptr<BIO, decltype(&BIO_free)> bio(
+      BIO_new_mem_buf(text.data(), static_cast<int>(text.size())), BIO_free);
+  return {read(bio.get(), nullptr, nullptr, nullptr), free};
 }
 
-std::string text_of(BIO* bio) {
-  char* data = nullptr;
-  const long size = BIO_get_mem_data(bio, &data);
-  return {data, static_cast<std::size_t>(size)};
-}
-
-std::string read_file(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-Status write_secret(const std::string& path, const std::string& text) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-  if (file < 0) return failed("write " + path);
-  auto written = write_all(file, text);
-  ::close(file);
-  return written;
-}
-
-Certificate read_certificate(const std::string& text) {
-  const Bio bio(BIO_new_mem_buf(text.data(), static_cast<int>(text.size())));
-  return Certificate(PEM_read_bio_X509(bio.get(), nullptr, nullptr, nullptr));
-}
-
-Result<Identity> make_identity() {
-  const Key key(EVP_EC_gen("P-256"));
-  const Certificate certificate(X509_new());
-  if (!key || !certificate) return failed("make a key");
-  constexpr long kSeconds = 20L * 365 * 86400;
-  X509_set_version(certificate.get(), X509_VERSION_3);
-  ASN1_INTEGER_set_int64(X509_get_serialNumber(certificate.get()), 1);
-  X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -86400);
-  X509_gmtime_adj(X509_getm_notAfter(certificate.get()), kSeconds);
-  X509_set_pubkey(certificate.get(), key.get());
-  X509_NAME* name = X509_get_subject_name(certificate.get());
-  X509_NAME_add_entry_by_txt(name, "CN", MBSTRING_ASC,
-                             reinterpret_cast<const unsigned char*>("hypercolumn"), -1, -1, 0);
-  X509_set_issuer_name(certificate.get(), name);
-  X509_EXTENSION* names =
-      X509V3_EXT_conf_nid(nullptr, nullptr, NID_subject_alt_name, "DNS:localhost,IP:127.0.0.1");
-  if (names != nullptr) X509_add_ext(certificate.get(), names, -1);
-  X509_EXTENSION_free(names);
-  if (X509_sign(certificate.get(), key.get(), EVP_sha256()) == 0) return failed("sign it");
-  const Bio certificate_text(BIO_new(BIO_s_mem())), key_text(BIO_new(BIO_s_mem()));
-  PEM_write_bio_X509(certificate_text.get(), certificate.get());
-  PEM_write_bio_PrivateKey(key_text.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr);
-  return Identity{text_of(certificate_text.get()), text_of(key_text.get())};
+auto certificate_of(const std::string& text) {
+  return read_pem(PEM_read_bio_X509, X509_free, text);
 }
 
 }  // namespace
 
-Result<Identity> load_identity(const std::string& folder) {
-  const std::string certificate = folder + "/page_certificate.pem", key = folder + "/page_key.pem";
-  Identity identity{read_file(certificate), read_file(key)};
-  if (identity.certificate.empty() != identity.key.empty()) {
-    const bool has_key = identity.certificate.empty();
-    return Error{Code::Malformed, (has_key ? key : certificate) + " is there without " +
-                                      (has_key ? certificate : key) +
-                                      "; delete it to have new ones made"};
-  }
-  if (!identity.certificate.empty()) {
-    const auto read = read_certificate(identity.certificate);
-    if (!read)
-      return Error{Code::Malformed, certificate +
-                                        " is no certificate; delete it to have "
-                                        "a new one made"};
-    const Bio text(BIO_new_mem_buf(identity.key.data(), static_cast<int>(identity.key.size())));
-    const Key own(PEM_read_bio_PrivateKey(text.get(), nullptr, nullptr, nullptr));
-    if (!own || X509_check_private_key(read.get(), own.get()) != 1)
-      return Error{Code::Malformed, key + " is not the key of " + certificate +
-                                        "; delete both to have new ones made"};
-    return identity;
-  }
-  auto made = make_identity();
-  if (!made) return made;
+Result<std::string> load_identity(const std::string& folder) {
+  const std::string path = folder + "/page_key.pem";
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return failed("make " + folder + ": " + error.message());
-  for (const auto& [path, text] : {std::pair{key, made->key}, {certificate, made->certificate}})
-    if (auto written = write_secret(path, text); !written) return written.error();
-  return made;
+  if (!fs::exists(path, error)) {
+    fs::create_directories(folder, error);
+    if (error)
+      return Error{Code::System, "certificate: cannot make " + folder + ": " + error.message()};
+    const auto made = tls::make_key(path);
+    if (!made && !fs::exists(path, error)) return made.error();  // else another has made it
+  }
+  std::ifstream file(path);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto certificate = certificate_of(text);
+  const auto key = read_pem(PEM_read_bio_PrivateKey, EVP_PKEY_free, text);
+  if (!certificate || !key || X509_check_private_key(certificate.get(), key.get()) != 1)
+    return Error{Code::Malformed,
+                 path + " holds no certificate with its key; delete it to have new ones made"};
+  return text;
 }
 
-Result<std::string> fingerprint(const std::string& certificate) {
-  const auto parsed = read_certificate(certificate);
+std::string fingerprint(const std::string& pem) {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
   unsigned size = 0;
-  if (!parsed || X509_digest(parsed.get(), EVP_sha256(), digest.data(), &size) == 0)
-    return failed("read it");
+  if (const auto certificate = certificate_of(pem))
+    X509_digest(certificate.get(), EVP_sha256(), digest.data(), &size);
   std::string text;
   for (unsigned i = 0; i < size; ++i) {
     if (i > 0) text += ':';

@@ -7,18 +7,16 @@
 
 #include <hc/base/result.h>
 
-#include <web/server.h>
-
 namespace hc::web {
 
-/// Reads the certificate and key in a folder, page_certificate.pem and page_key.pem, or makes them:
-/// P-256, self-signed, for 20 years. The key can be read by its user alone.
+/// The certificate and its key in a folder, PEM, from page_key.pem, which is made where it is not
+/// there (tls/key.h). It can be read by its user alone.
 ///
-/// Errors: System (the folder cannot be written), Malformed (a file holds something else).
-Result<Identity> load_identity(const std::string& folder);
+/// Errors: System (the folder cannot be written), Malformed (the file holds something else).
+Result<std::string> load_identity(const std::string& folder);
 
-/// The SHA-256 fingerprint of a certificate, as browsers show it: "AB:CD:…".
-Result<std::string> fingerprint(const std::string& certificate);
+/// The SHA-256 fingerprint of a certificate in PEM, as browsers show it: "AB:CD:…"; empty: none.
+std::string fingerprint(const std::string& pem);
 
 /// Where a user's settings are: $XDG_CONFIG_HOME/hypercolumn or ~/.config/hypercolumn.
 std::string settings_folder();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <deque>
 #include <exception>
 #include <list>
@@ -49,21 +50,17 @@ constexpr std::chrono::seconds kPongTime{10};  // of a WebSocket from which noth
 /// What has been escaped by %; nothing where that is wrong or hides a zero byte.
 std::optional<std::string> decoded(std::string_view text) {
   std::string plain;
-  auto digit = [](char c) {
-    return c >= '0' && c <= '9'   ? c - '0'
-           : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                  : -1;
-  };
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '%') {
       plain += text[i];
       continue;
     }
-    if (i + 2 >= text.size()) return std::nullopt;
-    const int high = digit(text[i + 1]), low = digit(text[i + 2]);
-    if (high < 0 || low < 0 || high + low == 0) return std::nullopt;
-    plain += static_cast<char>(high * 16 + low);
+    const auto digits = text.substr(i + 1, 2);
+    unsigned code = 0;
+    const char* end = digits.data() + digits.size();
+    if (digits.size() < 2 || std::from_chars(digits.data(), end, code, 16).ptr != end || code == 0)
+      return std::nullopt;
+    plain += static_cast<char>(code);
     i += 2;
   }
   return plain;
@@ -112,8 +109,8 @@ struct Shared {
   }
 };
 
-/// Where a connection comes from.
-struct Origin {
+/// Who is at the other end of a connection.
+struct Peer {
   std::string name;              ///< the user, on this host; else the host, of IPv6 its network
   bool is_another_user = false;  ///< of this host, but root
 };
@@ -121,8 +118,8 @@ struct Origin {
 /// A connection, as long as it lives, and whether it has shown a session.
 class Visitor {
  public:
-  Visitor(std::shared_ptr<Shared> shared, Origin origin)
-      : shared_(std::move(shared)), origin_(std::move(origin)) {
+  Visitor(std::shared_ptr<Shared> shared, Peer peer)
+      : shared_(std::move(shared)), peer_(std::move(peer)) {
     shared_->strangers.push_back(this);
   }
   Visitor(const Visitor&) = delete;
@@ -143,17 +140,17 @@ class Visitor {
     return is_known_ = true;
   }
   [[nodiscard]] const Shared& shared() const { return *shared_; }
-  [[nodiscard]] const Origin& origin() const { return origin_; }
+  [[nodiscard]] const Peer& peer() const { return peer_; }
   [[nodiscard]] Site& site() const { return *shared_->site; }
 
   /// Closes the oldest stranger of the source that has most of them. False: there is none.
   static bool drop_one(Shared& shared) {
     std::map<std::string_view, std::size_t> counts;
-    for (const auto* stranger : shared.strangers) ++counts[stranger->origin_.name];
+    for (const auto* stranger : shared.strangers) ++counts[stranger->peer_.name];
     std::size_t most = 0;
     for (const auto& [source, count] : counts) most = std::max(most, count);
     const auto oldest = std::ranges::find_if(
-        shared.strangers, [&](const auto* each) { return counts[each->origin_.name] == most; });
+        shared.strangers, [&](const auto* each) { return counts[each->peer_.name] == most; });
     if (oldest == shared.strangers.end()) return false;
     const auto close = (*oldest)->close;
     shared.strangers.erase(oldest);
@@ -165,11 +162,11 @@ class Visitor {
 
  private:
   const std::shared_ptr<Shared> shared_;
-  const Origin origin_;
+  const Peer peer_;
   bool is_known_ = false;
 };
 
-Origin origin_of(tcp::socket& socket) {
+Peer peer_of(tcp::socket& socket) {
   const auto user = internal::tcp_peer_user(socket.native_handle(), internal::Connected::Accepted);
   if (user) return {"user " + std::to_string(*user), *user != ::geteuid() && *user != 0};
   beast::error_code error;
@@ -181,43 +178,6 @@ Origin origin_of(tcp::socket& socket) {
   const auto bytes = six.to_bytes();
   return {{bytes.begin(), bytes.begin() + kNetwork}};
 }
-
-/// Reads a reply's parts one piece after the other.
-class Pieces {
- public:
-  /// Nothing: an error, of a file. Empty: the end.
-  std::optional<std::string_view> next() {
-    for (; !parts_.empty(); parts_.pop_front()) {
-      Part& part = parts_.front();
-      if ((bytes_ = std::exchange(part.bytes, nullptr)) != nullptr && !bytes_->empty())
-        return *bytes_;
-      if (part.size == 0) continue;
-      if (!file_ && !open(part.file)) return std::nullopt;
-      buffer_.resize(kPiece);
-      const auto got =
-          ::read(file_.get(), buffer_.data(), std::min<std::uint64_t>(kPiece, part.size));
-      if (got <= 0) return std::nullopt;
-      part.size -= static_cast<std::uint64_t>(got);
-      if (part.size == 0) file_.reset();
-      return std::string_view(buffer_.data(), static_cast<std::size_t>(got));
-    }
-    return std::string_view();
-  }
-  void add(Part part) { parts_.push_back(std::move(part)); }
-  void clear() { *this = {}; }
-
- private:
-  /// Never waits for the other end of a FIFO.
-  bool open(const std::string& path) {
-    file_ = internal::Descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-    return static_cast<bool>(file_);
-  }
-
-  std::deque<Part> parts_;
-  Bytes bytes_;  // of the piece
-  internal::Descriptor file_;
-  std::string buffer_;
-};
 
 /// A WebSocket over a stream of either kind. The page's handlers keep it, and it keeps itself while
 /// something is read or written.
@@ -373,29 +333,26 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
 
   void take(beast::error_code error) {
     if (error == http::error::header_limit || error == http::error::body_limit)
-      return write({431, "text/plain", text("the request is too large\n"), {}, {}}, false);
+      return write(refusal(431, "the request is too large"), false);
     if (error == beast::error::timeout || error == http::error::end_of_stream) return;
     if (error.category() == http::make_error_code(http::error::bad_line_ending).category())
-      return write({400, "text/plain", text("no request of HTTP\n"), {}, {}}, false);
+      return write(refusal(400, "no request of HTTP"), false);
     if (error) return;
     auto head = parser_->release();
     auto request = request_of(head);
-    if (!request) return write({400, "text/plain", text("the path is malformed\n"), {}, {}}, false);
-    if (head.method() != http::verb::get)
-      return write({405, "text/plain", text("only GET is served\n"), {}, {}}, false);
-    request->is_another_user = visitor_->origin().is_another_user;
+    if (!request) return write(refusal(400, "the path is malformed"), false);
+    if (head.method() != http::verb::get) return write(refusal(405, "only GET is served"), false);
+    request->is_another_user = visitor_->peer().is_another_user;
     const bool keeps = head.keep_alive() && !request->is_socket;
     Reply reply;
     if (!visitor_->shared().guard([&] { reply = visitor_->site().reply(*request); })) return;
     if (reply.status < 400 && !visitor_->know())
-      return write({503, "text/plain", text("too many connections are open\n"), {}, {}}, false);
+      return write(refusal(503, "too many connections are open"), false);
     if (reply.status != 101) return write(std::move(reply), keeps);
     visitor_->close = nullptr;
     std::make_shared<Socket<Stream>>(std::move(stream_), visitor_)
         ->accept(std::move(head), std::move(*request), reply);
   }
-
-  static Bytes text(const char* words) { return std::make_shared<const std::string>(words); }
 
   void write(Reply reply, bool keeps) {
     http::response<http::empty_body> response;
@@ -408,36 +365,38 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     response.set("Cross-Origin-Resource-Policy", "same-origin");
     for (const auto& [name, value] : reply.fields) response.set(name, value);
     response.keep_alive(keeps);
-    std::uint64_t size = reply.body ? reply.body->size() : 0;
-    for (const auto& part : reply.parts) size += (part.bytes ? part.bytes->size() : 0) + part.size;
-    response.content_length(size);
+    reply_ = std::move(reply);
+    const std::string_view body = reply_.body ? std::string_view(*reply_.body) : "";
+    response.content_length(body.size() + reply_.size);
     std::ostringstream head;
     head << response.base();
-    pieces_.clear();
-    pieces_.add({std::make_shared<const std::string>(head.str()), {}, 0});
+    piece_ = head.str();
+    // Never waits for the other end of a FIFO.
+    file_ = internal::Descriptor(
+        reply_.size == 0 ? -1 : ::open(reply_.file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
     // The body is shared by all pages, and not copied.
-    pieces_.add({std::move(reply.body), {}, 0});
-    for (auto& part : reply.parts) pieces_.add(std::move(part));
+    left_ = Left(Buffers{asio::buffer(piece_), asio::buffer(body)});
     write_on(keeps);
   }
 
   /// Writes the next of the reply. Only who takes nothing for a while is given up, however long the
   /// whole takes.
   void write_on(bool keeps) {
-    if (piece_.empty()) {
-      const auto next = pieces_.next();
-      if (!next) return beast::get_lowest_layer(stream_).close();
-      piece_ = *next;
-      if (piece_.empty()) return keeps ? read() : end();
+    if (beast::buffer_bytes(left_) == 0) {
+      if (reply_.size == 0) return keeps ? read() : end();
+      piece_.resize(std::min<std::uint64_t>(kPiece, reply_.size));
+      const auto got = ::read(file_.get(), piece_.data(), piece_.size());
+      if (got <= 0) return beast::get_lowest_layer(stream_).close();
+      reply_.size -= static_cast<std::uint64_t>(got);
+      left_ = Left(Buffers{asio::buffer(piece_.data(), static_cast<std::size_t>(got))});
     }
     beast::get_lowest_layer(stream_).expires_after(kIdleTime);
-    stream_.async_write_some(
-        asio::buffer(piece_.data(), piece_.size()),
-        [self = this->shared_from_this(), keeps](beast::error_code error, std::size_t written) {
-          if (error) return;
-          self->piece_.remove_prefix(written);
-          self->write_on(keeps);
-        });
+    stream_.async_write_some(left_, [self = this->shared_from_this(), keeps](
+                                        beast::error_code error, std::size_t written) {
+      if (error) return;
+      self->left_.consume(written);
+      self->write_on(keeps);
+    });
   }
 
   void end() {
@@ -449,8 +408,13 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   std::shared_ptr<Visitor> visitor_;
   beast::flat_buffer buffer_{kMaxHead};
   std::optional<http::request_parser<http::empty_body>> parser_;
-  Pieces pieces_;           // of the reply that is being written
-  std::string_view piece_;  // what is left of one
+  // What is being written.
+  Reply reply_;
+  internal::Descriptor file_;  // of the reply
+  std::string piece_;          // its head, or a piece of the file
+  using Buffers = std::array<asio::const_buffer, 2>;
+  using Left = beast::buffers_suffix<Buffers>;
+  Left left_;  // of the piece, and of the body behind the head
 };
 
 class BeastServer final : public Server {
@@ -482,7 +446,7 @@ class BeastServer final : public Server {
     return {};
   }
 
-  Status use(const Identity& identity) {
+  Status use(const std::string& identity) {
     // TLS 1.3 alone.
     using Tls = asio::ssl::context;
     secure_.emplace(Tls::tls_server);
@@ -490,8 +454,8 @@ class BeastServer final : public Server {
     secure_->set_options(Tls::default_workarounds | Tls::no_sslv2 | Tls::no_sslv3 | Tls::no_tlsv1 |
                              Tls::no_tlsv1_1 | Tls::no_tlsv1_2,
                          error);
-    if (!error) secure_->use_certificate_chain(asio::buffer(identity.certificate), error);
-    if (!error) secure_->use_private_key(asio::buffer(identity.key), Tls::pem, error);
+    if (!error) secure_->use_certificate_chain(asio::buffer(identity), error);
+    if (!error) secure_->use_private_key(asio::buffer(identity), Tls::pem, error);
     if (error) return Error{Code::System, "certificate: " + error.message()};
     return {};
   }
@@ -556,7 +520,7 @@ class BeastServer final : public Server {
   }
 
   void begin(tcp::socket socket) {
-    auto visitor = std::make_shared<Visitor>(shared_, origin_of(socket));
+    auto visitor = std::make_shared<Visitor>(shared_, peer_of(socket));
     if (shared_->strangers.size() > kMaxStrangers) Visitor::drop_one(*shared_);
     if (secure_)
       std::make_shared<Connection<Secure>>(Secure(Plain(std::move(socket)), *secure_), visitor)
@@ -577,6 +541,13 @@ class BeastServer final : public Server {
 
 }  // namespace
 
+Reply refusal(int status, const std::string& words) {
+  Reply reply;
+  reply.status = status;
+  reply.body = std::make_shared<const std::string>(words + "\n");
+  return reply;
+}
+
 std::string_view option(std::string_view query, std::string_view name) {
   while (!query.empty()) {
     const auto each = query.substr(0, query.find('&'));
@@ -588,13 +559,14 @@ std::string_view option(std::string_view query, std::string_view name) {
 }
 
 Result<std::unique_ptr<Server>> Server::listen(const std::string& address, std::uint16_t port,
-                                               int ports, const Identity* identity, LogSink log) {
+                                               int ports, const std::string& identity,
+                                               LogSink log) {
   auto loop = internal::Loop::make();
   if (!loop) return loop.error();
   auto server = std::make_unique<BeastServer>(std::move(log), std::move(*loop));
   if (auto opened = server->open(address, port, ports); !opened) return opened.error();
-  if (identity != nullptr)
-    if (auto used = server->use(*identity); !used) return used.error();
+  if (!identity.empty())
+    if (auto used = server->use(identity); !used) return used.error();
   return std::unique_ptr<Server>(std::move(server));
 }
 

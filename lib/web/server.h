@@ -37,20 +37,17 @@ struct Request {
 /// The value of an option in a query; empty where there is none.
 std::string_view option(std::string_view query, std::string_view name);
 
-/// A piece of a reply: bytes, and behind them so many of a file.
-struct Part {
-  Bytes bytes;  ///< null: none
-  std::string file;
-  std::uint64_t size = 0;  ///< [byte]; a file that has become shorter breaks the connection
-};
-
 struct Reply {
   int status = 200;  ///< below 400: who asks has shown a session
   std::string type = "text/plain; charset=utf-8";
   Bytes body;                                               ///< null: none
-  std::vector<Part> parts;                                  ///< that follow it
   std::vector<std::pair<std::string, std::string>> fields;  ///< of the head, beside the usual ones
+  std::string file;                                         ///< whose first bytes follow the body
+  std::uint64_t size = 0;  ///< of these [byte]; a file that is shorter breaks the connection
 };
+
+/// A line of words that says why a request is refused.
+Reply refusal(int status, const std::string& words);
 
 /// One end of a WebSocket. Closes when it is destroyed.
 class WebSocket {
@@ -85,11 +82,6 @@ class Site {
   virtual void close() {}
 };
 
-/// A certificate and its key, PEM.
-struct Identity {
-  std::string certificate, key;
-};
-
 class Server {
  public:
   virtual ~Server() = default;
@@ -97,13 +89,14 @@ class Server {
   /// Listens; serves once run() is called.
   ///
   /// @param port  the first that is tried of `ports`; 0: any that is free.
-  /// @param identity  null: no TLS.
+  /// @param identity  a certificate and its key, PEM; empty: no TLS.
   /// Errors: Invalid (the address is none), System (no port is free; the identity is of no use).
   /// Of connections that have not shown a session yet, 128 are served at a time: each further one
   /// closes the oldest of the user or host that has most of them. Those with a session, at most
   /// 768, never have to make room.
   static Result<std::unique_ptr<Server>> listen(const std::string& address, std::uint16_t port,
-                                                int ports, const Identity* identity, LogSink log);
+                                                int ports, const std::string& identity,
+                                                LogSink log);
 
   [[nodiscard]] virtual std::uint16_t port() const = 0;
   /// Serves a site until stop().

@@ -1,15 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <web/service.h>
 
+#include <algorithm>
+#include <iterator>
+#include <sstream>
+
+#include <web/identity.h>
+
 namespace hc::web {
+
+bool is_local(const std::string& address) {
+  return address == "127.0.0.1" || address == "::1" || address == "localhost";
+}
 
 Result<std::unique_ptr<Service>> Service::open(const Listening& listening, internal::Loop& loop,
                                                std::function<void(std::string_view)> log) {
-  auto opened = open_server(listening, [&loop, log = std::move(log)](Level, std::string_view line) {
-    loop.post([log, kept = std::string(line)] { log(kept); });
-  });
-  if (!opened) return opened.error();
-  return std::unique_ptr<Service>(new Service(std::move(*opened)));
+  constexpr int kPorts = 10;
+  std::string identity;
+  if (listening.tls || !is_local(listening.address)) {
+    auto loaded = load_identity(settings_folder());
+    if (!loaded) return loaded.error();
+    identity = std::move(*loaded);
+  }
+  auto server =
+      Server::listen(listening.address == "localhost" ? "127.0.0.1" : listening.address,
+                     static_cast<std::uint16_t>(listening.port), listening.port == 0 ? 1 : kPorts,
+                     identity, [&loop, log = std::move(log)](Level, std::string_view line) {
+                       loop.post([log, kept = std::string(line)] { log(kept); });
+                     });
+  if (!server) return server.error();
+  std::string names = listening.hosts;
+  std::ranges::replace(names, ',', ' ');
+  std::istringstream words(names);
+  using Words = std::istream_iterator<std::string>;
+  Place place{listening.address, (*server)->port(), !identity.empty(), {Words(words), Words()}};
+  return std::unique_ptr<Service>(
+      new Service(std::move(*server), std::move(place), web::fingerprint(identity)));
 }
 
 void Service::run(std::unique_ptr<Site> site) {

@@ -80,7 +80,7 @@ TEST(Service, serves_a_site_and_closes_it_at_the_end) {
 }
 
 TEST(Server, hosts_of_ipv4_are_told_apart_at_a_socket_of_ipv6) {
-  auto server = Server::listen("::", 0, 1, nullptr, [](Level, std::string_view) {});
+  auto server = Server::listen("::", 0, 1, "", [](Level, std::string_view) {});
   if (!server) GTEST_SKIP() << server.error().text();
   std::atomic<int> closed = 0;
   Hello site(closed);

@@ -22,6 +22,12 @@ namespace {
 constexpr std::uint32_t kTexts = 8;  // to be spoken, that wait at most
 constexpr std::uint32_t kBids = 4;   // the newest and those that it takes the place of
 
+/// An output by which a driver commands.
+struct Commanded {
+  std::function<void(const hc::Message&)> send;
+  std::function<bool()> linked;
+};
+
 /// Opens a URL in the browser of a desktop, if there is one.
 void open_in_browser(const std::string& url) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
@@ -77,8 +83,8 @@ int main(int argc, char** argv) {
       module.parameter("leave", 0.0, "s", "end when no page has been open for so long; 0: never",
                        {.min = 0, .max = 1e6});
 
-  const auto stops = hc::value_or_end(hc::internal::Loop::make());  // the stop comes first
-  const auto loop = hc::value_or_end(hc::internal::Loop::make());
+  const auto make_loop = [] { return hc::value_or_end(hc::internal::Loop::make()); };
+  const auto stops = make_loop(), loop = make_loop();  // the stop comes first
   Robot robot;
   std::optional<Stop> wanted;
   hc::MonotonicTime seen{};  // when a page was open
@@ -87,23 +93,16 @@ int main(int argc, char** argv) {
   auto send_stop = [&](Stop::Word word, std::int64_t said) {
     stop.send(hc::table({static_cast<std::uint8_t>(word)}).at(said));
   };
-  auto obey = [&](const Order& order) {
-    const auto& message = order.message;
-    switch (order.control) {
-      case Control::Alive:
-        return;
-      case Control::Stick:
-        return stick.send({message});
-      case Control::Rotation:
-        return rotation.send({message});
-      case Control::Target:
-        return target.send({message});
-      case Control::Text:
-        return text.send({message});
-      case Control::Bid:
-        return bid.send({message});
-    }
+  const auto control_of = [](auto& output) -> Commanded {
+    return {[&](const hc::Message& message) { output.send({message}); },
+            [&] { return output.linked(); }};
   };
+  const Commanded controls[kControls] = {{},  // in the order of Control
+                                         control_of(stick),
+                                         control_of(rotation),
+                                         control_of(target),
+                                         control_of(text),
+                                         control_of(bid)};
 
   std::unique_ptr<web::Service> service;
   module.on_start([&] {
@@ -128,7 +127,10 @@ int main(int argc, char** argv) {
         Page::Options{*graph, module.instance(), *frames, *recordings}, access, service->server(),
         robot,
         Page::Callbacks{
-            [&](Order order) { loop->post([&, kept = std::move(order)] { obey(kept); }); },
+            [&](const Order& order) {
+              loop->post([&send = controls[static_cast<std::size_t>(order.control)].send,
+                          message = order.message] { send(message); });
+            },
             [&](bool stops_robot, Stop::Answer answer) {
               stops->post([&, stops_robot, answer = std::move(answer)] {
                 ordered = module.now();
@@ -136,9 +138,10 @@ int main(int argc, char** argv) {
                           ordered);
               });
             },
-            [&](const std::string& line) { loop->post([&, line] { module.log(line); }); },
-            [&](const std::string& line) {
-              loop->post([&, line] { module.log(line, hc::Level::Notice); });
+            [&](hc::Level level, std::string_view line) {
+              // What fails for a page is no failure of the run.
+              const auto told = level == hc::Level::Notice ? level : hc::Level::Info;
+              loop->post([&, told, kept = std::string(line)] { module.log(kept, told); });
             }}));
     if (*browser && web::is_local(*listen)) open_in_browser(url);
     seen = module.monotonic();
@@ -162,10 +165,9 @@ int main(int argc, char** argv) {
     robot.stopped = wanted->is_stopped(module.monotonic());
   });
   module.every(std::chrono::milliseconds(100), [&] {
-    const bool linked[] = {false,           stick.linked(), rotation.linked(),
-                           target.linked(), text.linked(),  bid.linked()};
     unsigned bits = 0;
-    for (std::size_t i = 0; i < std::size(linked); ++i) bits |= linked[i] ? 1U << i : 0U;
+    for (std::size_t i = 1; i < std::size(controls); ++i)
+      bits |= controls[i].linked() ? 1U << i : 0U;
     robot.linked = bits;
     const auto now = module.monotonic();
     if (robot.sessions > 0) seen = now;

@@ -6,8 +6,8 @@
 #include <sstream>
 #include <utility>
 
-#include <hc/base/format.h>
-#include <hc/base/json_string.h>
+#include <nlohmann/json.hpp>
+
 #include <hc/contract/description.h>
 #include <hc/mtp/codec.h>
 #include <hc/mtp/rows.h>
@@ -21,10 +21,9 @@ using Rows = std::vector<std::string>;
 
 // The src of what a page is sent; the first two are the graph's (GraphReport).
 constexpr std::int32_t kState = 1, kLog = 2, kSession = 3, kAnswer = 4;
-constexpr std::size_t kMaxLog = 200;                      // lines for a page that opens
-constexpr std::size_t kMaxStates = 8, kMaxWaiting = 512;  // messages that wait for a slow page
-constexpr int kEnd = 1000, kGoing = 1001, kInvalid = 1007, kPolicy = 1008, kNoStream = 4404,
-              kTaken = 4409;
+constexpr std::size_t kMaxLog = 200;                          // lines for a page that opens
+constexpr std::size_t kMaxStates = 8, kMaxWaiting = 512;      // messages that wait for a slow page
+constexpr int kGoing = 1001, kInvalid = 1007, kTaken = 4409;  // as kEnd
 
 constexpr const char* kPolicyText =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
@@ -35,10 +34,15 @@ web::Bytes text(std::string words) {
   return std::make_shared<const std::string>(std::move(words));
 }
 
-web::Reply refusal(int status, std::string words) {
+using web::refusal;
+
+web::Reply made_of(int status, decltype(web::Reply::fields) fields, std::string type = {},
+                   web::Bytes body = nullptr) {
   web::Reply reply;
   reply.status = status;
-  reply.body = text(std::move(words) + "\n");
+  reply.type = std::move(type);
+  reply.body = std::move(body);
+  reply.fields = std::move(fields);
   return reply;
 }
 
@@ -48,16 +52,9 @@ std::string lacks(web::Right has, web::Right needed) {
          std::string(name_of(needed));
 }
 
-std::string json_string(const std::string& words) {
-  std::string json;
-  hc::append_json_string(words, json);
-  return json;
-}
-
-std::string json_list(const Rows& words) {
-  std::string list;
-  for (const auto& word : words) list += (list.empty() ? "" : ",") + json_string(word);
-  return "[" + list + "]";
+/// What is no UTF-8, of the streams of a file, is replaced.
+std::string dump(const nlohmann::json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 /// The one message in a frame. Errors: Malformed.
@@ -106,7 +103,8 @@ Page::Page(Options options, web::Access& access, web::Server& server, Robot& rob
   const auto watched = graph_.watch(
       {[this](const auto& state, std::string_view json) { take_state(state, json); },
        [this](const auto&, std::string_view json) { take_log(json); }, [this] { close(); }});
-  if (!watched) callbacks_.log("the graph cannot be seen: " + watched.error().detail);
+  if (!watched)
+    callbacks_.log(hc::Level::Info, "the graph cannot be seen: " + watched.error().detail);
 }
 
 Page::~Page() = default;
@@ -132,7 +130,7 @@ web::Reply Page::reply(const web::Request& request) {
     const bool is_known =
         request.path == "/graph" || request.path == "/drive" ||
         (request.path.starts_with("/streams/") && hc::is_port_name(request.path.substr(9)));
-    return is_known ? web::Reply{101, {}, {}, {}, {}} : refusal(404, "there is no such socket");
+    return is_known ? made_of(101, {}) : refusal(404, "there is no such socket");
   }
   if (request.path == "/recordings" || request.path.starts_with("/recordings/"))
     return reply_with_recording(request);
@@ -148,16 +146,14 @@ web::Reply Page::reply_to_token(const web::Request& request) {
     // Whoever has a session already opened the link once more.
     if (!access_.right_of(request.cookies))
       return refusal(401, "this token is wrong, or was used before; the log has a new one");
-    return {303, "text/plain", {}, {}, {{"Location", "/"}}};
+    return made_of(303, {{"Location", "/"}});
   }
-  callbacks_.notice("page opened; for another browser: " + access_.invite(web::Right::Operate));
-  return {303,
-          "text/plain",
-          {},
-          {},
-          {{"Location", "/"},
-           {"Set-Cookie", access_.cookie_name() + "=" + *session + "; HttpOnly; SameSite=Strict; " +
-                              (access_.place().is_secure ? "Secure; " : "") + "Path=/"}}};
+  callbacks_.log(hc::Level::Notice,
+                 "page opened; for another browser: " + access_.invite(web::Right::Operate));
+  return made_of(303, {{"Location", "/"},
+                       {"Set-Cookie",
+                        access_.cookie_name() + "=" + *session + "; HttpOnly; SameSite=Strict; " +
+                            (access_.place().is_secure ? "Secure; " : "") + "Path=/"}});
 }
 
 web::Reply Page::reply_with_file(const web::Request& request) const {
@@ -166,34 +162,22 @@ web::Reply Page::reply_with_file(const web::Request& request) const {
   const auto found = std::ranges::find_if(
       page_assets(), [&](const Asset& asset) { return asset.path == path.substr(1); });
   if (found == page_assets().end()) return refusal(404, "there is no such file");
-  web::Reply reply;
-  reply.type = found->type;
   // Assets live as long as the program.
-  reply.body = text(std::string(found->bytes));
-  reply.fields = {{"Content-Encoding", "gzip"},
+  return made_of(200,
+                 {{"Content-Encoding", "gzip"},
                   {"Cache-Control", "no-cache"},
-                  {"Content-Security-Policy", kPolicyText}};
-  return reply;
+                  {"Content-Security-Policy", kPolicyText}},
+                 std::string(found->type), text(std::string(found->bytes)));
 }
 
 web::Reply Page::reply_with_recording(const web::Request& request) const {
-  if (request.path == "/recordings") {
-    std::string list;
-    for (const auto& each : list_recordings(options_.recordings))
-      list += hc::format(R"({}{{"name":{},"bytes":{},"streams":{}}})", list.empty() ? "" : ",",
-                         json_string(each.name), each.bytes, json_list(each.streams));
-    return {200, "application/json", text("[" + list + "]"), {}, {{"Cache-Control", "no-store"}}};
-  }
-  const auto file = request.path.substr(std::string_view("/recordings/").size());
-  auto part = file.ends_with(".mcap")
-                  ? recorded_file(options_.recordings, file.substr(0, file.size() - 5))
-                  : hc::Error{hc::Code::NotFound, "there is no such recording"};
-  if (!part) return refusal(404, part.error().detail);
-  return {200,
-          "application/octet-stream",
-          {},
-          {std::move(*part)},
-          {{"Content-Disposition", "attachment; filename=\"" + file + "\""}}};
+  if (request.path != "/recordings")
+    return recorded_file(options_.recordings,
+                         request.path.substr(std::string_view("/recordings/").size()));
+  auto list = nlohmann::json::array();
+  for (const auto& [name, bytes, streams] : list_recordings(options_.recordings))
+    list.push_back({{"name", name}, {"bytes", bytes}, {"streams", streams}});
+  return made_of(200, {{"Cache-Control", "no-store"}}, "application/json", text(dump(list)));
 }
 
 // Sockets.
@@ -231,30 +215,7 @@ void Page::open_stream(const std::shared_ptr<web::WebSocket>& socket, const web:
     stream = std::make_unique<Stream>(options_.graph, port, [this](std::function<void()> call) {
       server_.post(std::move(call));
     });
-  const auto number = next_++;
-  Watched& watched = watched_[number];
-  watched.socket = socket;
-  watched.port = port;
-  Stream::Callbacks callbacks;
-  callbacks.header = [socket](std::string header) { socket->send_text(std::move(header)); };
-  callbacks.message = [socket](web::Bytes message) { socket->send(std::move(message)); };
-  callbacks.end = [this, socket, number](const std::string& why, bool is_error) {
-    socket->close(is_error ? kNoStream : kEnd, why);
-    // Not while the viewer calls.
-    server_.post([this, number] { watched_.erase(number); });
-  };
-  watched.viewer = stream->view(*wanted, std::move(callbacks));
-  socket->on_close = [this, number] { watched_.erase(number); };
-  socket->on_text = [this, number, socket](std::string_view said) {
-    const auto found = watched_.find(number);
-    if (found == watched_.end()) return;
-    auto& viewer = *found->second.viewer;
-    if (said == "ok") return viewer.acknowledge();
-    const auto changed = parse_wanted(said, viewer.wanted());
-    if (changed) return viewer.want(*changed);
-    socket->close(kPolicy, changed.error().detail);
-    watched_.erase(number);
-  };
+  stream->view(*wanted, socket);
 }
 
 void Page::open_drive(const std::shared_ptr<web::WebSocket>& socket, const web::Request& request) {
@@ -369,11 +330,9 @@ Rows Page::record(const Rows& words) {
   }
   if (recorder_) return {"there is a recording already: " + recorder_->name()};
   if (words.size() < 3) return {"record is followed by a name and outputs, MODULE.PORT, or by end"};
-  const auto log = [log = callbacks_.log, &server = server_](hc::Level, std::string_view line) {
-    server.post([log, kept = std::string(line)] { log(kept); });
-  };
-  auto begun = Recorder::begin(options_.graph, {options_.recordings, options_.frames, log},
-                               words[1], {words.begin() + 2, words.end()});
+  auto begun =
+      Recorder::begin(options_.graph, {options_.recordings, options_.frames, callbacks_.log},
+                      words[1], {words.begin() + 2, words.end()});
   if (!begun) return {begun.error().detail};
   recorder_ = std::move(*begun);
   return {"ok"};
@@ -393,23 +352,23 @@ void Page::tick() {
 
 std::string Page::session_text(const Session& session) const {
   constexpr const char* kNames[] = {"", "stick", "rotation", "target", "text", "bid"};
-  Rows drives;
+  nlohmann::json now = {{"right", name_of(session.right)},
+                        {"driver", nullptr},
+                        {"stopped", nullptr},
+                        {"recording", nullptr},
+                        {"drives", nlohmann::json::array()},
+                        {"frames", options_.frames},
+                        {"web", options_.module}};
   for (std::size_t i = 1; i < std::size(kNames); ++i)
-    if ((robot_.linked & (1U << i)) != 0) drives.emplace_back(kNames[i]);
-  std::string recording = "null";
+    if ((robot_.linked & (1U << i)) != 0) now["drives"].push_back(kNames[i]);
+  if (driver_socket_) now["driver"] = "other";
+  if (const std::optional<bool> stopped = robot_.stopped) now["stopped"] = *stopped;
   if (recorder_)
-    recording = hc::format(R"({{"name":{},"bytes":{},"seconds":{},"streams":{}}})",
-                           json_string(recorder_->name()), recorder_->bytes(),
-                           static_cast<int>(recorder_->seconds()), json_list(recorder_->ports()));
-  const char* driver = driver_socket_ ? "\"other\"" : "null";
-  const std::optional<bool> stopped = robot_.stopped;
-  return hc::format(
-      R"({{"right":"{}","driver":{},"stopped":{},"recording":{},"drives":{},"frames":{},"web":{}}})",
-      name_of(session.right), driver,
-      !stopped   ? "null"
-      : *stopped ? "true"
-                 : "false",
-      recording, json_list(drives), json_string(options_.frames), json_string(options_.module));
+    now["recording"] = {{"name", recorder_->name()},
+                        {"bytes", recorder_->bytes()},
+                        {"seconds", static_cast<int>(recorder_->seconds())},
+                        {"streams", recorder_->ports()}};
+  return dump(now);
 }
 
 void Page::send_session(Session& session) const {
@@ -421,9 +380,8 @@ void Page::send_session(Session& session) const {
 
 void Page::close() {
   for (auto& [number, session] : sessions_) session.socket->close(kGoing, "the graph has ended");
-  for (auto& [number, watched] : watched_) watched.socket->close(kEnd, "the graph has ended");
+  for (auto& [port, stream] : streams_) stream->close("the graph has ended");
   if (driver_socket_) driver_socket_->close(kEnd, "the graph has ended");
   sessions_.clear();
-  watched_.clear();
   driver_socket_.reset();
 }

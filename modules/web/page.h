@@ -44,7 +44,7 @@ class Page final : public web::Site {
     std::function<void(Order)> order;  ///< something is commanded
     /// The robot is to be stopped, or the stop is cleared; answered on the module's thread.
     std::function<void(bool stops, Stop::Answer answer)> stop;
-    std::function<void(const std::string&line)> log, notice;
+    hc::LogSink log;  ///< from any thread
   };
 
   Page(Options options, web::Access& access, web::Server& server, Robot& robot,
@@ -62,11 +62,6 @@ class Page final : public web::Site {
     web::Right right = web::Right::View;
     std::string sent;           // of what it is, the last
     std::int64_t commands = 0;  // that came
-  };
-  struct Watched {
-    std::shared_ptr<web::WebSocket> socket;
-    std::string port;
-    std::unique_ptr<Stream::Viewer> viewer;
   };
   /// A command: its session, and its number among those of the session, from 0 on.
   struct Asked {
@@ -106,10 +101,9 @@ class Page final : public web::Site {
   Robot& robot_;
   const Callbacks callbacks_;
   const hc::SystemClock clock_;
-  std::uint64_t next_ = 1;  // number of a session or stream
+  std::uint64_t next_ = 1;  // number of a session
   Sessions sessions_;
   std::map<std::string, std::unique_ptr<Stream>> streams_;  // by port
-  std::map<std::uint64_t, Watched> watched_;
   std::shared_ptr<web::WebSocket> driver_socket_;
   Driver driver_;
   std::unique_ptr<Recorder> recorder_;

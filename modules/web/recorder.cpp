@@ -19,12 +19,12 @@ namespace {
 constexpr std::size_t kMaxName = 40, kMaxPorts = 64;
 constexpr std::string_view kEnding = ".mcap";
 
-}  // namespace
-
 bool is_recording_name(std::string_view name) {
   return !name.empty() && name.size() <= kMaxName &&
          std::ranges::all_of(name, hc::is_of_graph_name);
 }
+
+}  // namespace
 
 std::vector<Recorded> list_recordings(const std::string& folder) {
   std::vector<Recorded> all;
@@ -44,13 +44,19 @@ std::vector<Recorded> list_recordings(const std::string& folder) {
   return all;
 }
 
-hc::Result<web::Part> recorded_file(const std::string& folder, const std::string& name) {
-  const std::string path = folder + "/" + name + std::string(kEnding);
+web::Reply recorded_file(const std::string& folder, const std::string& file) {
+  const fs::path path = fs::path(folder) / file;
   std::error_code failed;
-  const bool is_file = is_recording_name(name) && fs::is_regular_file(path, failed);
-  const auto size = is_file ? fs::file_size(path, failed) : 0;
-  if (!is_file || failed) return hc::Error{hc::Code::NotFound, "there is no such recording"};
-  return web::Part{{}, path, size};
+  const bool is_recording = file.ends_with(kEnding) &&
+                            is_recording_name(file.substr(0, file.size() - kEnding.size())) &&
+                            fs::is_regular_file(path, failed);
+  web::Reply reply;
+  if (is_recording) reply.size = fs::file_size(path, failed);
+  if (!is_recording || failed) return web::refusal(404, "there is no such recording");
+  reply.file = path;
+  reply.type = "application/octet-stream";
+  reply.fields = {{"Content-Disposition", "attachment; filename=\"" + file + "\""}};
+  return reply;
 }
 
 hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& graph,

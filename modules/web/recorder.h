@@ -17,11 +17,8 @@
 
 namespace web = hc::web;
 
-/// Whether a recording may be called so: 1 to 40 letters, digits, `-` and `_`.
-bool is_recording_name(std::string_view name);
-
 struct Recorded {
-  std::string name;
+  std::string name;  ///< 1 to 40 letters, digits, `-` and `_`
   std::uintmax_t bytes = 0;
   std::vector<std::string> streams;  ///< MODULE.PORT
 };
@@ -29,8 +26,8 @@ struct Recorded {
 /// The recordings in a folder, by name.
 std::vector<Recorded> list_recordings(const std::string& folder);
 
-/// A recording, to be sent as long as it is now. Errors: NotFound.
-hc::Result<web::Part> recorded_file(const std::string& folder, const std::string& name);
+/// The recording in a file NAME.mcap, as long as it is now; 404: there is none.
+web::Reply recorded_file(const std::string& folder, const std::string& file);
 
 /// A recording that is being made, until it is destroyed. What cannot be written, on a full disk,
 /// ends it: what was written before is kept.

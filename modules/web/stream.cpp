@@ -13,6 +13,7 @@ namespace {
 constexpr std::chrono::milliseconds kHeader{500};       // between header lines
 constexpr std::chrono::milliseconds kBetweenKeys{500};  // of VP8, for a page that missed frames
 constexpr int kQuality = 80;                            // of JPEG
+constexpr int kNoStream = 4404;                         // as kEnd
 
 template <typename Number>
 bool read_number(std::string_view text, Number max, Number& number) {
@@ -74,24 +75,58 @@ Stream::Stream(hc::RunningGraph graph, std::string port, web::Post post)
             .idle = [this] { return serve(); },
             .end = [this](const std::string& why, bool is_error) { end(why, is_error); }}) {}
 
-void Stream::call(const std::shared_ptr<Seat>& seat,
-                  std::function<void(const Callbacks&)> what) const {
-  post_([weak = std::weak_ptr(seat), what = std::move(what)] {
-    if (const auto still = weak.lock()) what(still->callbacks);
+void Stream::post(const std::shared_ptr<Seat>& seat,
+                  std::function<void(const std::shared_ptr<Seat>&)> call) const {
+  post_([weak = std::weak_ptr(seat), call = std::move(call)] {
+    if (const auto still = weak.lock()) call(still);
   });
 }
 
-std::unique_ptr<Stream::Viewer> Stream::view(const Wanted& wanted, Callbacks callbacks) {
-  auto seat = std::make_shared<Seat>();
-  seat->wanted = wanted;
-  seat->callbacks = std::move(callbacks);
+void Stream::view(const Wanted& wanted, std::shared_ptr<web::WebSocket> socket) {
+  auto& events = *socket;
+  const auto seat = std::make_shared<Seat>(Seat{std::move(socket), wanted});
+  events.on_close = [this, weak = std::weak_ptr(seat)] {
+    if (const auto still = weak.lock()) remove(still);
+  };
+  events.on_text = [this, weak = std::weak_ptr(seat)](std::string_view said) {
+    if (const auto still = weak.lock()) hear(still, said);
+  };
   const std::lock_guard lock(mutex_);
   seats_.push_back(seat);
-  if (!ended_.empty())
-    call(seat,
-         [why = ended_, is_error = is_error_](const Callbacks& page) { page.end(why, is_error); });
+  if (!ended_.empty()) close_soon(seat, ended_as_, ended_);
   tap_.wake();
-  return std::make_unique<Viewer>(*this, std::move(seat));
+}
+
+void Stream::hear(const std::shared_ptr<Seat>& seat, std::string_view said) {
+  // This thread alone changes what is wanted.
+  const auto changed =
+      said == "ok" ? hc::Result<Wanted>(seat->wanted) : parse_wanted(said, seat->wanted);
+  if (!changed) return close(seat, kPolicy, changed.error().detail);
+  const std::lock_guard lock(mutex_);
+  if (said == "ok" && seat->under_way > 0) --seat->under_way;
+  if (changed->form != seat->wanted.form || changed->width != seat->wanted.width)
+    seat->has_changed = true;
+  seat->wanted = *changed;
+  tap_.wake();
+}
+
+void Stream::remove(const std::shared_ptr<Seat>& seat) {
+  const std::lock_guard lock(mutex_);
+  std::erase(seats_, seat);
+}
+
+void Stream::close(const std::shared_ptr<Seat>& seat, int code, const std::string& why) {
+  seat->socket->close(code, why);
+  remove(seat);
+}
+
+void Stream::close_soon(const std::shared_ptr<Seat>& seat, int code, const std::string& why) {
+  post(seat, [this, code, why](const auto& still) { close(still, code, why); });
+}
+
+void Stream::close(const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& seat : std::exchange(seats_, {})) seat->socket->close(kEnd, why);
 }
 
 bool Stream::is_viewed() {
@@ -102,9 +137,8 @@ bool Stream::is_viewed() {
 void Stream::end(const std::string& why, bool is_error) {
   const std::lock_guard lock(mutex_);
   ended_ = why;
-  is_error_ = is_error;
-  for (const auto& seat : seats_)
-    call(seat, [why, is_error](const Callbacks& page) { page.end(why, is_error); });
+  ended_as_ = is_error ? kNoStream : kEnd;
+  for (const auto& seat : seats_) close_soon(seat, ended_as_, why);
 }
 
 Stream::Clock::time_point Stream::serve() {
@@ -166,8 +200,7 @@ void Stream::serve_alike(const Wanted& wanted, const Seats& seats) {
     if (is_key) video->key_due = now + kBetweenKeys;
   }
   if (!made) {
-    for (const auto& seat : seats)
-      call(seat, [why = made.error().detail](const Callbacks& page) { page.end(why, true); });
+    for (const auto& seat : seats) close_soon(seat, kNoStream, made.error().detail);
     return;
   }
   const web::Bytes bytes = bytes_of(*made);
@@ -183,33 +216,9 @@ void Stream::serve_alike(const Wanted& wanted, const Seats& seats) {
     }
     const bool has_header = now >= seat->header_due;
     if (has_header) seat->header_due = now + kHeader;
-    call(seat, [bytes, text = has_header ? header : std::string()](const Callbacks& page) {
-      if (!text.empty()) page.header(text);
-      page.message(bytes);
+    post(seat, [bytes, text = has_header ? header : std::string()](const auto& still) {
+      if (!text.empty()) still->socket->send_text(text);
+      still->socket->send(bytes);
     });
   }
-}
-
-Stream::Viewer::~Viewer() {
-  const std::lock_guard lock(stream_.mutex_);
-  std::erase(stream_.seats_, seat_);
-}
-
-void Stream::Viewer::acknowledge() {
-  const std::lock_guard lock(stream_.mutex_);
-  if (seat_->under_way > 0) --seat_->under_way;
-  stream_.tap_.wake();
-}
-
-Wanted Stream::Viewer::wanted() const {
-  const std::lock_guard lock(stream_.mutex_);
-  return seat_->wanted;
-}
-
-void Stream::Viewer::want(const Wanted& wanted) {
-  const std::lock_guard lock(stream_.mutex_);
-  if (wanted.form != seat_->wanted.form || wanted.width != seat_->wanted.width)
-    seat_->has_changed = true;
-  seat_->wanted = wanted;
-  stream_.tap_.wake();
 }

@@ -20,6 +20,9 @@
 
 namespace web = hc::web;
 
+/// Why a socket is closed: its end, or what was asked over it.
+inline constexpr int kEnd = 1000, kPolicy = 1008;
+
 /// What a page wants of a stream.
 struct Wanted {
   Form form = Form::Raw;
@@ -32,19 +35,14 @@ hc::Result<Wanted> parse_wanted(std::string_view options, Wanted wanted = {});
 
 class Stream {
  public:
-  /// Called on the server's thread.
-  struct Callbacks {
-    std::function<void(std::string header)> header;  ///< as it was sent
-    std::function<void(web::Bytes)> message;
-    /// The stream is at its end. @param is_error  there is no such output, or it failed.
-    std::function<void(const std::string& why, bool is_error)> end;
-  };
-  /// A page that sees a stream; unsees it when it is destroyed.
-  class Viewer;
-
   Stream(hc::RunningGraph graph, std::string port, web::Post post);
 
-  [[nodiscard]] std::unique_ptr<Viewer> view(const Wanted& wanted, Callbacks callbacks);
+  // On the server's thread.
+  /// Has a page see it until its socket closes, or the stream is at its end. Over that it says `ok`
+  /// for each message that it is done with, or what it wants from then on.
+  void view(const Wanted& wanted, std::shared_ptr<web::WebSocket> socket);
+  /// Ends it for all.
+  void close(const std::string& why);
   [[nodiscard]] bool is_viewed();
 
  private:
@@ -53,6 +51,7 @@ class Stream {
 
   /// A page, as the stream sees it.
   struct Seat {
+    const std::shared_ptr<web::WebSocket> socket;  // of the server's thread
     // Guarded by the mutex.
     Wanted wanted;
     int under_way = 0;
@@ -61,8 +60,6 @@ class Stream {
     std::uint64_t seen = 0;  // number of the newest message it was given
     Clock::time_point due{}, header_due{};
     std::uint64_t frame = 0;  // number of the last frame of VP8 it was given, 0: none
-    // Of the server's thread.
-    Callbacks callbacks;
   };
   using Seats = std::vector<std::shared_ptr<Seat>>;
   struct Video {
@@ -75,35 +72,25 @@ class Stream {
   /// Gives the newest message to those who are ready for it. @returns  when the next one is.
   Clock::time_point serve();
   void serve_alike(const Wanted& wanted, const Seats& seats);
-  /// Calls a page on the server's thread, if it is still there then.
-  void call(const std::shared_ptr<Seat>& seat, std::function<void(const Callbacks&)> what) const;
   void end(const std::string& why, bool is_error);
+  /// Calls on the server's thread, if the page is still there then.
+  void post(const std::shared_ptr<Seat>& seat,
+            std::function<void(const std::shared_ptr<Seat>&)> call) const;
+  void close_soon(const std::shared_ptr<Seat>& seat, int code, const std::string& why);
+
+  // On the server's thread.
+  void hear(const std::shared_ptr<Seat>& seat, std::string_view said);
+  void close(const std::shared_ptr<Seat>& seat, int code, const std::string& why);
+  void remove(const std::shared_ptr<Seat>& seat);
 
   const web::Post post_;
   std::mutex mutex_;
   Seats seats_;
   std::string ended_;  // why; empty: it has not
-  bool is_error_ = false;
+  int ended_as_ = 0;   // the code that says so
   // Of the tap's thread.
   hc::Message newest_;
   std::uint64_t number_ = 0;     // of the newest message; 0: there is none
   std::map<int, Video> videos_;  // by width
   hc::Tap tap_;                  // last: its thread calls the above
-};
-
-class Stream::Viewer {
- public:
-  Viewer(Stream& stream, std::shared_ptr<Seat> seat) : stream_(stream), seat_(std::move(seat)) {}
-  ~Viewer();
-  Viewer(const Viewer&) = delete;
-  Viewer& operator=(const Viewer&) = delete;
-
-  /// The page is done with a message.
-  void acknowledge();
-  [[nodiscard]] Wanted wanted() const;
-  void want(const Wanted& wanted);
-
- private:
-  Stream& stream_;
-  std::shared_ptr<Seat> seat_;
 };

@@ -42,7 +42,7 @@ std::uint16_t port() {
   // Not destroyed at the end, when its thread still runs.
   static auto* echo = new Echo;
   static auto* server =
-      web::Server::listen("127.0.0.1", 0, 1, nullptr, [](auto...) {}).value().release();
+      web::Server::listen("127.0.0.1", 0, 1, "", [](auto...) {}).value().release();
   static const bool runs = (std::thread([] { server->run(*echo); }).detach(), true);
   static_cast<void>(runs);
   return server->port();
