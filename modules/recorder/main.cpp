@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Records all that comes, into MCAP or a folder. `hc run --record` adds it to a graph, with an
 // input for each output that it records.
-#include <csignal>
-
 #include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <optional>
+#include <sstream>
 
 #include <client/running.h>
 #include <hc/base/format.h>
 #include <hc/module/module.h>
-#include <hc/os/descriptor.h>
 #include <record/writer.h>
 #include <transports/all.h>
 
@@ -16,33 +18,26 @@
 
 namespace {
 
-constexpr std::string_view kStreams = "--streams";
-
 struct StreamName {
   std::string input, name;
 };
 
 /// Inputs and names of streams, "INPUT=NAME INPUT=NAME …"; one input where there are none.
 std::vector<StreamName> stream_names(int argc, char** argv) {
-  std::vector<StreamName> names;
+  constexpr std::string_view kStreams = "--streams";
+  std::string all;
   for (int i = 1; i < argc; ++i) {
-    std::string_view words(argv[i]);
-    if (!words.starts_with(kStreams)) continue;
-    words.remove_prefix(kStreams.size());
-    if (words.empty() && i + 1 < argc)
-      words = argv[++i];
-    else if (words.starts_with('='))
-      words.remove_prefix(1);
-    else
-      continue;
-    while (!words.empty()) {
-      const auto word = words.substr(0, words.find(' '));
-      words.remove_prefix(std::min(words.size(), word.size() + 1));
-      if (const auto equals = word.find('='); equals != std::string_view::npos)
-        names.push_back(
-            {std::string(word.substr(0, equals)), std::string(word.substr(equals + 1))});
-    }
+    const std::string_view word(argv[i]);
+    if (word == kStreams && i + 1 < argc)
+      all.append(argv[++i]).append(" ");
+    else if (word.starts_with(kStreams) && word.substr(kStreams.size()).starts_with('='))
+      all.append(word.substr(kStreams.size() + 1)).append(" ");
   }
+  std::vector<StreamName> names;
+  std::istringstream words(all);
+  for (std::string word; words >> word;)
+    if (const auto equals = word.find('='); equals != std::string::npos)
+      names.push_back({word.substr(0, equals), word.substr(equals + 1)});
   if (names.empty()) names.push_back({"in", "in"});
   return names;
 }
@@ -64,8 +59,7 @@ class ModuleClock final : public hc::Clock {
 
 std::uint64_t bytes_of(const std::string& parameter, const std::string& text) {
   const auto bytes = hc::mcap::parse_bytes(text);
-  if (!bytes)
-    throw hc::ModuleError(hc::Error{bytes.error().code, parameter + ": " + bytes.error().detail});
+  if (!bytes) refuse(parameter + ": " + bytes.error().detail);
   return *bytes;
 }
 
@@ -79,7 +73,7 @@ int main(int argc, char** argv) {
   ::sigemptyset(&saves);
   ::sigaddset(&saves, SIGUSR1);
   ::pthread_sigmask(SIG_BLOCK, &saves, nullptr);
-  const hc::internal::Descriptor signals(::signalfd(-1, &saves, SFD_NONBLOCK | SFD_CLOEXEC));
+  const int signals = ::signalfd(-1, &saves, SFD_NONBLOCK | SFD_CLOEXEC);
 
   const auto names = stream_names(argc, argv);
   std::vector<hc::Input<hc::AnyKind>> inputs;
@@ -114,7 +108,9 @@ int main(int argc, char** argv) {
 
   const ModuleClock clock(module);
   std::unique_ptr<hc::record::Writer> recording;  // null: before the start
-  std::unique_ptr<GraphMetadata> metadata;        // null: there is no graph, or it is not kept
+  const auto loop = hc::value_or_end(hc::internal::Loop::make());
+  std::optional<GraphMetadata> metadata;
+  std::optional<hc::GraphClient> graph;  // nothing: there is none, or it is not kept
   bool has_failed = false;
   auto fail_once = [&](const hc::Status& status) {
     if (status || std::exchange(has_failed, true)) return;
@@ -147,26 +143,24 @@ int main(int argc, char** argv) {
     recording = hc::value_or_end(hc::record::Writer::open(place, options));
     if (const auto& now = recording->written().place; now != place.path)
       module.log("recording continues in " + now);
-    if (!is_folder) metadata = GraphMetadata::observe(hc::own_graph());
+    if (const auto own = hc::own_graph(); own && !is_folder)
+      metadata.emplace(graph.emplace(*loop, *own), *recording);
   });
   for (std::size_t i = 0; i < inputs.size(); ++i)
     module.on_raw(inputs[i],
                   [&, i](const hc::Message& message) { fail_once(recording->add(i, message)); });
-  auto poll = [&] {
-    if (metadata != nullptr && !has_failed) metadata->record(*recording);
-    fail_once(recording->poll());
-  };
-  module.on_readable(
-      [&] { return metadata != nullptr && !has_failed ? metadata->descriptor() : -1; }, poll);
-  module.every(std::chrono::milliseconds(250), poll);
-  module.on_readable([&] { return signals.get(); },
+  module.on_readable([&] { return has_failed ? -1 : loop->descriptor(); },
+                     [&] { hc::succeed_or_end(loop->turn(std::chrono::milliseconds(0))); });
+  module.every(std::chrono::milliseconds(250), [&] { fail_once(recording->poll()); });
+  module.on_readable([&] { return signals; },
                      [&] {
                        signalfd_siginfo info{};
-                       while (::read(signals.get(), &info, sizeof info) > 0)
+                       while (::read(signals, &info, sizeof info) > 0)
                          if (recording != nullptr) recording->save();
                      });
   module.finish_when_stopped();
   module.on_end([&] {
+    graph.reset();
     const auto& written = recording->close();
     fail_once(written.status);
     if (written.files.empty())
