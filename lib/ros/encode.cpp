@@ -158,8 +158,20 @@ std::optional<Type> type_for(const PortType& port) {
   }
 }
 
+std::optional<Type> type_for(const PortDescription& output, bool jpeg) {
+  if (output.types.size() != 1) return std::nullopt;
+  PortType type = output.types.front();
+  const auto& info = type.info;
+  if (info.encoding == Encoding::Zstd) type.info.encoding = Encoding::Binary;
+  const bool is_picture =
+      (info.type == MatrixType::RgbImage || info.type == MatrixType::IntensityImage) &&
+      info.scalar == Scalar::U8 && info.components != 4;
+  if (is_picture && jpeg) type.info.encoding = Encoding::Jpeg;
+  return type_for(type);
+}
+
 std::optional<Type> type_for(const Header& header) {
-  return type_for({header.info, header.width, header.height, header.coord, false});
+  return type_for(PortType{header.info, header.width, header.height, header.coord, false});
 }
 
 std::string Encoder::frame_id(std::int32_t coord) const {

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include <hc/contract/description.h>
 #include <hc/contract/log_line.h>
 #include <hc/contract/port_type.h>
 #include <hc/mtp/message.h>
@@ -23,7 +24,7 @@
 
 namespace hc::ros {
 
-/// The type that messages of a port become, whatever of a shape it does not fix; nothing for those
+/// The type that messages of a type become, whatever of a shape it does not fix; nothing for those
 /// in encoding zstd, which are to be expanded first.
 ///
 /// | messages | become |
@@ -42,6 +43,9 @@ namespace hc::ros {
 ///
 /// Twist, TfMessage and Log are nobody's by themselves.
 std::optional<Type> type_for(const PortType& port);
+/// The same of an output, expanded where it is compressed; nothing where it may send anything.
+/// @param jpeg  images of u8 are made CompressedImage.
+std::optional<Type> type_for(const PortDescription& output, bool jpeg = false);
 /// The same of a message alone.
 std::optional<Type> type_for(const Header& header);
 

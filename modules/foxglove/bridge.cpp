@@ -19,24 +19,14 @@ constexpr const char* kProtocols[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"
 constexpr std::int32_t kFailed = 2;  // level of an error
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-web::Reply refusal(int status, std::string words) {
-  web::Reply reply;
-  reply.status = status;
-  reply.body = std::make_shared<const std::string>(std::move(words) + "\n");
-  return reply;
-}
+using web::refusal;
 
 /// The protocol to speak of those that are offered, joined by commas; null where none is ours.
 const char* chosen(std::string_view offered) {
-  for (const char* ours : kProtocols) {
-    for (std::string_view left = offered; !left.empty();) {
-      auto each = left.substr(0, left.find(','));
-      left.remove_prefix(std::min(left.size(), each.size() + 1));
-      while (each.starts_with(' ')) each.remove_prefix(1);
-      while (each.ends_with(' ')) each.remove_suffix(1);
-      if (each == ours) return ours;
-    }
-  }
+  std::string list = "," + std::string(offered) + ",";
+  std::erase(list, ' ');
+  for (const char* ours : kProtocols)
+    if (list.find("," + std::string(ours) + ",") != std::string::npos) return ours;
   return nullptr;
 }
 
@@ -56,8 +46,8 @@ std::vector<std::string> strings_of(const Json& object, const char* key) {
 
 /// The number of a key, where it is one of 32 bits.
 std::optional<std::uint32_t> number_of(const Json& object, const char* key) {
-  const auto found = object.is_object() ? object.find(key) : object.end();
-  if (!object.is_object() || found == object.end() || !found->is_number_unsigned() ||
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_number_unsigned() ||
       found->get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max())
     return std::nullopt;
   return found->get<std::uint32_t>();
@@ -215,7 +205,7 @@ void Bridge::set_parameters(const std::shared_ptr<Viewer>& viewer, const Json& r
                               "to operate");
   std::map<std::string, std::string> values;
   for (const Json& each : list_of(request, "parameters")) {
-    const std::string name = each.is_object() ? string_of(each, "name") : std::string();
+    const std::string name = string_of(each, "name");
     if (!catalog_.has_parameter(name) || !each.contains("value")) {
       viewer->say_status(kFailed, "there is no such parameter: " + excerpt(each));
       continue;

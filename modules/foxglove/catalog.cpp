@@ -14,18 +14,6 @@ std::string topic_of(std::string port) {
   return "/" + port;
 }
 
-hc::ros::Type type_of(const hc::PortDescription& port, bool jpeg) {
-  using hc::ros::Type;
-  if (port.types.size() != 1) return Type::Matrix;  // it may be anything
-  hc::PortType type = port.types.front();
-  if (type.info.encoding == hc::Encoding::Zstd) type.info.encoding = hc::Encoding::Binary;
-  const bool is_picture = (type.info.type == hc::MatrixType::RgbImage ||
-                           type.info.type == hc::MatrixType::IntensityImage) &&
-                          type.info.scalar == hc::Scalar::U8 && type.info.components != 4;
-  if (is_picture && jpeg) type.info.encoding = hc::Encoding::Jpeg;
-  return hc::ros::type_for(type).value_or(Type::Matrix);
-}
-
 Json list_of(const std::map<std::string, std::vector<std::string>>& names, const char* key) {
   Json list = Json::array();
   for (const auto& [topic, modules] : names) list.push_back({{"name", topic}, {key, modules}});
@@ -49,15 +37,22 @@ Catalog::Changes Catalog::take_state(const hc::GraphState& state) {
   std::set<std::string> there;
   for (const auto& module : state.modules) {
     there.insert(module.name);
-    const auto known = modules_.find(module.name);
-    if (known == modules_.end() || known->second.program != module.program) {
-      if (known != modules_.end()) remove_outputs(module.name, changes);
-      modules_[module.name] = {module.program, {}};
+    const auto [known, is_new] = programs_.try_emplace(module.name, module.program);
+    if (is_new || known->second != module.program) {
+      remove_outputs(module.name, changes);
+      known->second = module.program;
       changes.unknown.push_back(module.name);
     }
-    set_parameters(module, changes);
+    for (const auto& [key, text] : module.parameters) {
+      const std::string name = module.name + "." + key;
+      if (values_[name] == text) continue;
+      values_[name] = text;
+      const auto parameter = parameters_.find(name);
+      if (parameter != parameters_.end() && parameter->second.set(text))
+        changes.parameters.push_back(name);
+    }
   }
-  std::erase_if(modules_, [&](const auto& known) {
+  std::erase_if(programs_, [&](const auto& known) {
     if (there.contains(known.first)) return false;
     remove_outputs(known.first, changes);
     return true;
@@ -78,27 +73,21 @@ Catalog::Changes Catalog::take_state(const hc::GraphState& state) {
 
 Catalog::Changes Catalog::describe(const std::string& module, std::string_view description) {
   Changes changes;
-  const auto known = modules_.find(module);
-  auto parsed = hc::parse_description(description);
-  if (known == modules_.end() || !parsed) return changes;
+  const auto described = hc::parse_description(description);
+  if (!programs_.contains(module) || !described) return changes;
   remove_outputs(module, changes);
-  known->second.description = std::move(*parsed);
-  publish_outputs(module, changes);
-  for (const auto& parameter : known->second.description.parameters) {
+  for (const auto& output : described->outputs) {
+    const std::string port = module + "." + output.name;
+    const auto type = hc::ros::type_for(output, jpeg_).value_or(hc::ros::Type::Matrix);
+    changes.added.push_back({next_++, topic_of(port), port, type});
+    channels_[changes.added.back().id] = changes.added.back();
+  }
+  for (const auto& parameter : described->parameters) {
     auto& state = parameters_[module + "." + parameter.name] = parameter;
     const auto value = values_.find(module + "." + parameter.name);
     if (value != values_.end()) static_cast<void>(state.set(value->second));
   }
   return changes;
-}
-
-void Catalog::publish_outputs(const std::string& module, Changes& changes) {
-  for (const auto& output : modules_.at(module).description.outputs) {
-    const std::string port = module + "." + output.name;
-    Channel channel{next_++, topic_of(port), port, type_of(output, jpeg_)};
-    changes.added.push_back(channel);
-    channels_[channel.id] = std::move(channel);
-  }
 }
 
 void Catalog::remove_outputs(const std::string& module, Changes& changes) {
@@ -109,18 +98,6 @@ void Catalog::remove_outputs(const std::string& module, Changes& changes) {
     return true;
   });
   std::erase_if(parameters_, [&](const auto& each) { return each.first.starts_with(prefix); });
-}
-
-void Catalog::set_parameters(const hc::ModuleState& module, Changes& changes) {
-  for (const auto& [key, text] : module.parameters) {
-    const std::string name = module.name + "." + key;
-    auto& known = values_[name];
-    if (known == text) continue;
-    known = text;
-    const auto parameter = parameters_.find(name);
-    if (parameter != parameters_.end() && parameter->second.set(text))
-      changes.parameters.push_back(name);
-  }
 }
 
 std::string Catalog::advertise(const std::vector<Channel>& channels) {

@@ -58,20 +58,14 @@ class Catalog {
 
  private:
   static constexpr std::uint32_t kLog = 1, kFrames = 2;
-  struct Known {
-    std::string program;
-    hc::Description description;
-  };
   using Names = std::map<std::string, std::vector<std::string>>;  // of modules, by topic
 
-  void publish_outputs(const std::string& module, Changes& changes);
   void remove_outputs(const std::string& module, Changes& changes);
-  void set_parameters(const hc::ModuleState& module, Changes& changes);
 
   const bool jpeg_;
   std::uint32_t next_ = kFrames + 1;
   std::map<std::uint32_t, Channel> channels_;
-  std::map<std::string, Known> modules_;
+  std::map<std::string, std::string> programs_;           // by module
   std::map<std::string, hc::ParameterState> parameters_;  // by MODULE.NAME
   std::map<std::string, std::string> values_;             // as the state says, by MODULE.NAME
   Names published_, taken_;

@@ -40,25 +40,20 @@ void Publisher::take(const hc::Message& message) {
     ++shared_->dropped;
     return;
   }
-  auto bytes = encode(message);
-  if (!bytes) {
+  const auto pieces = encoder_.encode_any(channel_.type, message);
+  if (!pieces) {
     // A message that is not as its port says; the same words once.
-    if (std::exchange(failed_, bytes.error().detail) != failed_)
+    if (std::exchange(failed_, pieces.error().detail) != failed_)
       call([why = failed_](const Callbacks& to) { to.end(why); });
     return;
   }
   const std::int64_t time =
       message.header.time != 0 ? message.header.time : hc::SystemClock().wall();
-  shared_->waiting += (*bytes)->size();
-  call([payload = Payload{time, std::move(*bytes)},
+  auto bytes = bytes_of(*pieces);
+  shared_->waiting += bytes->size();
+  call([payload = Payload{time, std::move(bytes)},
         &waiting = shared_->waiting](const Callbacks& callbacks) {
     waiting -= payload.bytes->size();
     callbacks.message(payload);
   });
-}
-
-hc::Result<web::Bytes> Publisher::encode(const hc::Message& message) {
-  const auto pieces = encoder_.encode_any(channel_.type, message);
-  if (!pieces) return pieces.error();
-  return bytes_of(*pieces);
 }

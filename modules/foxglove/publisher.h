@@ -54,7 +54,6 @@ class Publisher {
 
   // On the tap's thread.
   void take(const hc::Message& message);
-  hc::Result<hc::web::Bytes> encode(const hc::Message& message);
   void call(std::function<void(const Callbacks&)> what) const;
 
   const Channel channel_;

@@ -44,7 +44,7 @@ std::uint32_t domain_of(std::int64_t parameter) {
 
 /// A topic that is subscribed, and where its messages go.
 struct Subscription {
-  Subscribed subscribed;
+  Mapping subscribed;
   hc::PortType port;
   std::function<void(hc::Message)> send;
   RateLimit limit;
@@ -144,7 +144,7 @@ int main(int argc, char** argv) {
   std::list<Publication> publications;
   std::optional<Frames> tf;
 
-  const auto open_frames = [&](const Published& published) {
+  const auto open_frames = [&](const Mapping& published) {
     tf.emplace();
     tf->rate = published.rate;
     tf->moving = hc::value_or_end(participant->write(published.topic, hc::ros::Type::TfMessage,
@@ -174,12 +174,10 @@ int main(int argc, char** argv) {
          release == "humble"},
         warn));
     for (const auto& each : subscribed) {
-      const bool is_sensor = is_sensor_data(each.type);
-      const Qos qos{each.reliable.value_or(!is_sensor), false, is_sensor ? 5 : 10};
-      const auto& [port, send] = outputs.at(each.output);
-      subscriptions.push_back(
-          {each, port, send, RateLimit(each.rate),
-           hc::value_or_end(participant->read(each.topic, each.type, qos, wake))});
+      const auto& [port, send] = outputs.at(each.port);
+      subscriptions.push_back({each, port, send, RateLimit(each.rate),
+                               hc::value_or_end(participant->read(
+                                   each.topic, *each.type, qos_of(each, *each.type), wake))});
     }
     const auto graph = hc::own_graph();
     for (const auto& each : published) {
@@ -202,7 +200,7 @@ int main(int argc, char** argv) {
   const auto take = [&](Subscription& to, const hc::Result<std::span<const std::byte>>& bytes) {
     const auto& subscribed = to.subscribed;
     if (!to.limit.passes(module.monotonic().count())) return;
-    auto message = bytes ? hc::ros::decode(subscribed.type, *bytes, to.port, subscribed.choice)
+    auto message = bytes ? hc::ros::decode(*subscribed.type, *bytes, to.port, subscribed.choice)
                          : hc::Result<hc::Message>(bytes.error());
     if (message && !message->plain()) message = hc::expand(*message);
     if (!message)

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "names.h"
@@ -43,15 +44,16 @@ bool read(std::string_view text, T& number) {
 }
 
 /// "/topic:TYPE" in two; the type is none where it is not said.
-hc::Status read_topic(std::string_view text, std::string& topic, std::optional<Type>& type) {
+hc::Status read_topic(std::string_view text, Mapping& each) {
   const auto colon = std::min(text.find(':'), text.size());
-  topic = text.substr(0, colon);
-  if (!is_topic(topic))
-    return wrong(topic, "is no topic: it begins with / and has letters, digits, _ and / in it");
+  each.topic = text.substr(0, colon);
+  if (!is_topic(each.topic))
+    return wrong(each.topic,
+                 "is no topic: it begins with / and has letters, digits, _ and / in it");
   if (colon == text.size()) return {};
   const auto name = text.substr(colon + 1);
-  type = hc::ros::type_of(name);
-  if (!type || hash_of(*type).empty()) {
+  each.type = hc::ros::type_of(name);
+  if (!each.type || hash_of(*each.type).empty()) {
     std::string known;
     for (const auto& schema : hc::ros::schemas())
       if (!hash_of(schema.type).empty()) known += (known.empty() ? "" : ", ") + schema.name;
@@ -60,38 +62,40 @@ hc::Status read_topic(std::string_view text, std::string& topic, std::optional<T
   return {};
 }
 
-/// What both directions have. @returns  false: the option is none of these.
-hc::Result<bool> read_option(std::string_view word, double& rate, std::optional<bool>& reliable) {
-  const auto [key, value] = pair_of(word);
-  if (key == "rate") {
-    if (!read(value, rate) || !(rate > 0) || !std::isfinite(rate))
-      return wrong(word, "is no rate above 0 [Hz]");
-    return true;
+/// The words behind an entry's first. @param is_subscribed  it may have coord= and child=, too.
+hc::Status read_options(std::span<const std::string_view> words, bool is_subscribed,
+                        Mapping& each) {
+  for (const auto word : words) {
+    const auto [key, value] = pair_of(word);
+    if (key == "rate") {
+      if (!read(value, each.rate) || !(each.rate > 0) || !std::isfinite(each.rate))
+        return wrong(word, "is no rate above 0 [Hz]");
+    } else if (key == "qos") {
+      if (value != "reliable" && value != "best_effort")
+        return wrong(word, "is neither qos=reliable nor qos=best_effort");
+      each.reliable = value == "reliable";
+    } else if (key == "joints") {
+      for (const auto joint : split(value, "+")) each.choice.joints.emplace_back(joint);
+    } else if (key == "coord" && is_subscribed) {
+      if (!read(value, each.coord) || each.coord < 0) return wrong(word, "is no coord");
+    } else if (key == "child" && is_subscribed) {
+      each.choice.child = value;
+    } else {
+      return wrong(word, is_subscribed ? "is none of rate=, qos=, coord=, child=, joints="
+                                       : "is none of rate=, qos=, joints=");
+    }
   }
-  if (key == "qos") {
-    if (value != "reliable" && value != "best_effort")
-      return wrong(word, "is neither qos=reliable nor qos=best_effort");
-    reliable = value == "reliable";
-    return true;
-  }
-  return false;
+  return {};
 }
 
-/// "joints=A+B"
-std::vector<std::string> joints_of(std::string_view word) {
-  std::vector<std::string> joints;
-  for (const auto joint : split(pair_of(word).second, "+")) joints.emplace_back(joint);
-  return joints;
-}
-
-hc::Result<Published> parse_published(std::string_view entry) {
+hc::Result<Mapping> parse_published(std::string_view entry) {
   const auto words = split(entry, kSpace);
   const auto [port, topic] = pair_of(words.front());
-  Published each;
+  Mapping each;
   each.port = port;
   if (each.port.empty() || topic.empty())
     return wrong(entry, "is not MODULE.PORT=/topic:TYPE, nor frames=/tf");
-  if (auto good = read_topic(topic, each.topic, each.type); !good) return good.error();
+  if (auto good = read_topic(topic, each); !good) return good.error();
   const bool is_frames = each.port == "frames";
   if (!is_frames && each.port.find('.') == std::string::npos)
     return wrong(each.port, "is no output: MODULE.PORT; or frames");
@@ -100,20 +104,13 @@ hc::Result<Published> parse_published(std::string_view entry) {
   if (is_frames) each.type = Type::TfMessage;
   if (!is_frames && each.type == Type::TfMessage)
     return wrong(entry, "is of a type that frames alone have: frames=/tf");
-  for (std::size_t i = 1; i < words.size(); ++i) {
-    auto read = read_option(words[i], each.rate, each.reliable);
-    if (!read) return read.error();
-    if (*read) continue;
-    if (!words[i].starts_with("joints=")) return wrong(words[i], "is none of rate=, qos=, joints=");
-    each.joints = joints_of(words[i]);
-  }
-  if (!each.joints.empty() && each.type.value_or(Type::JointState) != Type::JointState)
-    return wrong(entry, "says joints=, as sensor_msgs/msg/JointState alone does");
-  if (!each.joints.empty()) each.type = Type::JointState;
+  if (auto good = read_options(std::span(words).subspan(1), false, each); !good)
+    return good.error();
+  if (!each.choice.joints.empty() && !each.type) each.type = Type::JointState;
   return each;
 }
 
-hc::Result<Subscribed> parse_subscribed(std::string_view entry) {
+hc::Result<Mapping> parse_subscribed(std::string_view entry) {
   const auto words = split(entry, kSpace);
   const auto [topic, output] = pair_of(words.front());
   const auto source = std::ranges::find(sources(), output, &Source::output);
@@ -123,47 +120,32 @@ hc::Result<Subscribed> parse_subscribed(std::string_view entry) {
       known += (known.empty() ? "" : ", ") + std::string(other.output);
     return wrong(entry, "is not /topic:TYPE=OUTPUT, where OUTPUT is one of " + known);
   }
-  Subscribed each;
-  each.output = output;
-  std::optional<Type> type;
-  if (auto good = read_topic(topic, each.topic, type); !good) return good.error();
-  each.type = type.value_or(source->types.front());
-  if (std::ranges::count(source->types, each.type) == 0)
-    return wrong(entry, "does not fit: " + hc::ros::schema(each.type).name + " does not become " +
-                            each.output);
-  for (std::size_t i = 1; i < words.size(); ++i) {
-    auto known = read_option(words[i], each.rate, each.reliable);
-    if (!known) return known.error();
-    if (*known) continue;
-    const auto [key, value] = pair_of(words[i]);
-    if (key == "coord") {
-      if (!read(value, each.coord) || each.coord < 0) return wrong(words[i], "is no coord");
-    } else if (key == "child") {
-      each.choice.child = value;
-    } else if (key == "joints") {
-      each.choice.joints = joints_of(words[i]);
-    } else {
-      return wrong(words[i], "is none of rate=, qos=, coord=, child=, joints=");
-    }
-  }
+  Mapping each;
+  each.port = output;
+  if (auto good = read_topic(topic, each); !good) return good.error();
+  if (!each.type) each.type = source->types.front();
+  if (std::ranges::count(source->types, *each.type) == 0)
+    return wrong(entry, "does not fit: " + hc::ros::schema(*each.type).name + " does not become " +
+                            each.port);
+  if (auto good = read_options(std::span(words).subspan(1), true, each); !good) return good.error();
   if ((each.type == Type::TfMessage) == each.choice.child.empty())
     return wrong(entry, "says child=FRAME, or has to, as tf2_msgs/msg/TFMessage alone does");
-  if (!each.choice.joints.empty() && each.type != Type::JointState)
-    return wrong(entry, "says joints=, as sensor_msgs/msg/JointState alone does");
   return each;
 }
 
-template <typename T>
-hc::Result<std::vector<T>> parse(std::string_view text,
-                                 hc::Result<T> (*parse_entry)(std::string_view),
-                                 std::string T::*once) {
+/// @param once  what each has of its own.
+hc::Result<std::vector<Mapping>> parse(std::string_view text,
+                                       hc::Result<Mapping> (*parse_entry)(std::string_view),
+                                       std::string Mapping::*once) {
   constexpr std::size_t kMost = 100;
-  std::vector<T> all;
+  std::vector<Mapping> all;
   std::set<std::string> seen;
   for (const auto entry : split(text, ",")) {
     if (entry.find_first_not_of(kSpace) == std::string_view::npos) continue;
     auto each = parse_entry(entry);
     if (!each) return each.error();
+    if (!each->choice.joints.empty() && each->type != Type::JointState)
+      return wrong(entry, "says joints=, as sensor_msgs/msg/JointState alone does");
     if (!seen.insert((*each).*once).second) return wrong((*each).*once, "is there twice");
     all.push_back(std::move(*each));
   }
@@ -193,10 +175,10 @@ bool is_sensor_data(Type type) {
          type == Type::CameraInfo || type == Type::JointState;
 }
 
-hc::Result<std::vector<Published>> parse_publish(std::string_view text) {
-  return parse<Published>(text, parse_published, &Published::topic);
+hc::Result<std::vector<Mapping>> parse_publish(std::string_view text) {
+  return parse(text, parse_published, &Mapping::topic);
 }
 
-hc::Result<std::vector<Subscribed>> parse_subscribe(std::string_view text) {
-  return parse<Subscribed>(text, parse_subscribed, &Subscribed::output);
+hc::Result<std::vector<Mapping>> parse_subscribe(std::string_view text) {
+  return parse(text, parse_subscribed, &Mapping::port);
 }

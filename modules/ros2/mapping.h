@@ -11,24 +11,16 @@
 #include <ros/decode.h>
 #include <ros/schema.h>
 
-/// An output that ROS gets, "MODULE.PORT=/topic[:TYPE] [rate=HZ] [qos=best_effort] [joints=A+B]";
-/// or the frames, "frames=/tf".
-struct Published {
+/// An output that ROS gets, "MODULE.PORT=/topic[:TYPE] [rate=HZ] [qos=best_effort] [joints=A+B]",
+/// or the frames, "frames=/tf"; or a topic that the graph gets, "/topic[:TYPE]=OUTPUT [rate=HZ]
+/// [qos=reliable] [coord=N] [child=FRAME] [joints=A+B]".
+struct Mapping {
   std::string port, topic;
-  std::optional<hc::ros::Type> type;  ///< none: what its port's messages become
+  std::optional<hc::ros::Type> type;  ///< none: what the port's messages become
   double rate = 0;                    ///< most messages a second; 0: all [Hz]
   std::optional<bool> reliable;
-  std::vector<std::string> joints;  ///< names of a table's columns
-};
-
-/// A topic that the graph gets, "/topic[:TYPE]=OUTPUT [rate=HZ] [qos=reliable] [coord=N] …".
-struct Subscribed {
-  std::string topic, output;
-  hc::ros::Type type = hc::ros::Type::String;
-  double rate = 0;
-  std::optional<bool> reliable;
-  std::int32_t coord = 0;  ///< of the messages
-  hc::ros::Choice choice;
+  hc::ros::Choice choice;  ///< joints: of an output, the names of a table's columns
+  std::int32_t coord = 0;  ///< of the messages of a topic
 };
 
 /// What an output of this module is made of.
@@ -41,9 +33,10 @@ const std::vector<Source>& sources();
 /// Whether readers of a type want the newest rather than each message.
 bool is_sensor_data(hc::ros::Type type);
 
-/// Entries with a comma between them. Errors: Invalid, in one line.
-hc::Result<std::vector<Published>> parse_publish(std::string_view text);
-hc::Result<std::vector<Subscribed>> parse_subscribe(std::string_view text);
+/// Entries with a comma between them; those that are subscribed have a type. Errors: Invalid, in
+/// one line.
+hc::Result<std::vector<Mapping>> parse_publish(std::string_view text);
+hc::Result<std::vector<Mapping>> parse_subscribe(std::string_view text);
 
 /// Lets at most so many a second pass.
 class RateLimit {

@@ -213,11 +213,8 @@ hc::Result<Writer> Participant::write(const std::string& topic, hc::ros::Type ty
   auto made =
       open_writer(dds_topic(topic), dds_type(hc::ros::schema(type).name), hash_of(type), qos);
   if (!made) return made;
-  {
-    const std::lock_guard lock(mutex_);
-    writers_.push_back(guid_of(made->writer_.handle()));
-  }
-  if (auto announced = announce(); !announced) return announced.error();
+  if (auto announced = announce(&writers_, made->writer_.handle()); !announced)
+    return announced.error();
   return made;
 }
 
@@ -240,15 +237,11 @@ hc::Result<Reader> Participant::read(const std::string& topic, hc::ros::Type typ
                                         listener.get());
   if (reader < 0) return hc::dds::failed("reader of " + topic, reader);
   made.reader_ = hc::dds::Entity(reader);
-  {
-    const std::lock_guard lock(mutex_);
-    readers_.push_back(guid_of(reader));
-  }
-  if (auto announced = announce(); !announced) return announced.error();
+  if (auto announced = announce(&readers_, reader); !announced) return announced.error();
   return made;
 }
 
-hc::Status Participant::announce() {
+hc::Status Participant::announce(std::vector<dds_guid_t>* list, dds_entity_t added) {
   const auto write = [&]<std::size_t kSize>(std::integral_constant<std::size_t, kSize>) {
     ParticipantEntities<kSize> info{id_of<kSize>(guid_of(participant_.handle())),
                                     {{"/", options_.node, {}, {}}}};
@@ -258,6 +251,7 @@ hc::Status Participant::announce() {
     return discovery_.write(writer.write(info));
   };
   const std::lock_guard lock(mutex_);
+  if (list != nullptr) list->push_back(guid_of(added));
   if (options_.is_humble) return write(std::integral_constant<std::size_t, 24>{});
   return write(std::integral_constant<std::size_t, 16>{});
 }

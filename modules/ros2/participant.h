@@ -81,8 +81,8 @@ class Participant {
   Participant() = default;
   hc::Result<Writer> open_writer(const std::string& topic, const std::string& type,
                                  std::string_view hash, const Qos& qos);
-  /// Says to ROS which node this is, and what it writes and reads.
-  hc::Status announce();
+  /// Says to ROS which node this is, and what it writes and reads. @param added  to that list.
+  hc::Status announce(std::vector<dds_guid_t>* list = nullptr, dds_entity_t added = 0);
 
   Options options_;
   hc::dds::Entity domain_, participant_;

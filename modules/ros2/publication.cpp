@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "publication.h"
 
-#include <algorithm>
 #include <utility>
 
 #include <client/graph_client.h>
@@ -24,19 +23,15 @@ hc::Result<Type> type_of(const hc::RunningGraph& graph, const std::string& port)
   if (!answer->is_ok || answer->rows.empty()) return unknown;
   const auto description = hc::parse_description(answer->rows.front());
   if (!description) return unknown;
-  const auto& outputs = description->outputs;
-  const auto output = std::ranges::find(outputs, port.substr(dot + 1), &hc::PortDescription::name);
-  if (output == outputs.end() || output->types.size() != 1) return unknown;
-  hc::PortType type = output->types.front();
-  if (type.info.encoding == hc::Encoding::Zstd) type.info.encoding = hc::Encoding::Binary;
-  const auto known = hc::ros::type_for(type);
+  const auto* output = hc::find_named(description->outputs, port.substr(dot + 1));
+  const auto known = output != nullptr ? hc::ros::type_for(*output) : std::nullopt;
   if (!known || hash_of(*known).empty()) return unknown;
   return *known;
 }
 
 }  // namespace
 
-Qos qos_of(const Published& published, Type type) {
+Qos qos_of(const Mapping& published, Type type) {
   Qos qos;
   qos.reliable = published.reliable.value_or(!is_sensor_data(type));
   if (is_sensor_data(type)) qos.depth = 5;
@@ -44,7 +39,7 @@ Qos qos_of(const Published& published, Type type) {
   return qos;
 }
 
-Publication::Publication(hc::RunningGraph graph, Published published,
+Publication::Publication(hc::RunningGraph graph, Mapping published,
                          std::map<std::int32_t, std::string> frames, Participant& participant,
                          Log log)
     : graph_(graph),
@@ -52,7 +47,7 @@ Publication::Publication(hc::RunningGraph graph, Published published,
       participant_(participant),
       log_(std::move(log)),
       limit_(published_.rate),
-      tap_((encoder_.frames = std::move(frames), encoder_.joints = published_.joints,
+      tap_((encoder_.frames = std::move(frames), encoder_.joints = published_.choice.joints,
             std::move(graph)),
            published_.port,
            {.open = [this] { open(); },

@@ -13,8 +13,8 @@
 #include "mapping.h"
 #include "participant.h"
 
-/// What a topic that is published is like to its readers.
-Qos qos_of(const Published& published, hc::ros::Type type);
+/// What a topic is like to its other end.
+Qos qos_of(const Mapping& published, hc::ros::Type type);
 
 class Publication {
  public:
@@ -23,8 +23,8 @@ class Publication {
 
   /// @param frames  their names by number, for frame_ids.
   /// @param participant, log  outlive it.
-  Publication(hc::RunningGraph graph, Published published,
-              std::map<std::int32_t, std::string> frames, Participant& participant, Log log);
+  Publication(hc::RunningGraph graph, Mapping published, std::map<std::int32_t, std::string> frames,
+              Participant& participant, Log log);
 
  private:
   // On the tap's thread.
@@ -32,7 +32,7 @@ class Publication {
   void take(const hc::Message& message);
 
   const hc::RunningGraph graph_;
-  const Published published_;
+  const Mapping published_;
   Participant& participant_;
   const Log log_;
   hc::ros::Encoder encoder_;
