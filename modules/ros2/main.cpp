@@ -42,11 +42,16 @@ std::uint32_t domain_of(std::int64_t parameter) {
   return domain;
 }
 
+/// An output of this module.
+struct Destination {
+  hc::PortType port;
+  std::function<void(hc::Message)> send;
+};
+
 /// A topic that is subscribed, and where its messages go.
 struct Subscription {
   Mapping subscribed;
-  hc::PortType port;
-  std::function<void(hc::Message)> send;
+  const Destination& to;
   RateLimit limit;
   Reader reader;
 };
@@ -59,26 +64,6 @@ struct Frames {
   std::map<std::string, RateLimit> limits;  // by child
 };
 
-/// The outputs of this module, by name.
-class Outputs {
- public:
-  template <typename K>
-  void add(hc::Module& module, const std::string& name, const K& kind, const std::string& doc) {
-    auto output = module.output(name, kind, doc);
-    sends_[name] = {kind.type, [output](hc::Message message) mutable {
-                      output.send(hc::MessageOf<K>{std::move(message)});
-                    }};
-  }
-  struct Send {
-    hc::PortType port;
-    std::function<void(hc::Message)> send;
-  };
-  [[nodiscard]] const Send& at(const std::string& name) const { return sends_.at(name); }
-
- private:
-  std::map<std::string, Send> sends_;
-};
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -86,21 +71,26 @@ int main(int argc, char** argv) {
   hc::Module module{"ros2", "Talks to ROS 2: outputs of the graph as topics, and topics here."};
   auto poses =
       module.input("frames", hc::transformation<double>(4, 4), "poses, linked by `hc run`");
-  Outputs outputs;
-  outputs.add(module, "image", hc::rgb_image<std::uint8_t>(), "of Image or CompressedImage");
-  outputs.add(module, "grey", hc::intensity_image<std::uint8_t>(), "of Image or CompressedImage");
-  outputs.add(module, "depth", hc::intensity_image<float>(), "of Image [m], 0 unknown");
+  std::map<std::string, Destination> outputs;
+  const auto add = [&]<typename K>(const std::string& name, const K& kind, const char* doc) {
+    outputs[name] = {kind.type,
+                     [output = module.output(name, kind, doc)](hc::Message message) mutable {
+                       output.send(hc::MessageOf<K>{std::move(message)});
+                     }};
+  };
+  add("image", hc::rgb_image<std::uint8_t>(), "of Image or CompressedImage");
+  add("grey", hc::intensity_image<std::uint8_t>(), "of Image or CompressedImage");
+  add("depth", hc::intensity_image<float>(), "of Image [m], 0 unknown");
   auto points = hc::position<float>();
   points.type.info.encoding = hc::Encoding::Binary;  // there are many
-  outputs.add(module, "points", points, "of PointCloud2");
-  outputs.add(module, "camera", hc::table<double>().of(5, 1),
-              "of CameraInfo: fx, fy, cx, cy [px], baseline [m]");
-  outputs.add(module, "pose", hc::transformation<double>(4, 4), "of PoseStamped or TFMessage");
-  outputs.add(module, "twist", hc::table<double>().of(6, 1), "of Twist: linear, angular");
-  outputs.add(module, "joints", hc::table<double>(),
-              "of JointState: a row of positions, then of velocities and efforts");
-  outputs.add(module, "text", hc::string(), "of String");
-  outputs.add(module, "numbers", hc::table<double>(), "of Float64MultiArray");
+  add("points", points, "of PointCloud2");
+  add("camera", hc::table<double>().of(5, 1), "of CameraInfo: fx, fy, cx, cy [px], baseline [m]");
+  add("pose", hc::transformation<double>(4, 4), "of PoseStamped or TFMessage");
+  add("twist", hc::table<double>().of(6, 1), "of Twist: linear, angular");
+  add("joints", hc::table<double>(),
+      "of JointState: a row of positions, then of velocities and efforts");
+  add("text", hc::string(), "of String");
+  add("numbers", hc::table<double>(), "of Float64MultiArray");
   const auto publish = module.parameter(
       "publish", "", "", "outputs as topics: MODULE.PORT=/topic[:TYPE] [rate=HZ], …; frames=/tf",
       {.fixed = true});
@@ -174,8 +164,7 @@ int main(int argc, char** argv) {
          release == "humble"},
         warn));
     for (const auto& each : subscribed) {
-      const auto& [port, send] = outputs.at(each.port);
-      subscriptions.push_back({each, port, send, RateLimit(each.rate),
+      subscriptions.push_back({each, outputs.at(each.port), RateLimit(each.rate),
                                hc::value_or_end(participant->read(
                                    each.topic, *each.type, qos_of(each, *each.type), wake))});
     }
@@ -197,11 +186,12 @@ int main(int argc, char** argv) {
   module.on_readable([&] { return loop->descriptor(); },
                      [&] { hc::succeed_or_end(loop->turn(std::chrono::milliseconds(0))); });
 
-  const auto take = [&](Subscription& to, const hc::Result<std::span<const std::byte>>& bytes) {
-    const auto& subscribed = to.subscribed;
-    if (!to.limit.passes(module.monotonic().count())) return;
-    auto message = bytes ? hc::ros::decode(*subscribed.type, *bytes, to.port, subscribed.choice)
-                         : hc::Result<hc::Message>(bytes.error());
+  const auto take = [&](Subscription& from, const hc::Result<std::span<const std::byte>>& bytes) {
+    const auto& subscribed = from.subscribed;
+    if (!from.limit.passes(module.monotonic().count())) return;
+    auto message = bytes
+                       ? hc::ros::decode(*subscribed.type, *bytes, from.to.port, subscribed.choice)
+                       : hc::Result<hc::Message>(bytes.error());
     if (message && !message->plain()) message = hc::expand(*message);
     if (!message)
       return module.log_once(
@@ -209,7 +199,7 @@ int main(int argc, char** argv) {
           subscribed.topic + ": refused; others are counted: " + message.error().detail);
     if (message->header.time == 0) message->header.time = module.now();
     message->header.coord = subscribed.coord;
-    to.send(std::move(*message));
+    from.to.send(std::move(*message));
   };
   module.on_readable([&] { return arrived.descriptor(); },
                      [&] {
