@@ -16,6 +16,8 @@
 
 #include <gtest/gtest.h>
 
+#include <hc/testing/must.h>
+
 namespace {
 
 using hc::HeadTracker;
@@ -57,9 +59,7 @@ hc::Senders nobody() {
 }
 
 HeadTracker opened() {
-  auto tracker = HeadTracker::open("127.0.0.1", 0, nobody());
-  EXPECT_TRUE(tracker);
-  return std::move(*tracker);
+  return hc::must(HeadTracker::open("127.0.0.1", 0, nobody()));
 }
 
 TEST(HeadTracker, gives_the_newest_pose_with_its_time) {
@@ -69,16 +69,13 @@ TEST(HeadTracker, gives_the_newest_pose_with_its_time) {
   const std::int64_t before = hc::SystemClock().wall();
   sender.send({0, 0, -100, 0, 0, 0});
   sender.send({0, 0, -200, 0, 0, 0});
-  auto got = tracker.receive({}, ignored.problem);
+  const auto got = hc::must(tracker.receive({}, ignored.problem));
   ASSERT_TRUE(got);
-  ASSERT_TRUE(*got);
-  EXPECT_DOUBLE_EQ((*got)->pose.p.x(), 2);
-  EXPECT_GE((*got)->time, before);
-  EXPECT_LE((*got)->time, hc::SystemClock().wall());
+  EXPECT_DOUBLE_EQ(got->pose.p.x(), 2);
+  EXPECT_GE(got->time, before);
+  EXPECT_LE(got->time, hc::SystemClock().wall());
   EXPECT_EQ(ignored.count, 0);
-  got = tracker.receive({}, ignored.problem);
-  ASSERT_TRUE(got);
-  EXPECT_FALSE(*got);
+  EXPECT_FALSE(hc::must(tracker.receive({}, ignored.problem)));
 }
 
 TEST(HeadTracker, ignores_and_counts_garbage) {
@@ -91,16 +88,14 @@ TEST(HeadTracker, ignores_and_counts_garbage) {
   sender.send(large.data(), large.size());
   sender.send(large.data(), 49);
   sender.send({0, 0, 0, std::numeric_limits<double>::quiet_NaN(), 0, 0});
-  auto got = tracker.receive({}, ignored.problem);
-  ASSERT_TRUE(got);
-  EXPECT_FALSE(*got);
+  EXPECT_FALSE(hc::must(tracker.receive({}, ignored.problem)));
   EXPECT_EQ(ignored.count, 5);
   EXPECT_EQ(ignored.last, "invalid packet: ignored a packet whose yaw is nan");
   sender.send({0, 100, 0, 0, 0, 0});
   sender.send("bye", 3);
-  got = tracker.receive({}, ignored.problem);
-  ASSERT_TRUE(got && *got);
-  EXPECT_DOUBLE_EQ((*got)->pose.p.z(), 1);
+  const auto got = hc::must(tracker.receive({}, ignored.problem));
+  ASSERT_TRUE(got);
+  EXPECT_DOUBLE_EQ(got->pose.p.z(), 1);
   EXPECT_EQ(ignored.count, 6);
 }
 
@@ -116,20 +111,14 @@ TEST(HeadTracker, hears_this_user_by_either_family) {
 
 TEST(HeadTracker, a_port_in_use_is_an_error) {
   auto tracker = opened();
-  auto second = HeadTracker::open("127.0.0.1", tracker.port(), nobody());
-  ASSERT_FALSE(second);
-  EXPECT_EQ(second.error().detail,
+  EXPECT_EQ(hc::refused(HeadTracker::open("127.0.0.1", tracker.port(), nobody())).detail,
             "UDP port " + std::to_string(tracker.port()) + " of 127.0.0.1: Address already in use");
 }
 
 TEST(HeadTracker, a_wrong_host_is_an_error) {
-  auto tracker = HeadTracker::open("999.0.0.1.", 0, nobody());
-  ASSERT_FALSE(tracker);
-  EXPECT_EQ(tracker.error().code, hc::Code::Invalid);
-  auto elsewhere =
-      HeadTracker::open("192.0.2.1", 0, nobody());  // an address that this machine has not
-  ASSERT_FALSE(elsewhere);
-  EXPECT_EQ(elsewhere.error().code, hc::Code::System);
+  EXPECT_EQ(hc::refused(HeadTracker::open("999.0.0.1.", 0, nobody())).code, hc::Code::Invalid);
+  // An address that this machine has not.
+  EXPECT_EQ(hc::refused(HeadTracker::open("192.0.2.1", 0, nobody())).code, hc::Code::System);
 }
 
 }  // namespace

@@ -7,20 +7,28 @@
 
 #include <gtest/gtest.h>
 
+#include <hc/testing/must.h>
+
 namespace {
 
+hc::HeadTracker listening() {
+  return hc::must(hc::HeadTracker::open("127.0.0.1", 0, {{}, std::chrono::seconds(1)}));
+}
+
+hc::HeadPoseSender sender_to(int port) {
+  return hc::must(hc::HeadPoseSender::open("127.0.0.1:" + std::to_string(port)));
+}
+
 TEST(HeadPoseSender, is_heard_by_a_head_tracker) {
-  auto tracker = hc::HeadTracker::open("127.0.0.1", 0, {{}, std::chrono::seconds(1)});
-  ASSERT_TRUE(tracker);
-  auto sender = hc::HeadPoseSender::open("127.0.0.1:" + std::to_string(tracker->port()));
-  ASSERT_TRUE(sender);
+  auto tracker = listening();
+  auto sender = sender_to(tracker.port());
   hc::HeadPose pose;
   pose.R = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  ASSERT_TRUE(sender->send(pose));
+  ASSERT_TRUE(sender.send(pose));
   int ignored = 0;
-  const auto heard = tracker->receive({}, [&](const auto&...) { ++ignored; });
-  ASSERT_TRUE(heard && *heard);
-  EXPECT_NEAR((*heard)->pose.angles().z(), 0.5, 1e-9);
+  const auto heard = hc::must(tracker.receive({}, [&](const auto&...) { ++ignored; }));
+  ASSERT_TRUE(heard);
+  EXPECT_NEAR(heard->pose.angles().z(), 0.5, 1e-9);
   EXPECT_EQ(ignored, 0);
 }
 
@@ -30,15 +38,8 @@ TEST(HeadPoseSender, an_address_that_is_none_is_an_error) {
 }
 
 TEST(HeadPoseSender, continues_when_nobody_hears_it) {
-  int port = 0;
-  {
-    auto tracker = hc::HeadTracker::open("127.0.0.1", 0, {{}, std::chrono::seconds(1)});
-    ASSERT_TRUE(tracker);
-    port = tracker->port();
-  }
-  auto sender = hc::HeadPoseSender::open("127.0.0.1:" + std::to_string(port));
-  ASSERT_TRUE(sender);
-  for (int i = 0; i < 3; ++i) EXPECT_TRUE(sender->send({}));
+  auto sender = sender_to(listening().port());  // which is closed at once
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(sender.send({}));
 }
 
 }  // namespace

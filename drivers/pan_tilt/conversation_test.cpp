@@ -6,6 +6,15 @@
 namespace hc::pan_tilt {
 namespace {
 
+class Begun : public testing::Test {
+ protected:
+  void SetUp() override {
+    line.begin();
+    line.commands();
+  }
+  Line line;
+};
+
 TEST(Conversation, begins_as_drivers_do_and_asks_what_is_there) {
   Line line;
   line.looks = false;
@@ -39,17 +48,12 @@ TEST(Conversation, reports_where_the_unit_looks_and_when) {
 
 TEST(Conversation, on_a_slow_line_a_gaze_has_the_time_at_which_the_unit_looked_there) {
   Line line;
-  line.delay = milliseconds(0);
-  line.bytes_per_second = 960;
-  line.host.set_line(960);
-  line.host.begin(line.now);
-  line.run(milliseconds(2000));
-  ASSERT_EQ(line.host.phase(), Phase::Ready);
+  line.begin_slowly();
   line.gazes.clear();
   std::deque<std::pair<MonotonicTime, double>> turned;  // when it was where
   line.host.command(line.now, 1, 0.5);
   for (int i = 0; i < 800; ++i) {
-    turned.emplace_back(line.now, line.unit.pan(std::chrono::duration<double>(line.now).count()));
+    turned.emplace_back(line.now, line.unit.pan(line.seconds()));
     if (i % 30 == 0) line.host.command(line.now, 1 + 0.001 * i, 0.5);  // before the question
     line.step();
   }
@@ -67,19 +71,12 @@ TEST(Conversation, on_a_slow_line_a_gaze_has_the_time_at_which_the_unit_looked_t
 
 TEST(Conversation, on_a_slow_line_the_tilt_is_that_of_the_time_of_the_pan) {
   Line line;
-  line.delay = milliseconds(0);
-  line.bytes_per_second = 960;
-  line.host.set_line(960);
-  line.host.begin(line.now);
-  line.run(milliseconds(2000));
-  ASSERT_EQ(line.host.phase(), Phase::Ready);
+  line.begin_slowly();
   line.host.command(line.now, 0, 0.8);
   line.run(milliseconds(150));  // until it turns evenly
   line.gazes.clear();
   const auto begin = line.now;
-  const auto tilt = [&] {
-    return -line.unit.tilt(std::chrono::duration<double>(line.now).count()) * kStep;
-  };
+  const auto tilt = [&] { return -line.unit.tilt(line.seconds()) * kStep; };
   const double first = tilt();
   line.run(milliseconds(400));
   const double speed = (tilt() - first) / 0.4;
@@ -93,28 +90,20 @@ TEST(Conversation, on_a_slow_line_the_tilt_is_that_of_the_time_of_the_pan) {
   EXPECT_NEAR(late, 0, 0.0015) << "its question takes 3 ms";
 }
 
-TEST(Conversation, a_command_goes_at_once_beside_a_question) {
-  Line line;
-  line.begin();
-  line.commands();
+TEST_F(Begun, a_command_goes_at_once_beside_a_question) {
   line.host.look(line.now);
   EXPECT_EQ(line.host.bytes(), "pp tp ");
   EXPECT_TRUE(line.host.command(line.now, 100 * kStep, 50 * kStep));
   EXPECT_EQ(line.host.bytes(), "pp100 tp-50 ");
 }
 
-TEST(Conversation, of_commands_that_must_wait_the_newest_is_sent) {
-  Line line;
-  line.begin();
-  line.commands();
+TEST_F(Begun, of_commands_that_must_wait_the_newest_is_sent) {
   for (int i = 1; i <= 50; ++i) line.host.command(line.now, i * kStep, 0);
   line.run(milliseconds(50));
   EXPECT_EQ(line.commands(), "pp1 tp0 pp50 tp0 ");
 }
 
-TEST(Conversation, never_has_more_than_a_question_and_a_command_without_answer) {
-  Line line;
-  line.begin();
+TEST_F(Begun, never_has_more_than_a_question_and_a_command_without_answer) {
   line.is_silent = true;
   line.asked.clear();
   for (int i = 0; i < 400; ++i) {
@@ -124,10 +113,7 @@ TEST(Conversation, never_has_more_than_a_question_and_a_command_without_answer) 
   EXPECT_LE(std::count(line.asked.begin(), line.asked.end(), ' '), 4);
 }
 
-TEST(Conversation, commands_are_brought_within_the_limits) {
-  Line line;
-  line.begin();
-  line.commands();
+TEST_F(Begun, commands_are_brought_within_the_limits) {
   line.host.command(line.now, 99, -1e300);
   line.run(milliseconds(50));
   line.host.command(line.now, -99, 99);
@@ -136,10 +122,7 @@ TEST(Conversation, commands_are_brought_within_the_limits) {
   EXPECT_TRUE(line.remarks.empty());
 }
 
-TEST(Conversation, a_command_that_is_the_same_is_not_sent_again) {
-  Line line;
-  line.begin();
-  line.commands();
+TEST_F(Begun, a_command_that_is_the_same_is_not_sent_again) {
   for (int i = 0; i < 5; ++i) {
     line.host.command(line.now, 0.1, 0);
     line.run(milliseconds(20));
@@ -147,9 +130,7 @@ TEST(Conversation, a_command_that_is_the_same_is_not_sent_again) {
   EXPECT_EQ(line.commands(), "pp111 tp0 ");
 }
 
-TEST(Conversation, a_silent_unit_is_asked_again_and_then_given_up) {
-  Line line;
-  line.begin();
+TEST_F(Begun, a_silent_unit_is_asked_again_and_then_given_up) {
   line.is_silent = true;
   line.run(Conversation::kTimeOut + milliseconds(30));
   EXPECT_EQ(line.faults, std::vector<std::string>{"the unit does not answer"});
@@ -159,9 +140,7 @@ TEST(Conversation, a_silent_unit_is_asked_again_and_then_given_up) {
   EXPECT_EQ(line.host.phase(), Phase::Lost);
 }
 
-TEST(Conversation, an_answer_that_nobody_has_looked_at_tells_no_gaze) {
-  Line line;
-  line.begin();
+TEST_F(Begun, an_answer_that_nobody_has_looked_at_tells_no_gaze) {
   line.looks = false;
   line.run(milliseconds(50));
   line.gazes.clear();
@@ -245,9 +224,7 @@ TEST(Conversation, nothing_but_garbage_is_given_up) {
   EXPECT_EQ(line.host.phase(), Phase::Lost);
 }
 
-TEST(Conversation, a_unit_that_was_switched_off_and_on_is_made_terse_again) {
-  Line line;
-  line.begin();
+TEST_F(Begun, a_unit_that_was_switched_off_and_on_is_made_terse_again) {
   line.host.set_pace(0.5, 0);
   line.run(milliseconds(100));
   line.unit = Unit(10, 20);
@@ -282,9 +259,7 @@ TEST(Conversation, asked_slower_than_it_can_the_unit_turns_as_slowly_as_it_can) 
   EXPECT_NEAR(line.gazes.back().pan, 31 * kStep, 3 * kStep);
 }
 
-TEST(Conversation, no_command_is_taken_until_a_pace_is_accepted) {
-  Line line;
-  line.begin();
+TEST_F(Begun, no_command_is_taken_until_a_pace_is_accepted) {
   line.unit.take(1.3, "pl200 tl200 ");  // by somebody else, behind the host's back
   line.commands();
   line.host.set_pace(0.05, 0);
@@ -331,14 +306,12 @@ TEST(Conversation, half_a_word_that_was_left_in_the_unit_is_not_carried_out) {
     EXPECT_TRUE(line.faults.empty()) << line.faults[0];
     EXPECT_TRUE(line.host.command(line.now, 0, 0));
     line.run(milliseconds(50));
-    EXPECT_EQ(line.unit.pan(std::chrono::duration<double>(line.now).count()), 0) << left;
+    EXPECT_EQ(line.unit.pan(line.seconds()), 0) << left;
     EXPECT_EQ(line.unit.take(2, "f e c "), "* terse mode\r\n* OFF\r\n* Independent Mode\r\n");
   }
 }
 
-TEST(Conversation, what_the_unit_refuses_or_runs_into_is_a_remark) {
-  Line line;
-  line.begin();
+TEST_F(Begun, what_the_unit_refuses_or_runs_into_is_a_remark) {
   line.looks = false;
   line.run(milliseconds(50));
   line.host.take(line.now, "!T!P");
@@ -350,9 +323,7 @@ TEST(Conversation, what_the_unit_refuses_or_runs_into_is_a_remark) {
   EXPECT_EQ(line.host.phase(), Phase::Ready);
 }
 
-TEST(Conversation, a_place_where_it_cannot_be_is_garbage) {
-  Line line;
-  line.begin();
+TEST_F(Begun, a_place_where_it_cannot_be_is_garbage) {
   line.looks = false;
   line.run(milliseconds(50));
   line.gazes.clear();

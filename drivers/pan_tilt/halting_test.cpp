@@ -5,11 +5,17 @@
 namespace hc::pan_tilt {
 namespace {
 
-TEST(Halting, a_motion_is_halted_when_commands_end) {
+class Holding : public testing::Test {
+ protected:
+  void SetUp() override {
+    line.host.set_hold(milliseconds(200));
+    line.begin();
+    line.commands();
+  }
   Line line;
-  line.begin();
-  line.host.set_hold(milliseconds(200));
-  line.commands();
+};
+
+TEST_F(Holding, a_motion_is_halted_when_commands_end) {
   line.host.command(line.now, 2, 0);
   line.run(milliseconds(199));
   EXPECT_EQ(line.commands(), "pp2228 tp0 ");
@@ -23,20 +29,13 @@ TEST(Halting, a_motion_is_halted_when_commands_end) {
   EXPECT_EQ(line.commands(), "pp2228 tp0 ");
 }
 
-TEST(Halting, a_place_that_was_reached_needs_no_halt) {
-  Line line;
-  line.begin();
-  line.host.set_hold(milliseconds(200));
-  line.commands();
+TEST_F(Holding, a_place_that_was_reached_needs_no_halt) {
   line.host.command(line.now, 0.05, 0);
   line.run(milliseconds(2000));
   EXPECT_EQ(line.commands(), "pp56 tp0 ");
 }
 
-TEST(Halting, no_old_command_is_sent_when_the_unit_is_back_but_its_motion_is_halted) {
-  Line line;
-  line.begin();
-  line.host.set_hold(milliseconds(200));
+TEST_F(Holding, no_old_command_is_sent_when_the_unit_is_back_but_its_motion_is_halted) {
   line.host.command(line.now, 2, 0);
   line.step();
   line.host.command(line.now, 1, 0);  // waits for the first one's answer, which is lost
@@ -88,7 +87,7 @@ TEST(Halting, a_motion_is_halted_though_nothing_can_be_heard) {
       line.host.command(line.now, 2.5, 0);  // who commands does not know
       line.step();
     }
-    const double seconds = std::chrono::duration<double>(line.now).count();
+    const double seconds = line.seconds();
     const double pan = line.unit.pan(seconds);
     EXPECT_GT(pan, 50);
     EXPECT_LT(pan, 1000);  // it would get to 2785
@@ -124,10 +123,7 @@ TEST(Halting, a_halt_amid_the_first_questions_is_borne) {
   }
 }
 
-TEST(Halting, a_halt_whose_answer_comes_when_it_is_ready_is_borne) {
-  Line line;
-  line.host.set_hold(milliseconds(200));
-  line.begin();
+TEST_F(Holding, a_halt_whose_answer_comes_when_it_is_ready_is_borne) {
   line.looks = false;
   line.host.command(line.now, 2, 0);
   line.run(milliseconds(50));

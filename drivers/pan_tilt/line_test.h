@@ -52,7 +52,7 @@ struct Line {
     std::string bytes;
     for (; !going.empty() && going.front().first <= now; going.pop_front())
       bytes += going.front().second;
-    const double time = std::chrono::duration<double>(now).count();
+    const double time = seconds();
     for (char byte : unit.take(time, bytes) + unit.pass(time)) {
       if (is_silent) continue;
       const bool is_corrupted = static_cast<double>(random() % 1000) < garbage * 1000;
@@ -76,11 +76,18 @@ struct Line {
   void run(milliseconds duration) {
     for (const auto end = now + duration; now < end;) step();
   }
-  void begin() {
+  void begin(milliseconds within = milliseconds(300)) {
     host.begin(now);
-    run(milliseconds(300));
+    run(within);
     ASSERT_EQ(host.phase(), Phase::Ready);
   }
+  void begin_slowly() {
+    delay = milliseconds(0);
+    bytes_per_second = 960;
+    host.set_line(960);
+    begin(milliseconds(2000));
+  }
+  double seconds() const { return std::chrono::duration<double>(now).count(); }
   /// What the host wrote since the last time, without questions.
   std::string commands() {
     std::string all = std::exchange(asked, {}), left;
@@ -106,7 +113,7 @@ inline void check_recovery(Line& line) {
   ASSERT_EQ(line.host.phase(), Phase::Ready);
   EXPECT_EQ(line.host.character(),
             "pan from -158.9 to 158.9, tilt from -31.1 (up) to 46.6 (down) degrees");
-  const double time = std::chrono::duration<double>(line.now).count();
+  const double time = line.seconds();
   EXPECT_NEAR(line.gazes.back().pan, line.unit.pan(time) * kStep, kStep);
   EXPECT_NEAR(line.gazes.back().tilt, -line.unit.tilt(time) * kStep, kStep);
 }

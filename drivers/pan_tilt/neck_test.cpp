@@ -29,7 +29,11 @@ class NeckTest : public ::testing::Test {
     }
   }
   void plug() { terminal_.emplace(); }
-  void open() { settings_.device = terminal_->path(); }
+  void begin(milliseconds within = milliseconds(100)) {
+    plug();
+    settings_.device = path();
+    run(within);
+  }
   void command(double pan, double tilt) { neck_.command(now_, kWall, {pan, tilt, kWall}); }
   [[nodiscard]] std::string path() const { return terminal_->path(); }
 
@@ -49,9 +53,7 @@ class NeckTest : public ::testing::Test {
 };
 
 TEST_F(NeckTest, finds_the_unit_commands_it_and_says_where_it_looks) {
-  plug();
-  open();
-  run(milliseconds(100));
+  begin();
   command(0.5, 0.1);
   run(milliseconds(1000));
   EXPECT_TRUE(problems_.empty());
@@ -103,9 +105,7 @@ TEST_F(NeckTest, a_device_that_was_set_counts_until_the_setting_changes) {
 }
 
 TEST_F(NeckTest, drops_commands_that_are_too_old_or_cannot_be_obeyed) {
-  plug();
-  open();
-  run(milliseconds(100));
+  begin();
   neck_.command(now_, kWall, {0.5, 0, 0});
   neck_.command(now_, kWall, {0.5, 0, kWall - 201'000'000});
   neck_.command(now_, kWall, {0.5, 0, kWall + 300'000'000});
@@ -127,9 +127,7 @@ TEST_F(NeckTest, drops_commands_that_are_too_old_or_cannot_be_obeyed) {
 }
 
 TEST_F(NeckTest, obeys_one_source_of_a_mode_at_a_time_and_another_mode_at_once) {
-  plug();
-  open();
-  run(milliseconds(100));
+  begin();
   auto say = [&](std::int32_t mode, std::int32_t source, double pan) {
     neck_.command(now_, kWall, {pan, 0, kWall, mode, source});
     run(milliseconds(20));
@@ -148,10 +146,8 @@ TEST_F(NeckTest, obeys_one_source_of_a_mode_at_a_time_and_another_mode_at_once) 
 }
 
 TEST_F(NeckTest, halts_when_nobody_has_the_focus_and_obeys_again) {
-  plug();
-  open();
   settings_.hold = milliseconds(0);
-  run(milliseconds(100));
+  begin();
   neck_.set_focus(now_, 7);
   command(2, 0);
   run(milliseconds(100));
@@ -171,9 +167,7 @@ TEST_F(NeckTest, halts_when_nobody_has_the_focus_and_obeys_again) {
 }
 
 TEST_F(NeckTest, a_command_that_has_waited_lives_for_the_rest_of_its_age) {
-  plug();
-  open();
-  run(milliseconds(100));
+  begin();
   command(1, 0);
   neck_.command(now_, kWall, {0.5, 0, kWall - 150'000'000});  // waits for the first one's answer
   now_ += milliseconds(60);
@@ -183,9 +177,7 @@ TEST_F(NeckTest, a_command_that_has_waited_lives_for_the_rest_of_its_age) {
 }
 
 TEST_F(NeckTest, a_silent_unit_is_logged_once_and_so_is_its_return) {
-  plug();
-  open();
-  run(milliseconds(100));
+  begin();
   log_.clear();
   is_silent_ = true;
   run(milliseconds(20'000));
@@ -198,9 +190,7 @@ TEST_F(NeckTest, a_silent_unit_is_logged_once_and_so_is_its_return) {
 }
 
 TEST_F(NeckTest, an_answer_that_came_while_nothing_was_read_is_no_silence) {
-  plug();
-  open();
-  run(milliseconds(1500));
+  begin(milliseconds(1500));
   log_.clear();
   neck_.look(now_);
   terminal_->write(unit_.take(2.6, terminal_->read()));
@@ -211,18 +201,14 @@ TEST_F(NeckTest, an_answer_that_came_while_nothing_was_read_is_no_silence) {
 }
 
 TEST_F(NeckTest, a_new_rate_reopens_the_line) {
-  plug();
-  open();
-  run(milliseconds(100));
+  begin();
   settings_.baud = 38400;
   run(milliseconds(1500));
   EXPECT_EQ(log_.back(), path() + ": reconnected");
 }
 
 TEST_F(NeckTest, halts_what_it_has_begun_when_it_leaves) {
-  plug();
-  open();
-  run(milliseconds(100));
+  begin();
   command(2, 0);
   run(milliseconds(20));
   neck_.leave();

@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include <hc/testing/must.h>
+
 namespace hc::pan_tilt {
 
 class PseudoTerminal {

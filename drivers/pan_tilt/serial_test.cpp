@@ -12,23 +12,21 @@ namespace {
 
 TEST(Serial, carries_bytes_as_they_are) {
   PseudoTerminal terminal;
-  auto serial = Serial::open(terminal.path(), 9600);
-  ASSERT_TRUE(serial) << serial.error().text();
+  auto serial = must(Serial::open(terminal.path(), 9600));
   std::array<char, 64> room = {};
-  EXPECT_EQ(*serial->read(room), "");
+  EXPECT_EQ(*serial.read(room), "");
   const std::string all = "pp\r\n\x03\x11\x13\x7f\xff";
-  ASSERT_TRUE(serial->write(all));
+  ASSERT_TRUE(serial.write(all));
   EXPECT_EQ(terminal.read(), all);
   terminal.write(all);
-  EXPECT_EQ(*serial->read(room), all);
+  EXPECT_EQ(*serial.read(room), all);
 }
 
 TEST(Serial, has_the_settings_that_were_asked_for) {
   PseudoTerminal terminal;
-  auto serial = Serial::open(terminal.path(), 38400);
-  ASSERT_TRUE(serial);
+  auto serial = must(Serial::open(terminal.path(), 38400));
   termios settings = {};
-  ASSERT_EQ(tcgetattr(serial->descriptor(), &settings), 0);
+  ASSERT_EQ(tcgetattr(serial.descriptor(), &settings), 0);
   EXPECT_EQ(cfgetospeed(&settings), speed_t{B38400});
   EXPECT_EQ(settings.c_cflag & (CSIZE | CSTOPB | PARENB | CRTSCTS), tcflag_t{CS8});
   EXPECT_EQ(settings.c_lflag & (ICANON | ECHO | ISIG), 0U);
@@ -37,18 +35,16 @@ TEST(Serial, has_the_settings_that_were_asked_for) {
 TEST(Serial, drops_what_came_before) {
   PseudoTerminal terminal;
   terminal.write("* 1\r\n");
-  auto serial = Serial::open(terminal.path(), 9600);
-  ASSERT_TRUE(serial);
+  auto serial = must(Serial::open(terminal.path(), 9600));
   std::array<char, 64> room = {};
-  EXPECT_EQ(*serial->read(room), "");
+  EXPECT_EQ(*serial.read(room), "");
 }
 
 TEST(Serial, is_one_users_alone) {
   PseudoTerminal terminal;
   {
-    auto first = Serial::open(terminal.path(), 9600);
-    ASSERT_TRUE(first);
-    EXPECT_EQ(Serial::open(terminal.path(), 9600).error().text(),
+    const auto first = must(Serial::open(terminal.path(), 9600));
+    EXPECT_EQ(refused(Serial::open(terminal.path(), 9600)).text(),
               "System: in use by another program");
   }
   EXPECT_TRUE(Serial::open(terminal.path(), 9600));
@@ -56,20 +52,18 @@ TEST(Serial, is_one_users_alone) {
 
 TEST(Serial, a_device_that_goes_is_noticed) {
   PseudoTerminal terminal;
-  auto serial = Serial::open(terminal.path(), 9600);
-  ASSERT_TRUE(serial);
+  auto serial = must(Serial::open(terminal.path(), 9600));
   terminal.unplug();
   std::array<char, 64> room = {};
-  EXPECT_EQ(serial->read(room).error().code, Code::Closed);
-  EXPECT_EQ(serial->write("h ").error().code, Code::Closed);
+  EXPECT_EQ(serial.read(room).error().code, Code::Closed);
+  EXPECT_EQ(serial.write("h ").error().code, Code::Closed);
 }
 
 TEST(Serial, a_line_that_nobody_reads_is_full_some_time_and_does_not_wait) {
   PseudoTerminal terminal;
-  auto serial = Serial::open(terminal.path(), 9600);
-  ASSERT_TRUE(serial);
+  auto serial = must(Serial::open(terminal.path(), 9600));
   Status written;
-  for (int i = 0; i < 1000 && written; ++i) written = serial->write(std::string(1000, 'x'));
+  for (int i = 0; i < 1000 && written; ++i) written = serial.write(std::string(1000, 'x'));
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, Code::System);
 }

@@ -106,10 +106,9 @@ TEST_F(DdsSample, GoesAndComesInPiecesOfAnySize) {
       const std::string bytes = in_pieces(*sample, piece);
       ASSERT_EQ(bytes.substr(0, whole.size()), whole);
       for (const auto& each : {bytes, whole}) {
-        auto got = read(*come(each, piece));
-        ASSERT_TRUE(got) << got.error().text();
-        EXPECT_EQ(got->header, message.header);
-        EXPECT_EQ(got->characters(), message.characters());
+        auto got = must(read(*come(each, piece)));
+        EXPECT_EQ(got.header, message.header);
+        EXPECT_EQ(got.characters(), message.characters());
       }
     }
   }
@@ -124,9 +123,8 @@ TEST_F(DdsSample, MayHaveRowsOfNumbers) {
   for (std::size_t i = 0; i < draft.elements().size(); ++i)
     draft.elements()[i] = static_cast<std::byte>(i * 7);
   const Message message = std::move(draft).finish();
-  auto got = read(*come(in_pieces(*make(message), 1000), 1000));
-  ASSERT_TRUE(got) << got.error().text();
-  EXPECT_EQ(got->characters(), message.characters());
+  auto got = must(read(*come(in_pieces(*make(message), 1000), 1000)));
+  EXPECT_EQ(got.characters(), message.characters());
 }
 
 TEST_F(DdsSample, HasElementsThatAreAlignedAndStayWhereTheyAre) {
@@ -140,10 +138,9 @@ TEST_F(DdsSample, HasElementsThatAreAlignedAndStayWhereTheyAre) {
     const std::string bytes = in_pieces(*make(message), 65'000);
     for (const std::size_t piece : {4U, 65'000U}) {  // of 4 bytes the header's line is not known
       const auto sample = come(bytes, piece);
-      auto got = read(*sample);
-      ASSERT_TRUE(got) << got.error().text();
-      EXPECT_TRUE(got->view<double>());
-      EXPECT_EQ(reinterpret_cast<std::uintptr_t>(got->elements.data()) % alignof(double), 0U);
+      auto got = must(read(*sample));
+      EXPECT_TRUE(got.view<double>());
+      EXPECT_EQ(reinterpret_cast<std::uintptr_t>(got.elements.data()) % alignof(double), 0U);
     }
   }
 }

@@ -8,6 +8,8 @@
 
 #include "random_motion_test.h"
 
+#include <hc/testing/must.h>
+
 namespace hc::frames {
 namespace {
 
@@ -21,32 +23,28 @@ std::string refusal(std::string_view text) {
 }
 
 TEST(GraphFrames, AreATree) {
-  auto frames = read_frames(kHead);
-  ASSERT_TRUE(frames) << frames.error().text();
-  auto T_nose_left_eye = frames->tree.lookup("nose", "left_eye", 0);
-  ASSERT_TRUE(T_nose_left_eye) << T_nose_left_eye.error().text();
+  auto frames = must(read_frames(kHead));
+  auto T_nose_left_eye = must(frames.tree.lookup("nose", "left_eye", 0));
   // Half a turn about x, 1 m ahead.
-  EXPECT_TRUE((*T_nose_left_eye * Eigen::Vector3d(2, 0, 0)).isApprox(Eigen::Vector3d(1, -0.5, 0)));
-  EXPECT_TRUE(frames->tree.lookup(200, 4, 0)) << "by number";
-  EXPECT_FALSE(frames->tree.lookup(2, 3, 100)) << "not fed";
-  ASSERT_TRUE(frames->tree.feed("robot", "head", 100, Eigen::Isometry3d::Identity()));
-  EXPECT_TRUE(frames->tree.lookup(2, 3, 100));
+  EXPECT_TRUE((T_nose_left_eye * Eigen::Vector3d(2, 0, 0)).isApprox(Eigen::Vector3d(1, -0.5, 0)));
+  EXPECT_TRUE(frames.tree.lookup(200, 4, 0)) << "by number";
+  EXPECT_FALSE(frames.tree.lookup(2, 3, 100)) << "not fed";
+  ASSERT_TRUE(frames.tree.feed("robot", "head", 100, Eigen::Isometry3d::Identity()));
+  EXPECT_TRUE(frames.tree.lookup(2, 3, 100));
 }
 
 TEST(GraphFrames, AnEmptyTextHasNone) {
   for (const char* text : {"", "  "}) {
-    auto frames = read_frames(text);
-    ASSERT_TRUE(frames) << frames.error().text();
-    EXPECT_TRUE(frames->movers.empty());
-    EXPECT_FALSE(frames->tree.lookup("world", "world", 0));
+    auto frames = must(read_frames(text));
+    EXPECT_TRUE(frames.movers.empty());
+    EXPECT_FALSE(frames.tree.lookup("world", "world", 0));
   }
 }
 
 TEST(GraphFrames, MessagesTellWhomTheyMove) {
-  auto frames = read_frames(std::string(kHead) + "; board 201 robot tracker.poses 13");
-  ASSERT_TRUE(frames) << frames.error().text();
+  auto frames = must(read_frames(std::string(kHead) + "; board 201 robot tracker.poses 13"));
   auto moved = [&](std::int32_t source, std::int32_t coord) {
-    auto mover = frames->mover_of(source, coord);
+    auto mover = frames.mover_of(source, coord);
     return mover ? (*mover)->parent + " " + (*mover)->child : mover.error().detail;
   };
   EXPECT_EQ(moved(11, 2003), "robot head");
@@ -122,11 +120,9 @@ TEST(GraphFrames, AChainIsTheProductOfItsJoints) {
     text += (i == 1 ? "" : "; ") + std::string("f") + std::to_string(i) + " 0 " +
             (i == 1 ? "root" : "f" + std::to_string(i - 1)) + " " + text_of(joint);
   }
-  auto frames = read_frames(text);
-  ASSERT_TRUE(frames) << frames.error().text();
-  auto T_root_last = frames->tree.lookup("root", "f1000", 0);
-  ASSERT_TRUE(T_root_last);
-  EXPECT_LT((T_root_last->matrix() - product.matrix()).norm(), 1e-9) << "1000 roundings of metres";
+  auto frames = must(read_frames(text));
+  auto T_root_last = must(frames.tree.lookup("root", "f1000", 0));
+  EXPECT_LT((T_root_last.matrix() - product.matrix()).norm(), 1e-9) << "1000 roundings of metres";
 }
 
 TEST(GraphFrames, NoTextIsABug) {

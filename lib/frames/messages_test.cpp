@@ -8,6 +8,7 @@
 
 #include <frames/tree.h>
 #include <hc/testing/decode.h>
+#include <hc/testing/must.h>
 
 namespace hc {
 namespace {
@@ -35,12 +36,11 @@ TEST(Pose, IsATransformationOfFourByFour) {
   for (std::string_view info : {"70190", "70180"}) {
     std::string bytes(kHeadPose);
     bytes.replace(bytes.find("70190"), 5, info);
-    auto pose = pose_of(message_of(bytes));
-    ASSERT_TRUE(pose) << pose.error().text();
-    EXPECT_EQ(pose->to, 2);
-    EXPECT_EQ(pose->from, 3);
-    EXPECT_EQ(pose->time, 1763683200123456789);
-    Eigen::Vector3d p_robot = pose->T_to_from * Eigen::Vector3d(1, 0, 0);
+    auto pose = must(pose_of(message_of(bytes)));
+    EXPECT_EQ(pose.to, 2);
+    EXPECT_EQ(pose.from, 3);
+    EXPECT_EQ(pose.time, 1763683200123456789);
+    Eigen::Vector3d p_robot = pose.T_to_from * Eigen::Vector3d(1, 0, 0);
     EXPECT_LT((p_robot - Eigen::Vector3d(0, 1, 0.3)).norm(), 1e-7);
   }
 }
@@ -94,10 +94,9 @@ TEST(Pose, RefusesWhatIsNone) {
 TEST(Rotation, IsRollPitchYaw) {
   for (std::string_view info : {"20390", "20380", "20690"}) {
     std::string rates = info == "20690" ? " 9 9 9" : "";
-    auto q = rotation_of(
-        message_of("1 7 0 0 8 1 " + std::string(info) + " 1 13 1 1\n0 0.25 1.5" + rates + "\n"));
-    ASSERT_TRUE(q) << q.error().text();
-    Eigen::Vector3d looks = *q * Eigen::Vector3d(1, 0, 0);  // left, and down
+    auto q = must(rotation_of(
+        message_of("1 7 0 0 8 1 " + std::string(info) + " 1 13 1 1\n0 0.25 1.5" + rates + "\n")));
+    Eigen::Vector3d looks = q * Eigen::Vector3d(1, 0, 0);  // left, and down
     Eigen::Vector3d expected(std::cos(0.25) * std::cos(1.5), std::cos(0.25) * std::sin(1.5),
                              -std::sin(0.25));
     EXPECT_LT((looks - expected).norm(), 1e-15);
@@ -124,10 +123,9 @@ TEST(Eigen, SharesATransformation) {
   made.setZero();
   made(2, 3) = 5;
   Message message = std::move(draft).finish();
-  auto seen = as_eigen<double>(message);
-  ASSERT_TRUE(seen);
-  EXPECT_EQ(static_cast<const void*>(seen->data()), message.elements.data());
-  EXPECT_EQ((*seen)(2, 3), 5);
+  auto seen = must(as_eigen<double>(message));
+  EXPECT_EQ(static_cast<const void*>(seen.data()), message.elements.data());
+  EXPECT_EQ((seen)(2, 3), 5);
   EXPECT_EQ(message.view<double>()->at(2, 3), 5);
   EXPECT_FALSE(as_eigen<float>(message));
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <gaze/mounted_eyes_test.h>
+#include <hc/testing/must.h>
 
 namespace hc::gaze {
 namespace {
@@ -23,12 +24,10 @@ TEST(Binocular, both_eyes_give_the_place_and_its_range_holds_for_one) {
              right = straight_pixel_of(eyes, Side::Right, p);
   Binocular sight;
   // The first word of one eye may be all that comes.
-  const auto guess = sight.see(eyes, Side::Left, 1000, left, 2.5);
-  ASSERT_TRUE(guess);
-  EXPECT_NEAR((*guess - eyes.place(Side::Left)).norm(), 2.5, 1e-9);
-  const auto both = sight.see(eyes, Side::Right, 1000, right, 2.5);
-  ASSERT_TRUE(both);
-  EXPECT_NEAR((*both - p).norm(), 0, 1e-9);
+  const auto guess = must(sight.see(eyes, Side::Left, 1000, left, 2.5));
+  EXPECT_NEAR((guess - eyes.place(Side::Left)).norm(), 2.5, 1e-9);
+  const auto both = must(sight.see(eyes, Side::Right, 1000, right, 2.5));
+  EXPECT_NEAR((both - p).norm(), 0, 1e-9);
   // The next pair: nothing is said of its first half.
   EXPECT_FALSE(sight.see(eyes, Side::Right, 1000 + kPeriod, right, 2.5));
   EXPECT_TRUE(sight.see(eyes, Side::Left, 1000 + kPeriod, left, 2.5));
@@ -36,9 +35,8 @@ TEST(Binocular, both_eyes_give_the_place_and_its_range_holds_for_one) {
   for (int i = 2; i < 4; ++i)
     EXPECT_FALSE(sight.see(eyes, Side::Right, 1000 + i * kPeriod, right, 2.5));
   for (int i = 4; i < 7; ++i) {
-    const auto one = sight.see(eyes, Side::Right, 1000 + i * kPeriod, right, 2.5);
-    ASSERT_TRUE(one);
-    EXPECT_NEAR((*one - eyes.place(Side::Right)).norm(), p.norm(), 1e-9);
+    const auto one = must(sight.see(eyes, Side::Right, 1000 + i * kPeriod, right, 2.5));
+    EXPECT_NEAR((one - eyes.place(Side::Right)).norm(), p.norm(), 1e-9);
   }
   // What the left one says late is too old.
   EXPECT_FALSE(sight.see(eyes, Side::Left, 1000 + 4 * kPeriod, left, 2.5));

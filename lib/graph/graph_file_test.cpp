@@ -5,6 +5,8 @@
 
 #include <cstring>
 
+#include <hc/testing/must.h>
+
 namespace hc {
 namespace {
 
@@ -23,7 +25,7 @@ Result<Graph> parse(std::string_view text) {
 }
 
 TEST(GraphFile, HasModulesInTheirOrderAndLinks) {
-  auto graph = parse(R"(
+  auto graph = must(parse(R"(
 [modules.eyes]
 program = "camera"
 parameters = { source = "${HOME}/a.jpg", right_source = "${PICTURE:-b.jpg}", rate = 2.5, count = 3, loop = true }
@@ -32,10 +34,9 @@ encodings = { left = "jpeg" }
 
 [modules.depth]
 inputs.left = "eyes.left"
-)");
-  ASSERT_TRUE(graph) << graph.error().detail;
-  ASSERT_EQ(graph->modules.size(), 2U);
-  const auto& eyes = graph->modules[0];
+)"));
+  ASSERT_EQ(graph.modules.size(), 2U);
+  const auto& eyes = graph.modules[0];
   EXPECT_EQ(eyes.name, "eyes");
   EXPECT_EQ(eyes.program.value, "camera");
   EXPECT_EQ(eyes.parameters.at("source").value, "/home/eve/a.jpg");
@@ -45,10 +46,10 @@ inputs.left = "eyes.left"
   EXPECT_EQ(eyes.parameters.at("loop").value, "true");
   EXPECT_EQ(eyes.addresses.at("left").value, 11);
   EXPECT_EQ(eyes.encodings.at("left").value, Encoding::Jpeg);
-  EXPECT_EQ(graph->modules[1].program.value, "depth");
-  ASSERT_EQ(graph->links.size(), 1U);
-  EXPECT_EQ(graph->links[0].from.text(), "eyes.left");
-  EXPECT_EQ(graph->links[0].place.line, 10);
+  EXPECT_EQ(graph.modules[1].program.value, "depth");
+  ASSERT_EQ(graph.links.size(), 1U);
+  EXPECT_EQ(graph.links[0].from.text(), "eyes.left");
+  EXPECT_EQ(graph.links[0].place.line, 10);
 }
 
 TEST(GraphFile, HasAVersion) {
@@ -57,7 +58,8 @@ TEST(GraphFile, HasAVersion) {
     parse_graph(text, environment, problems);
     return problems.empty() ? "" : problems.lines().front();
   };
-  EXPECT_EQ(wrong("version = 1\n[modules.a]\n"), "");
+  for (const char* mark : {"", "\xef\xbb\xbf"})  // of the order of bytes, which is overlooked
+    EXPECT_EQ(wrong(mark + std::string("version = 1\n[modules.a]\n")), "");
   EXPECT_EQ(wrong("\n[modules.a]\n"), "g.toml:1: a graph file begins with \"version = 1\"");
   EXPECT_EQ(wrong("\nversion = \"1\"\n"), "g.toml:2: a graph file has \"version = 1\"");
   EXPECT_EQ(wrong("version = 2\n[modles.a]\n"),
@@ -65,14 +67,13 @@ TEST(GraphFile, HasAVersion) {
 }
 
 TEST(GraphFile, InputsNameTheirWritersAndOutputsTheOutside) {
-  auto graph = parse(R"([modules.a]
+  auto graph = must(parse(R"([modules.a]
 inputs.in = ["b.out", { from = ["c.out", "${URI:-tcp:1}"], keep = "latest", rate = "${RATE:-3}" }]
 outputs.out = { to = ["file:x", "tcp:2"], route = [3, -1] }
 outputs.other = "tcp-listen:3"
-)");
-  ASSERT_TRUE(graph) << graph.error().detail;
+)"));
   std::string text;
-  for (const auto& link : graph->links) {
+  for (const auto& link : graph.links) {
     text += link.from.text() + " " + link.to.text();
     for (const auto& [key, value] : link.policy) text += " " + key + "=" + value.value;
     text += link.route ? " route\n" : "\n";
@@ -83,45 +84,34 @@ outputs.other = "tcp-listen:3"
 }
 
 TEST(GraphFile, TimeoutAndHangAtTheTopAreDefaults) {
-  auto graph = parse(R"(timeout = 9
+  auto graph = must(parse(R"(timeout = 9
 hang = 7
 [modules.a]
 inputs.in = ["b.out", { from = "c.out", timeout = 0 }, "tcp:1"]
 [modules.b]
 hang = 0
-)");
-  ASSERT_TRUE(graph) << graph.error().detail;
+)"));
   std::string text;
-  for (const auto& link : graph->links)
+  for (const auto& link : graph.links)
     text += link.policy.contains("timeout") ? link.policy.at("timeout").value + " " : "none ";
   EXPECT_EQ(text, "9 0 none ") << "a link from outside is its sender's affair";
-  EXPECT_EQ(graph->modules[0].hang.value, 7);
-  EXPECT_EQ(graph->modules[1].hang.value, 0);
+  EXPECT_EQ(graph.modules[0].hang.value, 7);
+  EXPECT_EQ(graph.modules[1].hang.value, 0);
   EXPECT_FALSE(parse("hang = -1\n[modules.a]\n"));
   EXPECT_FALSE(parse("[modules.a]\ninputs.in = { from = \"b.out\", timeout = \"some\" }\n"));
 }
 
 TEST(GraphFile, LettersOutsideAsciiAndTildesComeThrough) {
-  auto graph = parse("# größe → ~\n[modules.a]\nparameters.p = \"grün ~/x~y ~7\"\n");
-  ASSERT_TRUE(graph) << graph.error().detail;
-  EXPECT_EQ(graph->modules[0].parameters.at("p").value, "grün ~/x~y ~7");
-}
-
-TEST(GraphFile, AByteOrderMarkIsOverlooked) {
-  Problems problems("g.toml");
-  auto graph = parse_graph("\xef\xbb\xbfversion = 1\n[modules.a]\n", environment, problems);
-  EXPECT_EQ(graph.modules.size(), 1U);
-  EXPECT_TRUE(problems.empty());
+  auto graph = must(parse("# größe → ~\n[modules.a]\nparameters.p = \"grün ~/x~y ~7\"\n"));
+  EXPECT_EQ(graph.modules[0].parameters.at("p").value, "grün ~/x~y ~7");
 }
 
 TEST(GraphFile, TildesAreNoEscapes) {
-  auto refused = parse("[modules.a]\nparameters.p = \"\\u007e41\"\n");
-  ASSERT_FALSE(refused);
+  const auto refused = parse("[modules.a]\nparameters.p = \"\\u007e41\"\n");
   EXPECT_EQ(refused.error().detail, "g.toml:3: write ~ itself, not its \\u escape");
   EXPECT_FALSE(parse("[modules.a]\nparameters.p = \"\\U0000007E41\"\n"));
-  auto graph = parse("[modules.a]\nparameters.p = \"\\\\u007e41 \\u0041\"\n");
-  ASSERT_TRUE(graph) << graph.error().detail;
-  EXPECT_EQ(graph->modules[0].parameters.at("p").value, "\\u007e41 A");
+  auto graph = must(parse("[modules.a]\nparameters.p = \"\\\\u007e41 \\u0041\"\n"));
+  EXPECT_EQ(graph.modules[0].parameters.at("p").value, "\\u007e41 A");
 }
 
 TEST(GraphFile, ErrorsNameTheLineAndWhatWouldBeRight) {
@@ -129,6 +119,7 @@ TEST(GraphFile, ErrorsNameTheLineAndWhatWouldBeRight) {
       {"", "g.toml:1: a graph needs a table [modules.NAME] for each of its modules"},
       {"[modules.a]\nprogam = \"x\"",
        "g.toml:3: unknown key \"progam\" in module a, did you mean \"program\"?"},
+      {"[modules.\"a\\nb\"]\n", "g.toml:2: module name \"a\\x0ab\" is not snake_case"},
       {"[modules.A]\n", "g.toml:2: module name \"A\" is not snake_case"},
       {"[modules]\na = 1", "g.toml:3: \"a\" must be a table"},
       {"[modules.a]\nprogram = 3", "g.toml:3: \"program\" must be a string"},
@@ -158,10 +149,9 @@ TEST(GraphFile, ErrorsNameTheLineAndWhatWouldBeRight) {
       {"\n\nx = \"ü", "g.toml:4: "},
   };
   for (const auto& [text, wanted] : cases) {
-    auto graph = parse(text);
-    ASSERT_FALSE(graph) << text;
-    EXPECT_EQ(graph.error().code, Code::Invalid);
-    EXPECT_TRUE(graph.error().detail.starts_with(wanted)) << graph.error().detail;
+    const auto graph = refused(parse(text));
+    EXPECT_EQ(graph.code, Code::Invalid);
+    EXPECT_TRUE(graph.detail.starts_with(wanted)) << graph.detail;
   }
   EXPECT_FALSE(parse(std::string(kMaxGraphBytes + 1, '\n')));
 }
@@ -189,9 +179,8 @@ TEST(GraphFile, DepthIsLimitedAndTheStackHoldsOut) {
                                "x = " + repeated("{a=", 300'000),
                                "x = \"\n" + key};
   for (const std::string& text : texts) {
-    auto graph = parse("# \"\n" + text);
-    ASSERT_FALSE(graph);
-    EXPECT_TRUE(graph.error().detail.starts_with("g.toml:")) << graph.error().detail;
+    const auto graph = refused(parse("# \"\n" + text));
+    EXPECT_TRUE(graph.detail.starts_with("g.toml:")) << graph.detail;
   }
   EXPECT_EQ(parse("\n" + key).error().detail,
             "g.toml:3: at most 16 dots in a key, and as many nested brackets");
@@ -201,14 +190,7 @@ TEST(GraphFile, TheDeepestThatIsAllowedIsRead) {
   std::string key = repeated("a.", kMaxGraphDepth) + "a";
   std::string text = "[modules." + repeated("a.", kMaxGraphDepth - 1) + "a]\n" + key + " = ";
   text += repeated("{" + key + " = ", kMaxGraphDepth) + "1" + repeated("}", kMaxGraphDepth);
-  auto graph = parse(text);
-  ASSERT_FALSE(graph);
-  EXPECT_EQ(graph.error().detail, "g.toml:2: unknown key \"a\" in module a");
-}
-
-TEST(GraphFile, AnErrorIsOneLine) {
-  EXPECT_EQ(parse("[modules.\"a\\nb\"]\n").error().detail,
-            "g.toml:2: module name \"a\\x0ab\" is not snake_case");
+  EXPECT_EQ(parse(text).error().detail, "g.toml:2: unknown key \"a\" in module a");
 }
 
 TEST(GraphFile, AGraphHasAThousandModules) {
@@ -224,11 +206,10 @@ TEST(GraphFile, AGraphHasAThousandModules) {
 
 TEST(GraphFile, DotsAndBracketsInStringsAndCommentsAreFree) {
   std::string many = repeated("../[{", 1000) + repeated(".", 1000);
-  auto graph = parse("[modules.a] # " + many + "\nparameters = { b = \"" + many + "\\\"\", c = '" +
-                     many + "', d = \"\"\"" + many + "\n\"\"" + many + "\"\"\"\"\", e = '''" +
-                     many + "''''', f = \"\", g = '' }\n");
-  ASSERT_TRUE(graph) << graph.error().detail;
-  const auto& parameters = graph->modules[0].parameters;
+  auto graph = must(parse("[modules.a] # " + many + "\nparameters = { b = \"" + many +
+                          "\\\"\", c = '" + many + "', d = \"\"\"" + many + "\n\"\"" + many +
+                          "\"\"\"\"\", e = '''" + many + "''''', f = \"\", g = '' }\n"));
+  const auto& parameters = graph.modules[0].parameters;
   EXPECT_EQ(parameters.at("b").value, many + "\"");
   EXPECT_EQ(parameters.at("c").value, many);
   EXPECT_EQ(parameters.at("d").value, many + "\n\"\"" + many + "\"\"");
@@ -248,7 +229,7 @@ TEST(GraphFile, ParametersAreSetFromOutside) {
 }
 
 TEST(GraphFile, EveryLinkedOutputIsRecordedOnce) {
-  auto graph = parse(R"([modules.a]
+  auto graph = must(parse(R"([modules.a]
 [modules.b]
 [modules.w]
 [workspace]
@@ -259,38 +240,36 @@ from = "a.out"
 from = "a.out"
 [[modules.b.inputs.in]]
 from = "tcp:7000"
-)");
-  ASSERT_TRUE(graph) << graph.error().detail;
-  const auto inputs = add_recorder(*graph, {"b"}, "/bin/recorder", {{"file", "x.mcap"}});
+)"));
+  const auto inputs = add_recorder(graph, {"b"}, "/bin/recorder", {{"file", "x.mcap"}});
   EXPECT_EQ(inputs.size(), 3U);
-  ASSERT_EQ(graph->links.size(), 6U);
+  ASSERT_EQ(graph.links.size(), 6U);
   const char* outputs[] = {"a.out", "b.trace", "w.focus"};
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(graph->links[3 + i].from.text(), outputs[i]);
-    EXPECT_EQ(graph->links[3 + i].to.text(), "recorder.stream_" + std::to_string(i));
-    EXPECT_EQ(graph->links[3 + i].policy.at("keep").value, "1024");
+    EXPECT_EQ(graph.links[3 + i].from.text(), outputs[i]);
+    EXPECT_EQ(graph.links[3 + i].to.text(), "recorder.stream_" + std::to_string(i));
+    EXPECT_EQ(graph.links[3 + i].policy.at("keep").value, "1024");
   }
 }
 
 TEST(GraphFile, AFolderIsRecordedWhole) {
-  auto graph = parse(R"([modules.a]
+  auto graph = must(parse(R"([modules.a]
 [modules.recorder]
 inputs.in = "a.out"
-)");
-  ASSERT_TRUE(graph);
-  add_recorder(*graph, {"a"}, "/bin/recorder", {{"folder", "kept"}});
-  const auto& recorder = graph->modules.back();
+)"));
+  add_recorder(graph, {"a"}, "/bin/recorder", {{"folder", "kept"}});
+  const auto& recorder = graph.modules.back();
   EXPECT_EQ(recorder.name, "recorder_added");  // the other name is taken
   EXPECT_EQ(recorder.parameters.at("folder").value, "kept");
   EXPECT_EQ(recorder.parameters.at("streams").value, "stream_0=a.out stream_1=a.trace");
-  ASSERT_EQ(graph->links.size(), 3U);
-  EXPECT_EQ(graph->links[2].from.text() + " " + graph->links[2].to.text(),
+  ASSERT_EQ(graph.links.size(), 3U);
+  EXPECT_EQ(graph.links[2].from.text() + " " + graph.links[2].to.text(),
             "a.trace recorder_added.stream_1");
-  EXPECT_EQ(graph->links[2].policy.at("keep").value, "all");
+  EXPECT_EQ(graph.links[2].policy.at("keep").value, "all");
 }
 
 TEST(GraphFile, AllErrorsAreReportedAtOnceInTheOrderOfTheLines) {
-  auto graph = parse(R"(speed = 3
+  const auto refused = parse(R"(speed = 3
 [modules.Eye]
 program = 3
 parameters = { a = [], b = "${NO}" }
@@ -301,8 +280,7 @@ from = "eye"
 keep = "some"
 burst = 4
 )");
-  ASSERT_FALSE(graph);
-  EXPECT_EQ(graph.error().detail, R"(g.toml:2: unknown key "speed" at the top of the file
+  EXPECT_EQ(refused.error().detail, R"(g.toml:2: unknown key "speed" at the top of the file
 g.toml:3: module name "Eye" is not snake_case
 g.toml:4: "program" must be a string
 g.toml:5: environment variable NO is not set; ${NO:-VALUE} gives a default

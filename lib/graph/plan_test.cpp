@@ -13,7 +13,7 @@ namespace hc {
 namespace {
 
 TEST(Plan, GivesEveryLinkTwoEnds) {
-  auto planned = plan(R"([modules.source]
+  auto planned = must(plan(R"([modules.source]
 parameters.rate = 3
 addresses = { left = 11 }
 encodings = { left = "zstd" }
@@ -26,103 +26,97 @@ from = "source.left"
 from = "source.right"
 [[modules.sink.inputs.in]]
 from = "a.out"
-)");
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(text_of(planned->modules[0].command()),
+)"));
+  EXPECT_EQ(text_of(planned.modules[0].command()),
             "source --name source --encoding left=zstd --address left=11 --address right=1 "
             "--rate=3 --manage unix:@t.source.manage?wait=10 "
             "--out left=unix-listen:@t.source.left.a.in?readers=1&stay=1 "
             "--out right=unix-listen:@t.source.right.sink.in?readers=1&stay=1");
-  EXPECT_EQ(text_of(planned->modules[1].command()),
+  EXPECT_EQ(text_of(planned.modules[1].command()),
             "filter --name a --address out=2 --manage unix:@t.a.manage?wait=10 "
             "--in in=unix:@t.source.left.a.in?wait=60 "
             "--out out=unix-listen:@t.a.out.sink.in?readers=1&stay=1");
-  EXPECT_EQ(planned->modules[1].manage_uri, "unix-listen:@t.a.manage");
-  const PlannedLink& link = planned->links[2];
+  EXPECT_EQ(planned.modules[1].manage_uri, "unix-listen:@t.a.manage");
+  const PlannedLink& link = planned.links[2];
   EXPECT_EQ(link.from, "a.out");
   EXPECT_EQ(link.to, "sink.in");
-  EXPECT_EQ(link.sender_uri, planned->modules[1].ends[1].uri);
-  EXPECT_EQ(link.reader_uri, planned->modules[2].ends[1].uri);
+  EXPECT_EQ(link.sender_uri, planned.modules[1].ends[1].uri);
+  EXPECT_EQ(link.reader_uri, planned.modules[2].ends[1].uri);
 }
 
 TEST(Plan, NamesOfLinksThatAreTooLongBecomeShort) {
   const std::string a = "a" + std::string(62, 'b');
-  auto planned = plan("[modules." + a + "]\nprogram = \"source\"\n[modules." + a +
-                      "c]\nprogram = \"sink\"\ninputs.in = \"" + a + ".right\"\n");
-  ASSERT_TRUE(planned) << planned.error().detail;
-  const std::string& uri = planned->links[0].sender_uri;
+  auto planned = must(plan("[modules." + a + "]\nprogram = \"source\"\n[modules." + a +
+                           "c]\nprogram = \"sink\"\ninputs.in = \"" + a + ".right\"\n"));
+  const std::string& uri = planned.links[0].sender_uri;
   EXPECT_TRUE(uri.starts_with("unix-listen:@t.")) << uri;
   EXPECT_EQ(uri.size(), std::string("unix-listen:@t.0123456789abcdef?readers=1&stay=1").size())
       << uri;
-  EXPECT_TRUE(planned->links[0].reader_uri.starts_with("unix:@" + uri.substr(13, 18)));
+  EXPECT_TRUE(planned.links[0].reader_uri.starts_with("unix:@" + uri.substr(13, 18)));
 }
 
 TEST(Plan, LinksOfAnOutputShareItsMemory) {
   auto link = [](const std::string& to, const std::string& more = "") {
     return link_text("eye.image", to, more + "\n");
   };
-  auto planned = plan(R"([modules.eye]
+  auto planned = must(plan(R"([modules.eye]
 [modules.a]
 program = "seer"
 [modules.b]
 program = "seer"
 [modules.any]
 )" + link("a.in") + link("b.in", "keep = \"all\"") +
-                      link("a.more", "keep = 3\nrate = 10\nmemory = \"8M\"") + link("any.in"));
-  ASSERT_TRUE(planned) << planned.error().detail;
+                           link("a.more", "keep = 3\nrate = 10\nmemory = \"8M\"") +
+                           link("any.in")));
   using Words = std::vector<std::string>;
-  EXPECT_EQ(values_of(planned->modules[0], "--out"),
+  EXPECT_EQ(values_of(planned.modules[0], "--out"),
             (Words{"image=shm:t.eye.image?readers=2&stay=1",
                    "image=shm:t.eye.image.a.more?readers=1&stay=1&keep=3&memory=8M",
                    "image=unix-listen:@t.eye.image.any.in?readers=1&stay=1&keep=latest"}));
-  EXPECT_EQ(values_of(planned->modules[1], "--in"),
+  EXPECT_EQ(values_of(planned.modules[1], "--in"),
             (Words{"in=shm:t.eye.image?wait=60&keep=latest",
                    "more=shm:t.eye.image.a.more?wait=60&keep=3&rate=10"}));
-  EXPECT_EQ(values_of(planned->modules[2], "--in"), (Words{"in=shm:t.eye.image?wait=60"}));
-  EXPECT_EQ(values_of(planned->modules[3], "--in"), (Words{"in=unix:@t.eye.image.any.in?wait=60"}));
-  EXPECT_EQ(planned->links[0].sender_uri, planned->links[2].sender_uri);
-  EXPECT_EQ(planned->links[1].keep, "3");
-  EXPECT_EQ(planned->links[1].policy,
+  EXPECT_EQ(values_of(planned.modules[2], "--in"), (Words{"in=shm:t.eye.image?wait=60"}));
+  EXPECT_EQ(values_of(planned.modules[3], "--in"), (Words{"in=unix:@t.eye.image.any.in?wait=60"}));
+  EXPECT_EQ(planned.links[0].sender_uri, planned.links[2].sender_uri);
+  EXPECT_EQ(planned.links[1].keep, "3");
+  EXPECT_EQ(planned.links[1].policy,
             (std::map<std::string, std::string>{{"memory", "8M"}, {"rate", "10"}}));
 }
 
 TEST(Plan, AnInputSaysHowManyMessagesItsLinksKeep) {
   auto planned =
-      plan("[modules.source]\n[modules.keeper]\n" + link_text("source.left", "keeper.in") +
-           link_text("source.left", "keeper.some") +
-           link_text("source.right", "keeper.in", "keep = \"all\"\n") +
-           link_text("source.right", "keeper.some", "keep = 3\n"));
-  ASSERT_TRUE(planned) << planned.error().detail;
+      must(plan("[modules.source]\n[modules.keeper]\n" + link_text("source.left", "keeper.in") +
+                link_text("source.left", "keeper.some") +
+                link_text("source.right", "keeper.in", "keep = \"all\"\n") +
+                link_text("source.right", "keeper.some", "keep = 3\n")));
   std::vector<std::string> keeps;
-  for (const auto& link : planned->links) keeps.push_back(link.keep);
+  for (const auto& link : planned.links) keeps.push_back(link.keep);
   EXPECT_EQ(keeps, (std::vector<std::string>{"latest", "all", "16", "3"}));
-  EXPECT_TRUE(planned->links[2].sender_uri.ends_with("&keep=16")) << planned->links[2].sender_uri;
+  EXPECT_TRUE(planned.links[2].sender_uri.ends_with("&keep=16")) << planned.links[2].sender_uri;
 }
 
 TEST(Plan, ALinkGoesOverTcpWhereBothEndsHaveNothingBetter) {
   const std::string text = "[modules.source]\n[modules.java]\ninputs.in = \"source.left\"\n" +
                            link_text("java.out", "filter.in") + "[modules.filter]\n";
   auto hold = [](const std::string&, bool of_all) { return hc::hold_port(of_all); };
-  auto looked_at = plan(text);
-  ASSERT_TRUE(looked_at) << looked_at.error().detail;
-  EXPECT_EQ(looked_at->links[0].reader_uri, "tcp:127.0.0.1:0?wait=60&same_user=1");
-  auto planned = plan(text, {}, nullptr, hold);
-  ASSERT_TRUE(planned) << planned.error().detail;
-  const auto& ports = planned->ports;
+  auto looked_at = must(plan(text));
+  EXPECT_EQ(looked_at.links[0].reader_uri, "tcp:127.0.0.1:0?wait=60&same_user=1");
+  auto planned = must(plan(text, {}, nullptr, hold));
+  const auto& ports = planned.ports;
   ASSERT_EQ(ports.size(), 2U);
   const auto number = ports.at("t.source.left.java.in")->number;
   const std::string port = std::to_string(number);
-  EXPECT_EQ(planned->links[0].sender_uri,
+  EXPECT_EQ(planned.links[0].sender_uri,
             "tcp-listen:127.0.0.1:" + port + "?readers=1&stay=1&same_user=1");
-  EXPECT_EQ(planned->links[0].reader_uri, "tcp:127.0.0.1:" + port + "?wait=60&same_user=1");
+  EXPECT_EQ(planned.links[0].reader_uri, "tcp:127.0.0.1:" + port + "?wait=60&same_user=1");
   EXPECT_NE(ports.at("t.java.out.filter.in")->number, number);
   // Who listens there can do so, and the port stays that of the link in the next plan.
   sockaddr_in place{AF_INET, htons(number), {htonl(INADDR_LOOPBACK)}, {}};
   EXPECT_TRUE(internal::listen_on({&place, sizeof place}, port));
-  auto next = plan(text + "parameters.rate = 1\n", {}, &*planned, hold);
-  ASSERT_TRUE(next) << next.error().detail;
-  EXPECT_EQ(next->ports, planned->ports);
-  EXPECT_EQ(next->links[1].sender_uri, planned->links[1].sender_uri);
+  auto next = must(plan(text + "parameters.rate = 1\n", {}, &planned, hold));
+  EXPECT_EQ(next.ports, planned.ports);
+  EXPECT_EQ(next.links[1].sender_uri, planned.links[1].sender_uri);
 }
 
 TEST(Plan, TheEndsOfALinkHaveATransportInCommon) {
@@ -137,14 +131,12 @@ TEST(Plan, TheEndsOfALinkHaveATransportInCommon) {
 
 TEST(Plan, MemoryThatIsSharedIsEnough) {
   auto with_reader = [](const std::string& reader) {
-    return plan("[modules.eye]\n[modules." + reader + "]\n" +
-                link_text("eye.image", reader + ".in", "memory = \"1M\"\n"));
+    return wrong("[modules.eye]\n[modules." + reader + "]\n" +
+                 link_text("eye.image", reader + ".in", "memory = \"1M\"\n"));
   };
-  auto planned = with_reader("seer");
-  ASSERT_FALSE(planned);
-  EXPECT_EQ(planned.error().detail,
+  EXPECT_EQ(with_reader("seer"),
             "g.toml:6: memory is at least 1576960 bytes where it is shared, not 1048576");
-  EXPECT_TRUE(with_reader("any"));  // which is linked by a socket
+  EXPECT_EQ(with_reader("any"), "");  // which is linked by a socket
 }
 
 TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
@@ -186,9 +178,7 @@ TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
        "g.toml:7: duplicate link from source.left to filter.in"},
   };
   for (const auto& [text, wanted] : cases) {
-    auto planned = plan(text);
-    ASSERT_FALSE(planned) << text;
-    EXPECT_TRUE(planned.error().detail.starts_with(wanted)) << planned.error().detail;
+    EXPECT_TRUE(wrong(text).starts_with(wanted)) << wrong(text);
   }
 }
 
@@ -212,9 +202,8 @@ TEST(Plan, TwoLinksCannotWriteToOneSharedMemory) {
 }
 
 TEST(Plan, OutputsWithoutALinkAreKnown) {
-  auto planned = plan("[modules.source]\n[modules.any]\ninputs.in = \"source.left\"\n");
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->unlinked, std::vector<std::string>{"source.right"});
+  auto planned = must(plan("[modules.source]\n[modules.any]\ninputs.in = \"source.left\"\n"));
+  EXPECT_EQ(planned.unlinked, std::vector<std::string>{"source.right"});
 }
 
 TEST(Plan, InputsThatAreTakenTogetherAreAllLinked) {
@@ -223,12 +212,9 @@ TEST(Plan, InputsThatAreTakenTogetherAreAllLinked) {
   EXPECT_EQ(wrong("[modules.pair]\n"), "");
 }
 
-TEST(Plan, AnInputThatTakesAnythingFits) {
-  EXPECT_TRUE(plan("[modules.source]\n[modules.any]\ninputs.in = \"source.left\"\n"));
-}
-
 TEST(Plan, AllErrorsAreReportedAtOnceInTheOrderOfTheLines) {
-  auto planned = plan(R"([modules.source]
+  EXPECT_EQ(
+      wrong(R"([modules.source]
 parameters = { rat = 3, rate = 10 }
 addresses.lft = 1
 [modules.x]
@@ -237,10 +223,7 @@ inputs.inn = "x.out"
 inputs.in = "source.left"
 [[modules.snk.inputs.in]]
 from = "source.left"
-)");
-  ASSERT_FALSE(planned);
-  EXPECT_EQ(
-      planned.error().detail,
+)"),
       R"(g.toml:3: module source has no parameter "rat", did you mean "rate"?
 g.toml:3: module source: parameter rate: "10" is not from 0 to 9
 g.toml:4: module source has no port "lft", did you mean "left"?
@@ -252,7 +235,7 @@ g.toml:8: source.left sends map of 1 x f32 in coordinate system left_image (7), 
 
 TEST(Plan, ALoopHasARate) {
   auto loop = [](const std::string& more) {
-    return plan(
+    return wrong(
         "[modules.source]\n[modules.a]\nprogram = \"filter\"\n[modules.b]\n"
         "program = \"filter\"\n"
         "[[modules.a.inputs.in]]\nfrom = \"source.left\"\n"
@@ -260,18 +243,14 @@ TEST(Plan, ALoopHasARate) {
         "[[modules.a.inputs.in]]\nfrom = \"b.out\"\n" +
         more);
   };
-  auto planned = loop("");
-  ASSERT_FALSE(planned);
-  EXPECT_EQ(planned.error().detail,
+  EXPECT_EQ(loop(""),
             "g.toml:11: loop without a rate: a -> b -> a; give one of its links a rate, for "
             "example rate = 30");
-  EXPECT_TRUE(loop("rate = 30\n"));
+  EXPECT_EQ(loop("rate = 30\n"), "");
   EXPECT_EQ(wrong("[modules.filter]\ninputs.on = \"filter.out\"\n"),
             "g.toml:3: module filter has no input \"on\", did you mean \"in\"?");  // and of no loop
-  auto to_itself = plan("[modules.filter]\ninputs.in = \"filter.out\"\n");
-  ASSERT_FALSE(to_itself);
-  EXPECT_TRUE(
-      to_itself.error().detail.starts_with("g.toml:3: loop without a rate: filter -> filter;"));
+  EXPECT_TRUE(wrong("[modules.filter]\ninputs.in = \"filter.out\"\n")
+                  .starts_with("g.toml:3: loop without a rate: filter -> filter;"));
 }
 
 }  // namespace

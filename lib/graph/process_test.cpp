@@ -10,6 +10,7 @@
 
 #include <hc/link/link.h>
 #include <hc/os/wait_readable.h>
+#include <hc/testing/must.h>
 
 namespace hc::internal {
 namespace {
@@ -64,13 +65,10 @@ TEST(Process, IsHeardAndHasAStatus) {
 }
 
 TEST(Process, WhatCannotBeExecutedIsNamed) {
-  auto missing = Process::start({"/nowhere/program"}, Capture::Output);
-  ASSERT_FALSE(missing);
-  EXPECT_EQ(missing.error().code, Code::NotFound);
-  EXPECT_EQ(missing.error().detail, "exec(/nowhere/program): No such file or directory");
-  auto folder = Process::start({"/"}, Capture::Output);
-  ASSERT_FALSE(folder);
-  EXPECT_EQ(folder.error().detail, "exec(/): Permission denied");
+  const auto missing = refused(Process::start({"/nowhere/program"}, Capture::Output));
+  EXPECT_EQ(missing.code, Code::NotFound);
+  EXPECT_EQ(missing.detail, "exec(/nowhere/program): No such file or directory");
+  EXPECT_EQ(refused(Process::start({"/"}, Capture::Output)).detail, "exec(/): Permission denied");
 }
 
 TEST(Process, ASignalCountsFrom128) {

@@ -9,24 +9,13 @@
 #include <hc/compress/compress.h>
 #include <hc/module/kind.h>
 
+#include <hc/testing/must.h>
+#include <ros/cdr_test.h>
 #include <ros/encode.h>
 #include <ros/messages.h>
 
 namespace hc::ros {
 namespace {
-
-std::vector<std::byte> bytes_of(const Pieces& pieces) {
-  std::vector<std::byte> all;
-  for (const auto piece : {pieces.head, pieces.body, pieces.tail})
-    all.insert(all.end(), piece.begin(), piece.end());
-  return all;
-}
-
-template <typename T>
-std::vector<std::byte> cdr(const T& message) {
-  CdrWriter writer;
-  return bytes_of(writer.write(message));
-}
 
 const PortType kRgb = rgb_image<std::uint8_t>().type, kGrey = intensity_image<std::uint8_t>().type,
                kDepth = intensity_image<float>().type, kPoints = position<float>().type,
@@ -37,18 +26,9 @@ constexpr std::int64_t kTime = 5'000'000'007;
 
 template <typename T>
 std::vector<T> numbers(const Result<Message>& message) {
-  if (!message) {
-    ADD_FAILURE() << message.error().detail;
-    return {};
-  }
-  const auto all = message->view<T>()->numbers();
+  const auto kept = must(message);
+  const auto all = kept.view<T>()->numbers();
   return {all.begin(), all.end()};
-}
-
-std::vector<std::byte> octets(std::initializer_list<int> list) {
-  std::vector<std::byte> all;
-  for (const int each : list) all.push_back(static_cast<std::byte>(each));
-  return all;
 }
 
 TEST(Decode, images_in_each_order_of_colours_and_with_padded_rows) {
@@ -83,10 +63,9 @@ TEST(Decode, depth_is_in_metres) {
 
 TEST(Decode, a_compressed_image_stays_so) {
   const std::vector<std::uint8_t> pixels(16 * 8 * 3, 200);
-  const auto jpeg = compress(rgb_image<std::uint8_t>(16, 8, pixels), Encoding::Jpeg);
-  ASSERT_TRUE(jpeg);
+  const auto jpeg = must(compress(rgb_image<std::uint8_t>(16, 8, pixels), Encoding::Jpeg));
   const auto image =
-      decode(Type::CompressedImage, cdr(CompressedImage{kStamp, "jpeg", {jpeg->elements}}), kRgb);
+      decode(Type::CompressedImage, cdr(CompressedImage{kStamp, "jpeg", {jpeg.elements}}), kRgb);
   ASSERT_TRUE(image) << image.error().detail;
   EXPECT_EQ(image->header.width, 16);
   EXPECT_EQ(image->header.height, 8);
@@ -185,9 +164,8 @@ TEST(Decode, arrays_have_the_shape_that_they_say) {
   EXPECT_EQ(numbers<double>(decode(Type::Float64MultiArray, cdr(array), kTable)),
             (std::vector<double>{2, 3, 4, 5, 6}));
   array = {{{"height", 3, 6}, {"width", 2, 2}}, 0, {bytes}};
-  const auto matrix = decode(Type::Float64MultiArray, cdr(array), kTable);
-  ASSERT_TRUE(matrix);
-  EXPECT_EQ(matrix->header.height, 3);
+  const auto matrix = must(decode(Type::Float64MultiArray, cdr(array), kTable));
+  EXPECT_EQ(matrix.header.height, 3);
   array.dim[0].size = 4;
   EXPECT_EQ(decode(Type::Float64MultiArray, cdr(array), kTable).error().code, Code::Malformed);
   array.dim = {{"", 0xFFFFFFFF, 0}, {"", 0xFFFFFFFF, 0}, {"", 0xFFFFFFFF, 0}};

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <hc/testing/must.h>
 #include <sound/capture.h>
 #include <sound/playback.h>
 
@@ -38,13 +39,12 @@ class Device : public testing::Test {
 TEST_F(Device, what_is_played_arrives) {
   std::vector<std::int16_t> samples;
   for (int i = 0; i < 4000; ++i) samples.push_back(static_cast<std::int16_t>(i + 1));
-  auto playback = Playback::open("", {16000, 1});
-  ASSERT_TRUE(playback) << playback.error().text();
-  EXPECT_TRUE((*playback)->is_there());
-  (*playback)->put(samples);
-  EXPECT_GT((*playback)->waiting(), 0);
-  while ((*playback)->waiting() > 0) std::this_thread::yield();
-  playback->reset();  // writes what the device has
+  auto playback = hc::must(Playback::open("", {16000, 1}));
+  EXPECT_TRUE(playback->is_there());
+  playback->put(samples);
+  EXPECT_GT(playback->waiting(), 0);
+  while (playback->waiting() > 0) std::this_thread::yield();
+  playback.reset();  // writes what the device has
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   const std::string sent(reinterpret_cast<const char*>(samples.data()), 2 * samples.size());
@@ -56,30 +56,27 @@ TEST_F(Device, what_is_recorded_comes_in_pieces) {
   for (int i = 0; i < 3200; ++i) samples.push_back(static_cast<std::int16_t>(i));
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(samples.data()), 2 * std::ssize(samples));
-  auto capture = Capture::open("", {16000, 1}, 320);
-  ASSERT_TRUE(capture) << capture.error().text();
+  auto capture = hc::must(Capture::open("", {16000, 1}, 320));
   std::vector<std::int16_t> heard;
   std::int64_t last = 0;
   while (heard.size() < samples.size()) {
-    auto piece = (*capture)->take(milliseconds(30000));
-    ASSERT_TRUE(piece);
-    ASSERT_EQ(piece->samples.size(), 320);
-    EXPECT_GE(piece->time, last);
-    last = piece->time;
-    heard.insert(heard.end(), piece->samples.begin(), piece->samples.end());
+    auto piece = hc::must(capture->take(milliseconds(30000)));
+    ASSERT_EQ(piece.samples.size(), 320);
+    EXPECT_GE(piece.time, last);
+    last = piece.time;
+    heard.insert(heard.end(), piece.samples.begin(), piece.samples.end());
   }
   EXPECT_EQ(heard, samples);
-  EXPECT_EQ((*capture)->lost(), 0);
+  EXPECT_EQ(capture->lost(), 0);
 }
 
 TEST_F(Device, ends_to_wait_when_told_to_stop) {
   std::ofstream(path).close();
-  auto capture = Capture::open("", {16000, 1}, 3200);
-  ASSERT_TRUE(capture);
+  auto capture = hc::must(Capture::open("", {16000, 1}, 3200));
   int ends[2];
   ASSERT_EQ(::pipe(ends), 0);
   ASSERT_EQ(::write(ends[1], "x", 1), 1);
-  EXPECT_FALSE((*capture)->take(milliseconds(30000), ends[0]));
+  EXPECT_FALSE(capture->take(milliseconds(30000), ends[0]));
   ::close(ends[0]);
   ::close(ends[1]);
 }

@@ -31,10 +31,8 @@ class TlsRefusal : public ::testing::Test {
   /// Whoever has been refused, the right one is let in.
   void serves_others() {
     auto sink = sink_of("tls:" + place_ + options("b", "a"));
-    Message message;
     ASSERT_TRUE(sink->send(numbered(7, 10)));
-    ASSERT_TRUE(*receive(*source_, message));
-    EXPECT_EQ(message.header.seq, 7);
+    EXPECT_EQ(next(*source_).header.seq, 7);
     EXPECT_EQ(source_->traffic().messages, 1U);
   }
 
@@ -69,10 +67,9 @@ TEST_F(TlsRefusal, TheWrongKey) {
 }
 
 TEST_F(TlsRefusal, AWriterWithTheWrongKeyIsRefusedBeforeItSends) {
-  auto sink = open_sink(*parse_uri("tls:" + place_ + options("c", "a")));
-  ASSERT_FALSE(sink);
-  EXPECT_EQ(sink.error().text(), "Closed: connect(" + place_ +
-                                     "): the peer has refused our key; its peer= has to name it");
+  EXPECT_EQ(
+      refused(open_sink(*parse_uri("tls:" + place_ + options("c", "a")))).text(),
+      "Closed: connect(" + place_ + "): the peer has refused our key; its peer= has to name it");
 }
 
 TEST_F(TlsRefusal, AListenerWithTheWrongKey) {
@@ -134,11 +131,7 @@ TEST(Tls, AtAPlainPort) {
   auto source = source_of("tcp-listen:" + place, warnings.options());
   std::string why;
   std::thread client([&] { why = refusal("tls:" + place + options("a", "b")); });
-  Message message;
-  while (warnings.lines.empty()) {
-    ASSERT_TRUE(source->wait());
-    ASSERT_EQ(*source->take(message), Got::Nothing);
-  }
+  await_warning(*source, warnings);
   client.join();
   EXPECT_EQ(why, "Closed: connect(" + place +
                      "): the peer disconnected during the TLS handshake; does it listen by "
@@ -201,13 +194,9 @@ TEST_F(TlsRefusal, AConnectionThatIsCut) {
   ASSERT_TRUE(session);
   const std::string bytes = encode(numbered(3, 10));
   ASSERT_GT(SSL_write(session.get(), bytes.data(), static_cast<int>(bytes.size())), 0);
-  Message message;
-  ASSERT_TRUE(*receive(*source_, message));
+  next(*source_);
   socket.reset();
-  while (warnings_.lines.empty()) {
-    ASSERT_TRUE(source_->wait());
-    ASSERT_EQ(*source_->take(message), Got::Nothing);
-  }
+  await_warning(*source_, warnings_);
   EXPECT_EQ(warnings_.lines[0], uri_ + ": closed a connection: the peer vanished");
 }
 
@@ -220,11 +209,7 @@ TEST_F(TlsRefusal, BytesThatAreNotFromThePeer) {
   record.resize(sizeof kForged + 32, 'x');
   ASSERT_EQ(::send(socket.get(), record.data(), record.size(), 0),
             static_cast<ssize_t>(record.size()));
-  Message message;
-  while (warnings_.lines.empty()) {
-    ASSERT_TRUE(source_->wait());
-    ASSERT_EQ(*source_->take(message), Got::Nothing);
-  }
+  await_warning(*source_, warnings_);
   EXPECT_EQ(warnings_.lines[0],
             uri_ + ": closed a connection: TLS failed: decryption failed or bad record mac");
   serves_others();

@@ -10,6 +10,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include <hc/testing/must.h>
+
 namespace hc::vision {
 namespace {
 
@@ -58,11 +60,10 @@ TEST_P(BlobSize, IsFoundToAPartOfAPixel) {
     cv::Mat image = room();
     const cv::Point2d at(300 + 13.37 * i, 200 + 7.21 * i);
     draw_disc(image, at, radius, kRed);
-    auto blob = finder.find(image, 20);
-    ASSERT_TRUE(blob);
-    EXPECT_LT(std::hypot(blob->x - at.x, blob->y - at.y), 0.35) << "px";
-    EXPECT_NEAR(blob->radius, radius, 0.04 * radius + 0.9) << "px";
-    EXPECT_NEAR(blob->area, std::numbers::pi * blob->radius * blob->radius, 1e-6);
+    auto blob = must(finder.find(image, 20));
+    EXPECT_LT(std::hypot(blob.x - at.x, blob.y - at.y), 0.35) << "px";
+    EXPECT_NEAR(blob.radius, radius, 0.04 * radius + 0.9) << "px";
+    EXPECT_NEAR(blob.area, std::numbers::pi * blob.radius * blob.radius, 1e-6);
   }
 }
 
@@ -80,10 +81,9 @@ TEST(Blob, IsFoundInNoiseBesideSmallerOnes) {
     draw_disc(image, {600, 480}, 50, kGreen);
     draw_disc(image, {700, 300}, 50, kBlue);
     add_noise(image, 20, static_cast<std::uint64_t>(i));
-    auto blob = finder.find(image, 60);
-    ASSERT_TRUE(blob) << i;
-    worst = std::max(worst, std::hypot(blob->x - at.x, blob->y - at.y));
-    EXPECT_NEAR(blob->radius, 22, 1.5);
+    auto blob = must(finder.find(image, 60));
+    worst = std::max(worst, std::hypot(blob.x - at.x, blob.y - at.y));
+    EXPECT_NEAR(blob.radius, 22, 1.5);
   }
   EXPECT_LT(worst, 0.8) << "px";
 }
@@ -118,10 +118,9 @@ TEST(Blob, AreaHueAndSmallImagesCount) {
   BlobColour green;
   green.hue = 1.0 / 3;
   EXPECT_FALSE(BlobFinder{BlobColour{}}.find(image, 20));
-  auto blob = BlobFinder{green}.find(image, 20);
-  ASSERT_TRUE(blob);
-  EXPECT_NEAR(blob->x, 80, 0.3);
-  EXPECT_FALSE(BlobFinder{green}.find(image, 2 * blob->area));
+  auto blob = must(BlobFinder{green}.find(image, 20));
+  EXPECT_NEAR(blob.x, 80, 0.3);
+  EXPECT_FALSE(BlobFinder{green}.find(image, 2 * blob.area));
 }
 
 /// How many of some images of a ball that rolls have it found where it is.
@@ -175,9 +174,8 @@ TEST(Blob, IsFollowedThoughALargerBallIsSeenLater) {
     const cv::Point2d at(120 + 9.3 * i, 250);
     draw_disc(image, at, 24, kRed);
     if (i > 10) draw_disc(image, {600, 480}, 45, kRed);
-    const auto blob = finder.find(image, 60);
-    ASSERT_TRUE(blob) << i;
-    EXPECT_LT(std::hypot(blob->x - at.x, blob->y - at.y), 1) << i;
+    const auto blob = must(finder.find(image, 60));
+    EXPECT_LT(std::hypot(blob.x - at.x, blob.y - at.y), 1) << i;
   }
 }
 
@@ -195,9 +193,8 @@ TEST(Blob, ThatIsTooDarkIsNamed) {
   image *= 0.2;
   BlobFinder finder{BlobColour{}};
   EXPECT_FALSE(finder.find(image, 60));
-  const auto faint = finder.find_faint(image, 60);
-  ASSERT_TRUE(faint);
-  EXPECT_NEAR(faint->min_value, 0.16, 0.02);
+  const auto faint = must(finder.find_faint(image, 60));
+  EXPECT_NEAR(faint.min_value, 0.16, 0.02);
   EXPECT_FALSE(finder.find_faint(room(), 60));
 }
 
@@ -206,12 +203,10 @@ TEST(ColourAt, GivesWhatFindsTheThing) {
   const cv::Scalar ochre(190, 170, 60);
   draw_disc(image, {500, 200}, 30, ochre);
   add_noise(image, 10, 7);
-  auto colour = colour_at(image, {505, 195});
-  ASSERT_TRUE(colour);
-  EXPECT_NEAR(colour->hue, 0.141, 0.02);
-  auto blob = BlobFinder{*colour}.find(image, 60);
-  ASSERT_TRUE(blob);
-  EXPECT_LT(std::hypot(blob->x - 500, blob->y - 200), 0.7);
+  auto colour = must(colour_at(image, {505, 195}));
+  EXPECT_NEAR(colour.hue, 0.141, 0.02);
+  auto blob = must(BlobFinder{colour}.find(image, 60));
+  EXPECT_LT(std::hypot(blob.x - 500, blob.y - 200), 0.7);
   EXPECT_FALSE(colour_at(cv::Mat(20, 20, CV_8UC3, cv::Scalar::all(128)), {0, 19})) << "grey";
 }
 

@@ -18,6 +18,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <hc/testing/must.h>
+
 namespace hc::vision {
 namespace {
 
@@ -105,11 +107,10 @@ StereoCalibration squinting() {
 TEST(Calibration, FindsCamerasThatAreKnown) {
   const auto truth = squinting();
   auto pairs = made_up(truth, 20, 0.1);
-  auto found = calibrate(pairs.views, {9, 6, 0.04}, pairs.size);
-  ASSERT_TRUE(found) << found.error().text();
-  const auto& c = found->calibration;
+  auto found = must(calibrate(pairs.views, {9, 6, 0.04}, pairs.size));
+  const auto& c = found.calibration;
   EXPECT_NEAR(c.rms, 0.1 * std::sqrt(2), 0.02) << "px: the noise in x and y";
-  EXPECT_EQ(found->views, 20);
+  EXPECT_EQ(found.views, 20);
   EXPECT_NEAR(c.M1(0, 0), 600, 3);
   EXPECT_NEAR(c.M2(0, 0), 610, 3);
   EXPECT_LT(cv::norm(c.T - truth.T), 1e-3) << "m";
@@ -117,34 +118,32 @@ TEST(Calibration, FindsCamerasThatAreKnown) {
   cv::Vec3d off;
   cv::Rodrigues(c.R * truth.R.t(), off);
   EXPECT_LT(cv::norm(off), 2e-3) << "rad";
-  EXPECT_LT(found->epipolar, 0.2) << "px";
+  EXPECT_LT(found.epipolar, 0.2) << "px";
 }
 
 TEST(Calibration, LeavesOutAViewThatIsWrong) {
   auto pairs = made_up(squinting(), 15, 0.1);
   for (auto& corner : pairs.views[4].right) corner.y += 9;
-  auto found = calibrate(pairs.views, {9, 6, 0.04}, pairs.size);
-  ASSERT_TRUE(found) << found.error().text();
-  EXPECT_EQ(found->views, 14);
-  EXPECT_EQ(found->numbers()[5], 14);
-  EXPECT_TRUE(found->text().ends_with(" m, 14 of 15 views")) << found->text();
-  EXPECT_LT(found->calibration.rms, 0.2) << "px";
+  auto found = must(calibrate(pairs.views, {9, 6, 0.04}, pairs.size));
+  EXPECT_EQ(found.views, 14);
+  EXPECT_EQ(found.numbers()[5], 14);
+  EXPECT_TRUE(found.text().ends_with(" m, 14 of 15 views")) << found.text();
+  EXPECT_LT(found.calibration.rms, 0.2) << "px";
 }
 
 TEST(Calibration, CamerasThatAreMixedUpAreReported) {
   auto pairs = made_up(squinting(), 6, 0.1);
   for (auto& view : pairs.views) std::swap(view.left, view.right);
-  auto found = calibrate(pairs.views, {9, 6, 0.04}, pairs.size);
-  ASSERT_FALSE(found);
-  EXPECT_NE(found.error().detail.find("the left camera is at the right"), std::string::npos);
+  EXPECT_NE(refused(calibrate(pairs.views, {9, 6, 0.04}, pairs.size))
+                .detail.find("the left camera is at the right"),
+            std::string::npos);
 }
 
 TEST(Calibration, RefusesWhatDoesNotDetermineTheCameras) {
   auto pairs = made_up(squinting(), 2, 0.1);
-  auto found = calibrate(pairs.views, {9, 6, 0.04}, pairs.size);
-  ASSERT_FALSE(found);
-  EXPECT_EQ(found.error().code, Code::NotFound);
-  EXPECT_NE(found.error().detail.find("2 views"), std::string::npos);
+  const auto found = refused(calibrate(pairs.views, {9, 6, 0.04}, pairs.size));
+  EXPECT_EQ(found.code, Code::NotFound);
+  EXPECT_NE(found.detail.find("2 views"), std::string::npos);
   pairs = made_up(squinting(), 4, 0.1);
   EXPECT_EQ(calibrate(pairs.views, {6, 6, 0.04}, pairs.size).error().code, Code::Invalid);
   for (auto& view : pairs.views) {
@@ -160,13 +159,12 @@ TEST(Calibration, TheSameCornerHasTheSamePlaceInBothImages) {
     for (int column = 0; column < 10; ++column)
       if ((row + column) % 2 == 0)
         cv::rectangle(image, cv::Rect(60 + 50 * column, 60 + 50 * row, 50, 50), 0, cv::FILLED);
-  auto view = find_board(image, image, kBoard);
-  ASSERT_TRUE(view);
-  EXPECT_LT(cv::norm(view->left[3] - view->right[3]), 1e-3);
-  EXPECT_NEAR(cv::norm(view->left.front() - view->left.back()), std::hypot(400, 250), 0.1);
-  BoardView moved = *view;
+  auto view = must(find_board(image, image, kBoard));
+  EXPECT_LT(cv::norm(view.left[3] - view.right[3]), 1e-3);
+  EXPECT_NEAR(cv::norm(view.left.front() - view.left.back()), std::hypot(400, 250), 0.1);
+  BoardView moved = view;
   for (auto& corner : moved.left) corner.x += 10;
-  EXPECT_NEAR(difference(*view, moved), 5, 1e-3) << "px: the mean of both eyes";
+  EXPECT_NEAR(difference(view, moved), 5, 1e-3) << "px: the mean of both eyes";
   EXPECT_FALSE(find_board(cv::Mat::zeros(480, 640, CV_8U), image, kBoard));
   EXPECT_FALSE(find_board(cv::Mat(), cv::Mat(), kBoard));
 }
@@ -196,18 +194,17 @@ TEST(Calibration, PhotographsAreNoWorseThanWithOpenCvsSample) {
   const auto pairs = photographs(false);
   ASSERT_EQ(pairs.views.size(), 13);
   const double reference = rms_of_sample(photographs(true));
-  auto found = calibrate(pairs.views, kBoard, pairs.size);
-  ASSERT_TRUE(found) << found.error().text();
-  EXPECT_LE(found->rms_all, reference) << "px, of the same views";
-  EXPECT_LE(found->calibration.rms, found->rms_all);
+  auto found = must(calibrate(pairs.views, kBoard, pairs.size));
+  EXPECT_LE(found.rms_all, reference) << "px, of the same views";
+  EXPECT_LE(found.calibration.rms, found.rms_all);
   std::printf(
       "[          ] rms %.3f px of all, %.3f px of %zu views (left %.3f, right %.3f), rows %.3f "
       "px; "
       "OpenCV's sample %.3f px\n",
-      found->rms_all, found->calibration.rms, found->views, found->rms_left, found->rms_right,
-      found->epipolar, reference);
-  EXPECT_NEAR(found->calibration.M1(0, 0), 534, 8) << "px, as intrinsics.yml of opencv-doc";
-  EXPECT_NEAR(found->calibration.baseline(), 3.34, 0.05) << "squares";
+      found.rms_all, found.calibration.rms, found.views, found.rms_left, found.rms_right,
+      found.epipolar, reference);
+  EXPECT_NEAR(found.calibration.M1(0, 0), 534, 8) << "px, as intrinsics.yml of opencv-doc";
+  EXPECT_NEAR(found.calibration.baseline(), 3.34, 0.05) << "squares";
 }
 
 TEST(StereoCalibration, TheRightCameraTurnsAboutItsOwnMiddle) {
@@ -245,15 +242,14 @@ TEST(CalibrationFile, ComesBackAsItWas) {
   auto truth = squinting();
   truth.rms = 0.25;
   truth.head = {0, 0.01, -0.02, 0, 0, 0, 0.3};
-  auto read = calibration_of(text_of(truth));
-  ASSERT_TRUE(read) << read.error().text();
-  EXPECT_EQ(read->size, truth.size);
-  EXPECT_EQ(read->D1, truth.D1);
-  EXPECT_EQ(read->P2, truth.P2);
-  EXPECT_EQ(read->T, truth.T);
-  EXPECT_EQ(read->Q, truth.Q);
-  EXPECT_EQ(read->rms, 0.25);
-  EXPECT_EQ(read->head, truth.head);
+  auto read = must(calibration_of(text_of(truth)));
+  EXPECT_EQ(read.size, truth.size);
+  EXPECT_EQ(read.D1, truth.D1);
+  EXPECT_EQ(read.P2, truth.P2);
+  EXPECT_EQ(read.T, truth.T);
+  EXPECT_EQ(read.Q, truth.Q);
+  EXPECT_EQ(read.rms, 0.25);
+  EXPECT_EQ(read.head, truth.head);
   auto path = std::filesystem::temp_directory_path() /
               ("calibration_test_" + std::to_string(getpid()) + ".yml");
   ASSERT_TRUE(write_calibration(path, truth));
@@ -275,13 +271,11 @@ TEST(CalibrationFile, OpenCvsOwnFilesAreRead) {
              << "R2" << cv::Mat(truth.R2) << "P1" << cv::Mat(truth.P1) << "P2" << cv::Mat(truth.P2)
              << "Q" << cv::Mat(truth.Q);
   const std::string first = intrinsics.releaseAndGetString();
-  auto read = calibration_of(first + extrinsics.releaseAndGetString());
-  ASSERT_TRUE(read) << read.error().text();
-  EXPECT_EQ(read->size, cv::Size());
-  EXPECT_EQ(read->M2, truth.M2);
-  auto half = calibration_of(first);
-  ASSERT_FALSE(half);
-  EXPECT_NE(half.error().detail.find("there is no R"), std::string::npos) << half.error().detail;
+  auto read = must(calibration_of(first + extrinsics.releaseAndGetString()));
+  EXPECT_EQ(read.size, cv::Size());
+  EXPECT_EQ(read.M2, truth.M2);
+  const auto half = refused(calibration_of(first));
+  EXPECT_NE(half.detail.find("there is no R"), std::string::npos) << half.detail;
 }
 
 TEST(CalibrationFile, WhatIsHostileIsRefused) {

@@ -3,7 +3,7 @@
 // What Tesseract gets wrong in words that are no words, such as codes, set right by the shapes of
 // the letters: where they leave no doubt, in any common font, and nowhere else. Of the letters of
 // 20 codes on the simulated board 0.0 % are wrong with it and 5.8 % without, at a noise of 20 1.0 %
-// and 13.9 % (tests/pipes/reading.py).
+// and 13.9 % (tests/pipes/read_test.py).
 
 #include <string>
 #include <vector>

@@ -20,6 +20,8 @@ extern "C" {
 #include <apriltag/tag36h11.h>
 }
 
+#include <hc/testing/must.h>
+
 namespace hc::vision {
 namespace {
 
@@ -139,11 +141,10 @@ TEST_P(EachKind, IsFoundWhereItIs) {
       ASSERT_EQ(found.size(), 1) << truth.t << ", noise " << noise;
       EXPECT_EQ(found[0].kind, kind);
       EXPECT_NEAR(found[0].id, id, kind == MarkerKind::Colour ? 6 : 0);
-      auto pose = pose_of(found[0], kSide, kCamera);
-      ASSERT_TRUE(pose);
-      EXPECT_LT(pose->error, 0.5) << "px";
-      far.push_back(cv::norm(pose->t - truth.t) / cv::norm(truth.t));
-      turned.push_back(angle(pose->R, truth.R));
+      auto pose = must(pose_of(found[0], kSide, kCamera));
+      EXPECT_LT(pose.error, 0.5) << "px";
+      far.push_back(cv::norm(pose.t - truth.t) / cv::norm(truth.t));
+      turned.push_back(angle(pose.R, truth.R));
       EXPECT_LT(far.back(), 0.02) << "of the distance, at " << truth.t << ", noise " << noise;
       EXPECT_LT(turned.back(), 5) << "degrees, at " << truth.t << ", noise " << noise;
     }
@@ -166,12 +167,11 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EachKind,
 TEST(Marker, ItsFrameIsAsSeenByWhoLooksAtIt) {
   Marker marker;
   marker.corners = {{{349.5, 249.5}, {449.5, 249.5}, {449.5, 349.5}, {349.5, 349.5}}};
-  auto pose = pose_of(marker, 0.1, kCamera);
-  ASSERT_TRUE(pose);
-  EXPECT_LT(angle(pose->R, cv::Matx33d::eye()), 0.1);
-  EXPECT_LT(cv::norm(pose->t - cv::Vec3d(0, 0, 0.6)), 1e-4);
+  auto pose = must(pose_of(marker, 0.1, kCamera));
+  EXPECT_LT(angle(pose.R, cv::Matx33d::eye()), 0.1);
+  EXPECT_LT(cv::norm(pose.t - cv::Vec3d(0, 0, 0.6)), 1e-4);
   EXPECT_NEAR(marker.mean_side(), 100, 1e-9);
-  EXPECT_LT(pose->error, 1e-3);
+  EXPECT_LT(pose.error, 1e-3);
 }
 
 TEST(Marker, DistortionIsUndone) {
@@ -187,10 +187,9 @@ TEST(Marker, DistortionIsUndone) {
                     bent.distortion, seen);
   Marker marker;
   std::copy_n(seen.begin(), 4, marker.corners.begin());
-  auto pose = pose_of(marker, kSide, bent);
-  ASSERT_TRUE(pose);
-  EXPECT_LT(cv::norm(pose->t - truth.t), 1e-4);
-  EXPECT_LT(angle(pose->R, truth.R), 0.05);
+  auto pose = must(pose_of(marker, kSide, bent));
+  EXPECT_LT(cv::norm(pose.t - truth.t), 1e-4);
+  EXPECT_LT(angle(pose.R, truth.R), 0.05);
 }
 
 TEST(Marker, WhatIsNoSquareHasNoPoseOrAnError) {
@@ -278,9 +277,8 @@ TEST(Aruco, CornersAreRightWhereEdgesAreManyPixelsWide) {
 TEST(Finders, ImagesWithoutMarkersAndUnknownDictionaries) {
   cv::Mat noise(480, 640, CV_8U);
   cv::RNG(3).fill(noise, cv::RNG::UNIFORM, 0, 256);
-  auto aruco = ArucoFinder::make("6X6_250");
-  ASSERT_TRUE(aruco);
-  EXPECT_TRUE(aruco->find(noise).empty());
+  auto aruco = must(ArucoFinder::make("6X6_250"));
+  EXPECT_TRUE(aruco.find(noise).empty());
   AprilTagFinder apriltag(1);
   EXPECT_TRUE(apriltag.find(noise).empty());
   EXPECT_TRUE(apriltag.find(cv::Mat(4, 4, CV_8U, cv::Scalar(0))).empty());

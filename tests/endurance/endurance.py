@@ -101,14 +101,6 @@ class Endurance(Graphs):
             image.write_bytes(b"P6 800 600 255\n" + random.Random(1).randbytes(size))
         return self.start("exec hc run g.toml %s >>out 2>>errors" % options, stdout=-3, stderr=-3)
 
-    def observed(self, process):
-        while True:
-            try:
-                return self.observe(process)
-            except ConnectionRefusedError:
-                self.assertIsNone(process.poll(), self.said())
-                time.sleep(0.001)
-
     @contextlib.contextmanager
     def observing(self, process):
         """An observer that leaves again."""
@@ -122,8 +114,7 @@ class Endurance(Graphs):
         return all(each["status"] == "running" for each in state["modules"])
 
     def said(self):
-        path = pathlib.Path(self.path("errors"))
-        return path.read_text()[-3000:] if path.exists() else ""
+        return self.read("errors")[-3000:]
 
     def state(self, messages, condition=lambda state: True):
         try:
@@ -139,8 +130,7 @@ class Endurance(Graphs):
         return time.monotonic() - begun
 
     def lines(self, name):
-        path = pathlib.Path(self.path(name + ".log"))
-        return [line.split() for line in path.read_text().splitlines()] if path.exists() else []
+        return [line.split() for line in self.read(name + ".log").splitlines()]
 
     def noted(self, name):
         """What a checker has noted: times [s], numbers and hashes."""

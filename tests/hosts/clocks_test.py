@@ -135,8 +135,7 @@ class Clocks(HostsTest):
         outputs.update({"ways_" + name: name + ".ways" for name in ("slow", "here")})
         for name, output in outputs.items():
             text += KEPT.format(name=name, output=output, file=self.path(name))
-        self.write_graph(tables + text)
-        process = self.run_graph("", "ways_here: started")
+        process = self.running_graph(tables + text, "", "ways_here: started")
         messages = self.observe(process)
         states = [self.state(messages, self.is_whole)]
         while not (self.knows_drift if FULL else self.drifts_are_right)(states[-1]):
@@ -195,12 +194,7 @@ class Clocks(HostsTest):
 
     def kept(self, name):
         """Messages of a file, their rows of numbers, by their time."""
-        lines = iter(self.shell("hc cat --raw " + name).splitlines())
-        found = {}
-        for line in lines:
-            header = [int(word) for word in line.split()]
-            found[header[5]] = [[float(n) for n in next(lines).split()] for _ in range(header[10])]
-        return found
+        return {each.time: each.rows for each in self.recorded(name)}
 
 
 if __name__ == "__main__":

@@ -121,8 +121,11 @@ class Links(HostsTest):
         (host,) = self.network.add(cable=CABLE)
         host.worsen(5, 0, 2_000_000)
         kept = SMALL.replace('as = "jpeg", quality = 70, scale = 0.5, rate = 20', "rate = 30")
-        self.write_graph(self.tables(host) + CAMERA.format(DATA) % "h1" + kept % self.path("whole"))
-        process = self.run_graph("", "whole: started")
+        process = self.running_graph(
+            self.tables(host) + CAMERA.format(DATA) % "h1" + kept % self.path("whole"),
+            "",
+            "whole: started",
+        )
         messages = self.observe(process)
         link = ("camera.left", "small.in")
         state = self.state(
@@ -157,8 +160,7 @@ class Links(HostsTest):
         (host,) = self.network.add(cable=CABLE)
         host.worsen(20, 0.01)
         text = ROBOT.format(ROOT, self.path("poses")) + FOLLOWS
-        self.write_graph(self.tables(host) + text)
-        process = self.run_graph("", "head_neck: started")
+        process = self.running_graph(self.tables(host) + text, "", "head_neck: started")
         messages = self.observe(process)
         stopped = []
 
@@ -198,12 +200,8 @@ class Links(HostsTest):
 
     def poses(self):
         """Of the head so far: times [s] and pan [degree]."""
-        lines = self.read("poses").split("\n")[:-1]
-        found = []
-        for begin in range(0, len(lines) - 4, 5):
-            x, y = float(lines[begin + 1].split()[0]), float(lines[begin + 2].split()[0])
-            found.append((int(lines[begin].split()[5]) / 1e9, math.degrees(math.atan2(y, x))))
-        return found
+        pan = lambda rows: math.degrees(math.atan2(rows[1][0], rows[0][0]))
+        return [(each.time / 1e9, pan(each.rows)) for each in self.recorded("poses")]
 
     def turns(self):
         """Whether the head turns now."""

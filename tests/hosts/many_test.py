@@ -13,7 +13,7 @@ import pathlib
 import time
 import unittest
 
-from hosts import DATA, FULL, HostsTest, report, wait_until
+from hosts import DATA, FULL, HostsTest, report
 
 MODULES = 10
 COUNTS = (1, 10, 30) if FULL else (4,)
@@ -46,7 +46,7 @@ class Many(HostsTest):
             self.write_graph(self.graph(hosts))
             begun = time.monotonic()
             process = self.start("exec hc run --quiet g.toml >/dev/null 2>errors")
-            messages = self.awaited(process)
+            messages = self.observed(process)
             state = self.state(messages, self.runs)
             started = time.monotonic() - begun
             self.is_right(state, hosts)
@@ -65,18 +65,6 @@ class Many(HostsTest):
             )
             self.assertLess(started, TO_START)
             self.assertLess(stopped, TO_STOP)
-
-    def awaited(self, process):
-        """What the graph says of itself, as soon as it does."""
-
-        def connected():
-            self.assertIsNone(process.poll(), self.read("errors"))
-            try:
-                return self.observe(process)
-            except OSError:
-                return None
-
-        return wait_until(connected)
 
     @staticmethod
     def place_of(module):

@@ -36,11 +36,6 @@ class Bodies(Pipes):
         """Waits until a line has been said so often."""
         wait_until(lambda: self.said().count(line) >= times)
 
-    def rows(self, name):
-        """The elements of a file of messages with a row each, as numbers."""
-        lines = self.read(name).split("\n")[:-1]
-        return [list(map(float, line.split())) for line in lines[1::2]]
-
     def stop(self, process, status=0):
         os.killpg(process.pid, signal.SIGTERM)
         self.assertEqual(process.wait(timeout=WATCHDOG), status, self.said())

@@ -2,10 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The demonstration graphs of routers, gateway and workspace, with what their modules recorded."""
 
-import collections
 import json
 import os
-import pathlib
 import re
 import signal
 import socket
@@ -13,27 +11,6 @@ import unittest
 
 from graphs import Graphs
 from harness import ROOT, WATCHDOG, free_port, wait_until
-
-Message = collections.namedtuple(
-    "Message", "src dst seq ttl time info mode coord width height rows"
-)
-
-
-def read_messages(path):
-    """The messages of a recording in text, but for one that is not whole yet."""
-    if not os.path.exists(path):
-        return []
-    lines = pathlib.Path(path).read_text().split("\n")[:-1]
-    messages = []
-    while lines:
-        header = [int(word) for word in lines.pop(0).split()]
-        height = header[10]
-        if len(lines) < height:
-            break
-        rows = [[float(number) for number in line.split()] for line in lines[:height]]
-        messages.append(Message(*header[1:], rows))
-        lines = lines[height:]
-    return messages
 
 
 class Demonstrations(Graphs):
@@ -52,7 +29,7 @@ class Demonstrations(Graphs):
         self.write(name, text)
 
     def recorded(self, output):
-        return read_messages(self.path(output + ".mtp"))
+        return super().recorded(output + ".mtp")
 
     def interrupt(self, process):
         os.kill(process.pid, signal.SIGINT)
@@ -161,27 +138,6 @@ class Demonstrations(Graphs):
         # read a little behind the decision.
         at = {mode: time for time, mode in reversed(changes)}
         self.assertGreater(min(at[2] - at[1], at[3] - at[2]), 0.8e9)
-
-    def test_the_focus_is_shown_though_no_module_hears_it(self):
-        self.write(
-            "g.toml",
-            """version = 1
-[modes]
-look = 1
-[workspace]
-module = "workspace"
-[modules.workspace]
-inputs.bids = "looking.bid"
-[modules.looking]
-program = "bidder"
-mode = "look"
-""",
-        )
-        name = "unheard_%d" % os.getpid()
-        process = self.start("exec hc run g.toml --as %s 2>errors" % name)
-        top = lambda: self.shell("hc top %s 2>&1 || true" % name)
-        self.wait_for(lambda: ", focus look" in top(), "errors")
-        self.interrupt(process)
 
     def test_each_of_two_robots_in_a_graph_shows_its_own_focus(self):
         self.write(

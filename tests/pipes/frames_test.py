@@ -79,13 +79,7 @@ class Frames(Pipes):
         pathlib.Path(self.path("found")).unlink(missing_ok=True)  # which would be kept
         self.shell("exec hc run graph.toml")
         self.logged = self.err
-        lines = self.shell("hc cat --raw found").splitlines()
-        found = {}
-        for begin in range(0, len(lines), 5):
-            header = lines[begin].split()
-            rows = [list(map(float, line.split())) for line in lines[begin + 1 : begin + 5]]
-            found[int(header[5])] = rows
-        return found
+        return {each.time: each.rows for each in self.recorded("found")}
 
     def expect(self, rows, wanted):
         for row, wanted_row in zip(rows, wanted):

@@ -9,7 +9,7 @@ import socket
 import threading
 import time
 
-from harness import DATA, Pipes, WATCHDOG
+from harness import DATA, Pipes, WATCHDOG, wait_until
 
 # Its modules continue until they are stopped.
 GRAPH = (
@@ -56,6 +56,27 @@ class Graphs(Pipes):
         self.await_lines(process, last)
         return process
 
+    def hc(self, words, status=0):
+        """What a verb of hc says, and where it is to fail, why."""
+        out = self.shell("exec hc " + words, status)
+        return out if status == 0 else self.err
+
+    def running_graph(self, text=GRAPH, options="", last="brightness: started"):
+        """A graph that runs; that it ends well, if it has not before, is checked at the end."""
+        self.write_graph(text)
+        process = self.run_graph(options, last)
+        self.addCleanup(self.end_well, process)
+        return process
+
+    def end_well(self, process):
+        if process.poll() is None and not self.has_failed():
+            self.stop(process)
+
+    def run_named(self, name, text=GRAPH, last="brightness: started"):
+        """A running_graph() with a name that no other test has."""
+        name = "%s_%d" % (name, os.getpid())
+        return name, self.running_graph(text, "--as " + name, last)
+
     def await_lines(self, process, last):
         lines = []
         watchdog = threading.Timer(WATCHDOG, lambda: os.killpg(process.pid, signal.SIGKILL))
@@ -78,6 +99,18 @@ class Graphs(Pipes):
             raise
         self.addCleanup(connection.close)
         return Messages(connection)
+
+    def observed(self, process, name="g"):
+        """As observe(), as soon as the graph can be."""
+
+        def connected():
+            self.assertIsNone(process.poll(), self.read("errors"))
+            try:
+                return self.observe(process, name)
+            except OSError:
+                return None
+
+        return wait_until(connected)
 
     def state(self, messages, condition=lambda state: True):
         """The first state that is as wanted."""

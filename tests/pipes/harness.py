@@ -4,6 +4,7 @@
     graph_test.py BUILD_FOLDER [TEST …], and so the others
 """
 
+import collections
 import os
 import pathlib
 import re
@@ -22,6 +23,27 @@ PYTHON = "/usr/bin/python3"  # the one that the system's NumPy belongs to
 WATCHDOG = 100  # seconds after which a program hangs
 LONGEST = 300  # a test, unless HC_FULL=1 [s]
 KILL = os.kill
+
+Message = collections.namedtuple(
+    "Message", "src dst seq ttl time info mode coord width height rows"
+)
+
+
+def messages_of(text):
+    """Messages in text, but for one that is not whole yet: rows of numbers, or one of characters."""
+    lines, found, at = text.split("\n")[:-1], [], 0
+    while at < len(lines):
+        header = [int(word) for word in lines[at].split()]
+        is_string = header[6] // 10000 == 6
+        end = at + 1 + (1 if is_string else header[10])
+        if end > len(lines):
+            break
+        rows = lines[at + 1 : end]
+        if not is_string:
+            rows = [[float(word) for word in row.split()] for row in rows]
+        found.append(Message(*header[1:], rows))
+        at = end
+    return found
 
 
 def free_port():
@@ -132,6 +154,13 @@ class Pipes(unittest.TestCase):
         """The text of a file so far; "" before it is there."""
         path = pathlib.Path(self.path(name))
         return path.read_text(encoding="utf8") if path.exists() else ""
+
+    def recorded(self, name):
+        """The messages in text of a file so far."""
+        return messages_of(self.read(name))
+
+    def rows(self, name):
+        return [row for message in self.recorded(name) for row in message.rows]
 
     def read_bytes(self, name):
         return pathlib.Path(self.path(name)).read_bytes()

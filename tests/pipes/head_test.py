@@ -133,10 +133,6 @@ class Marker(Head):
         self.write("graph.toml", graph)
         process = self.start("exec hc run graph.toml 2>said")
 
-        def rows(name):
-            """The numbers of all lines that are whole."""
-            return [list(map(float, row.split())) for row in self.read(name).split("\n")[:-1]]
-
         def looks_at(marker, T):  # T_world_left_eye
             to = [marker[3 + i] - T[i][3] for i in range(3)]
             ahead = sum(T[i][2] * to[i] for i in range(3)) / math.hypot(*to)
@@ -144,9 +140,8 @@ class Marker(Head):
             return ahead > math.cos(math.radians(2.5))
 
         def rests_on_it():
-            markers = [row for row in rows("markers") if row[:2] == [2, 300]]
-            lines = rows("left_pose")
-            poses = [lines[i + 1 : i + 5] for i in range(0, len(lines) - 4, 5)][-20:]
+            markers = [row for row in self.rows("markers") if row[:2] == [2, 300]]
+            poses = [each.rows for each in self.recorded("left_pose")][-20:]
             return (
                 markers and len(poses) == 20 and all(looks_at(markers[0], pose) for pose in poses)
             )

@@ -44,8 +44,7 @@ class Language:
         return self.module(state, name)["pid"]
 
     def run_modules(self):
-        self.write_graph(GRAPH + MODULES % self.port)
-        process = self.run_graph(last="relay: started")
+        process = self.running_graph(GRAPH + MODULES % self.port, last="relay: started")
         return process, self.observe(process)
 
     def kill(self, observed, name):
@@ -137,7 +136,6 @@ class Language:
         self.assertEqual(self.ask(process, "set second.factor=6")[0], "ok")
         wait_until(lambda: self.receive() == 3 * before)
         wait_until(lambda: self.ports(self.state(observed)) == ports)
-        self.stop(process)
 
     @unittest.skipIf(os.geteuid() != 0, "only root can be another user")
     def test_another_user_is_not_let_in(self):

@@ -11,7 +11,6 @@ from harness import BUILD, Pipes, wait_until
 
 STEP = math.radians(185.1428 / 3600)  # of the unit [rad]
 PROGRAMS = os.path.join(BUILD, "libexec/hypercolumn/")
-SLOWLY = "--speed 0.2"  # [rad/s]: to 2.5 rad it is a long way, also while a process is held up
 
 
 class Reader:
@@ -80,9 +79,6 @@ class Program:
 
     def wait_line(self, part, begin=0):
         wait_until(lambda: any(part in line for line in self.lines[begin:]))
-
-    def count(self, part):
-        return sum(part in line for line in self.lines)
 
 
 class Necks(Pipes):
@@ -159,18 +155,6 @@ class Necks(Pipes):
             return abs(now_pan - pan) < STEP and abs(now_tilt - tilt) < STEP
 
         wait_until(is_there)
-
-    def wait_rest(self):
-        """Waits until the unit stands still; gives its pan."""
-
-        def stands():
-            begin = len(self.motion.messages)
-            self.motion.wait(20)
-            last = [pan for _, pan in self.motion.angles()[begin:]]
-            return min(last) == max(last)
-
-        wait_until(stands)
-        return self.motion.angles()[-1][1]
 
     def answers_again(self, begin, most):
         """Waits for it, and that no more was said than so many lines for each time."""

@@ -4,10 +4,8 @@
 
 import math
 import os
-import pathlib
 import re
 import signal
-import socket
 import time
 import unittest
 
@@ -166,29 +164,21 @@ class OneNeck(Graphs):
         self.wait_told(LEFT)
 
     def said(self):
-        return pathlib.Path(self.path("said")).read_text()
-
-    def messages(self, name):
-        """Time and row of the messages of a recording, but for one that is not whole yet."""
-        path = pathlib.Path(self.path(name))
-        lines = path.read_text().split("\n")[:-1] if path.exists() else []
-        pairs = zip(lines[::2], lines[1::2])
-        return [(int(header.split()[5]), row) for header, row in pairs]
+        return self.read("said")
 
     def stints(self):
         changes = [(0, 0)]
-        for at, row in self.messages("focus"):
-            if int(row) != changes[-1][1]:
-                changes.append((at, int(row)))
+        for each in self.recorded("focus"):
+            if (mode := int(each.rows[0][0])) != changes[-1][1]:
+                changes.append((each.time, mode))
         return changes
 
     def commands(self):
         """When and by whom the unit was told where to go."""
         words, rest = [], ""
-        for at, piece in self.messages("received"):
-            rest += piece
-            *whole, rest = re.split(r"(?<= )", rest)
-            words += [(at, word.strip()) for word in whole]
+        for each in self.recorded("received"):
+            *whole, rest = re.split(r"(?<= )", rest + each.rows[0])
+            words += [(each.time, word.strip()) for word in whole]
         found, pan = [], None
         for at, word in words:
             if command := re.fullmatch(r"([pt]p)(-?\d+)", word):
@@ -265,50 +255,6 @@ class OneNeck(Graphs):
         self.wait_told(RIGHT)
         counts = self.finish()
         self.assertGreaterEqual(sum(count >= ENOUGH for count in counts), 24, counts)
-
-    def wait_halted(self, halt):
-        """Does something while the stick is pushed, and waits until the unit is halted, and then
-        for some time in which it is asked where it is and told nothing else."""
-        known = len(self.messages("received"))
-        halt()
-
-        def asked_since():
-            words = "".join(row for _, row in self.messages("received")[known:]).split(" ")
-            return words[words.index("h") :] if "h" in words else []
-
-        wait_until(lambda: asked_since().count("pp") > 20)
-        self.assertEqual({word for word in asked_since()[1:-1] if word}, {"pp", "tp"})
-
-    def test_nobody_moves_the_unit_while_it_is_stopped_or_the_workspace_hangs(self):
-        self.start_tasks()
-        self.assertEqual(self.ask(self.process, "link unix-listen:stop workspace.stop"), ["ok"])
-        stop = socket.socket(socket.AF_UNIX)
-        self.addCleanup(stop.close)
-        wait_until(lambda: stop.connect_ex(self.path("stop")) == 0)
-        say = lambda source, word: stop.sendall(
-            b"1 %d 0 0 8 0 120100 0 0 1 1\n%d\n" % (source, word)
-        )
-        for push in (1.0, -1.0, 1.0):
-            self.stick = push
-            self.wait_told(POINT)
-            self.wait_halted(lambda: say(77, 1))
-            say(78, 0)  # which is not its own
-            self.wait_halted_still()
-            say(77, 0)
-            self.wait_told(POINT)
-            self.wait_halted(lambda: self.send_signal("workspace", signal.SIGSTOP))
-            self.send_signal("workspace", signal.SIGCONT)
-            self.wait_told(POINT)
-            self.stick = 0.0
-            self.wait_told(LEFT)
-        self.finish()
-
-    def wait_halted_still(self):
-        """Waits for some time in which the unit is told nothing."""
-        known = len(self.messages("received"))
-        asked = lambda: "".join(row for _, row in self.messages("received")[known:]).split(" ")
-        wait_until(lambda: asked().count("pp") > 20)
-        self.assertFalse([word for word in asked() if re.fullmatch(r"pp-?\d+", word)])
 
     def test_a_neck_that_takes_all_is_told_by_all(self):
         """What the test above looks for would be found."""

@@ -11,7 +11,7 @@ import time
 import unittest
 
 from harness import wait_until
-from necks import Necks, SLOWLY, STEP
+from necks import Necks, STEP
 
 
 class PanTilt(Necks):
@@ -70,14 +70,6 @@ class PanTilt(Necks):
         stale = re.search(r"total: .*?(\d+) stale, 20 without a time", "\n".join(self.neck.lines))
         self.assertGreaterEqual(int(stale[1]), 40)
 
-    def test_the_unit_stops_when_the_driver_is_killed_and_started_again(self):
-        self.start_both(SLOWLY)
-        self.drive(2.5, lambda pan: pan > 0.05)
-        self.neck.process.send_signal(signal.SIGKILL)
-        self.neck.process.wait()
-        self.start_ready()
-        self.assertLess(self.wait_rest(), 2.4)
-
     def test_a_name_that_stays_is_opened_when_it_is_there_and_there_again(self):
         link = self.path("neck")
         self.start_neck("--hold 0", device=link)
@@ -106,38 +98,6 @@ class PanTilt(Necks):
             plug(before)
             self.answers_again(begin, 3)
             self.go(pan)
-
-    def test_the_unit_stops_when_commands_end(self):
-        self.start_both(SLOWLY)
-        self.drive(2.5, lambda pan: pan > 0.05)
-        self.assertLess(self.wait_rest(), 2.4)
-        self.drive(-2.5, lambda pan: pan < -0.05)
-        self.assertGreater(self.wait_rest(), -2.4)
-
-    def test_unplugged_and_plugged_in_again(self):
-        self.start_both("--hold 0")
-        for _ in range(2):
-            begin = len(self.neck.lines)
-            self.fake.set("unplugged=true")
-            gone = re.compile("disconnected|removed")
-            wait_until(lambda: any(map(gone.search, self.neck.lines[begin:])))
-            self.command(1.0, 0.0)
-            self.fake.set("unplugged=false")
-            self.answers_again(begin, 4)
-            self.assertLess(max(abs(pan) for _, pan in self.motion.angles()), STEP)
-        self.go(0.2)
-
-    def test_silent(self):
-        self.start_both()
-        self.drive(0.1, lambda pan: abs(pan - 0.1) < STEP)
-        begin = len(self.neck.lines)
-        self.fake.set("silent=true")
-        self.neck.wait_line("does not answer", begin)
-        self.neck.wait_line("reopening", begin)
-        self.command(1.0, 0.0)
-        self.fake.set("silent=false")
-        self.answers_again(begin, 4)
-        self.assertLess(max(pan for _, pan in self.motion.angles()), 0.1 + STEP)
 
     def test_either_killed_leaves_nothing_and_is_found_again(self):
         self.start_both("--hold 0")

@@ -41,21 +41,22 @@ class Running(Graphs):
             )
             self.assertEqual((state["graph"], state["pid"]), (name, process.pid))
             self.assertEqual(state["status"], "running")
-        self.stop(first)
+        out, err = self.stop(first)
+        self.assertIn("g.toml ran for ", out)
+        self.assertIn("graph: stopping\n", err)
+        self.assertNotIn("reconnecting", err)
         self.assertEqual(self.ask(second, "stop", name="other"), ["ok"])
         self.assertEqual(second.wait(timeout=WATCHDOG), 0)
 
     def test_a_closed_terminal_ends_it_cleanly(self):
-        self.write_graph(GRAPH)
-        process = self.run_graph()
+        process = self.running_graph()
         process.send_signal(signal.SIGHUP)
         _, err = process.communicate(timeout=WATCHDOG)
         self.assertEqual(process.returncode, 0, err)
         self.assertIn(b"graph: stopping", err)
 
     def test_an_edited_file_changes_the_graph(self):
-        self.write_graph(GRAPH)
-        process = self.run_graph()
+        process = self.running_graph()
         self.write_graph(GRAPH.replace("brightness]", "brihtness]"))
         lines = self.await_lines(process, "graph: keeping the running version")
         self.assertIn('no program "brihtness", did you mean "brightness"?', "\n".join(lines))
@@ -73,8 +74,7 @@ class Running(Graphs):
         self.assertNotIn("camera: started", err)
 
     def test_commands_change_the_graph_as_it_was_read_last(self):
-        self.write_graph(GRAPH)
-        process = self.run_graph()
+        process = self.running_graph()
         observed = self.observe(process)
         self.write_graph("[modules.camera\n")
         self.await_lines(process, "graph: keeping the running version")
@@ -92,7 +92,6 @@ class Running(Graphs):
         # An edited file counts alone.
         self.write_graph(GRAPH + "[modules.more]\nprogram = 'brightness'\n")
         self.state(observed, lambda state: self.module(state, "more") and rate(state) == "50")
-        self.stop(process)
 
     FILTER = """#!/bin/bash
 [ "$1" = --describe ] && exec echo '{"inputs":[{"name":"in","types":[]}],
@@ -105,8 +104,9 @@ hc cat --raw "$in" | hc play --speed max --out "$out" /dev/stdin
     def test_a_module_without_control_ends_no_neighbour(self):
         self.write("filter", self.FILTER, 0o755)
         links = "[modules.filter]\nprogram = './filter'\ninputs.in = 'camera.left'\n"
-        self.write_graph(GRAPH.replace("camera.left", "filter.out") + links)
-        process = self.run_graph(last="filter: started")
+        process = self.running_graph(
+            GRAPH.replace("camera.left", "filter.out") + links, last="filter: started"
+        )
         observed = self.observe(process)
 
         def flows(state):
@@ -131,7 +131,6 @@ hc cat --raw "$in" | hc play --speed max --out "$out" /dev/stdin
         self.assertEqual(self.ask(process, "restart camera"), ["ok"])
         self.state(observed, lambda state: restarts(state) == [1, 0, 3])
         await_more()
-        self.stop(process)
 
     def ask_for_a_program_that_hangs(self, process):
         """Who asks for a module whose program does not answer, and the number of that."""
@@ -149,8 +148,7 @@ hc cat --raw "$in" | hc play --speed max --out "$out" /dev/stdin
         return stat.rpartition(")")[2].split()[0] in "ZX"  # nobody has asked for its status yet
 
     def test_a_program_that_hangs_holds_nothing_up(self):
-        self.write_graph(GRAPH)
-        process = self.run_graph()
+        process = self.running_graph()
         observed = self.observe(process)
         asking, hangs = self.ask_for_a_program_that_hangs(process)
         os.kill(self.module(self.state(observed), "camera")["pid"], signal.SIGKILL)
@@ -163,23 +161,16 @@ hc cat --raw "$in" | hc play --speed max --out "$out" /dev/stdin
         self.assertTrue(self.has_ended(hangs))
 
     def test_a_program_that_hangs_does_not_outlive_a_killed_graph(self):
-        self.write_graph(GRAPH)
-        process = self.run_graph()
+        process = self.running_graph()
         _, hangs = self.ask_for_a_program_that_hangs(process)
-        os.kill(process.pid, signal.SIGKILL)
+        process.kill()
+        process.wait(WATCHDOG)
         wait_until(lambda: self.has_ended(hangs))
 
     def test_nobody_needs_to_read_what_is_reported(self):
         """A pager, or a terminal after Ctrl-S, keeps no module from being seen to."""
-        self.write(
-            "talker",
-            """#!/bin/sh
-[ "$1" = --describe ] && exec echo '{"inputs":[],"outputs":[],"parameters":[]}'
-yes "what talkers have to say" | head -n 50000 >&2
-exec sleep 1000
-""",
-            0o755,
-        )
+        script = 'yes "what talkers have to say" | head -n 50000 >&2\nexec sleep 1000\n'
+        self.write_module("talker", script)
         # Of each no more than 256 kB a second are taken, and together more than are kept.
         names = ["talker"] + ["other%d" % i for i in range(7)]
         self.write_graph("".join("[modules.%s]\nprogram = './talker'\n" % name for name in names))
@@ -214,13 +205,9 @@ exec sleep 1000
 
     def test_results_are_in_the_order_of_the_file(self):
         """Whichever module has its own first: here the second, for which the first waits."""
-        begin = """#!/bin/sh
-[ "$1" = --describe ] && exec echo '{"inputs":[],"outputs":[],"parameters":[]}'
-"""
         self.shell("mkfifo done")
-        self.write("first", begin + "cat done\n" + report("result one"), 0o755)
-        self.write("second", begin + report("result two") + "echo >done\n", 0o755)
-        modules = "".join("[modules.%s]\nprogram = './%s'\n" % (n, n) for n in ("first", "second"))
+        modules = self.write_module("first", "cat done\n" + report("result one"))
+        modules += self.write_module("second", report("result two") + "echo >done\n")
         self.write_graph("restart = 'never'\n" + modules)
         out = self.shell("hc run g.toml --quiet")
         self.assertIn("\n  first: one\n  second: two\n", out)
@@ -247,8 +234,7 @@ exec sleep 1000
 
     def test_a_signal_that_comes_again_kills_unless_it_follows_at_once(self):
         script = "trap '' TERM INT; echo deaf >&2; while :; do sleep 1; done\n"
-        self.write_graph(self.write_module("module", script))
-        process = self.run_graph(last="module: deaf")
+        process = self.running_graph(self.write_module("module", script), last="module: deaf")
         messages = self.observe(process)
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGINT):
             os.kill(process.pid, number)
@@ -272,8 +258,7 @@ exec sleep 1000
         self.assertEqual(said[:1000], ["noisy: %d" % i for i in range(1, 1001)])
 
     def test_who_floods_a_graph_with_commands_keeps_nobody_from_it(self):
-        self.write_graph(GRAPH)
-        process = self.run_graph()
+        process = self.running_graph()
         flood = socket.socket(socket.AF_UNIX)
         self.addCleanup(flood.close)
         flood.connect("\0hypercolumn.g.%d.ask" % process.pid)
@@ -283,15 +268,15 @@ exec sleep 1000
             while True:
                 flood.send(command)
         self.assertEqual(self.ask(process, "describe brightness")[0], "ok")
-        self.stop(process)
 
     def test_what_a_module_logs_steers_no_terminal(self):
         script = r"""printf 'clear \e[2J\e]0;title\a over\rwritten nul \0 bad \xff\x9b csi \xc2\x9b31m\n' >&2
 printf 'windows\r\n' >&2
 """
         script += report(r"result \x1b[31mred") + "[ -e again ] || exec sleep 1000\n"
-        self.write_graph("restart = 'never'\n" + self.write_module("painter", script))
-        process = self.run_graph(last="painter: .*red$")
+        process = self.running_graph(
+            "restart = 'never'\n" + self.write_module("painter", script), last="painter: .*red$"
+        )
         line = (
             r"clear \x1b[2J\x1b]0;title\x07 over\x0dwritten nul \x00 bad \xff\x9b csi \xc2\x9b31m"
         )
@@ -307,14 +292,14 @@ printf 'windows\r\n' >&2
     def test_a_signal_ends_it_while_it_starts_modules(self):
         names = ["m%d" % i for i in range(200)]
         self.write_module("m", "exec sleep 1000\n")
-        self.write_graph("".join("[modules.%s]\nprogram = './m'\n" % name for name in names))
-        process = self.run_graph(last="m0: started")
+        process = self.running_graph(
+            "".join("[modules.%s]\nprogram = './m'\n" % name for name in names), last="m0: started"
+        )
         _, err = self.stop(process)
         self.assertLess(err.count(": started"), 199)
 
     def test_idle_observers_keep_nobody_out(self):
-        self.write_graph(GRAPH)
-        process = self.run_graph()
+        process = self.running_graph()
         idle = [self.observe(process) for _ in range(200)]
         states = self.shell("hc ps --json").splitlines()
         self.assertIn(process.pid, [json.loads(state)["pid"] for state in states])
@@ -324,7 +309,6 @@ printf 'windows\r\n' >&2
         self.assertIn("has not answered for 5 s; it may be stopped", self.err)
         os.kill(process.pid, signal.SIGCONT)
         del idle
-        self.stop(process)
 
     def test_graphs_of_other_users_do_not_count(self):
         if os.geteuid() != 0:
@@ -335,8 +319,7 @@ printf 'windows\r\n' >&2
             self.start("exec hc --version", **other).wait(timeout=WATCHDOG)
         except PermissionError:
             self.skipTest("another user cannot run programs from here")
-        self.write_graph(GRAPH)
-        mine = self.run_graph("--as mine")
+        self.running_graph(options="--as mine")
         theirs = self.start("exec hc run g.toml --as theirs", **other)
         self.await_lines(theirs, "brightness: started")
         listed = self.shell("hc ps").splitlines()
@@ -349,7 +332,6 @@ printf 'windows\r\n' >&2
         self.assertRegex(out.decode(), r"^GRAPH .*\ntheirs .*\n$")
         os.killpg(theirs.pid, signal.SIGINT)
         theirs.communicate(timeout=WATCHDOG)
-        self.stop(mine)
 
 
 if __name__ == "__main__":

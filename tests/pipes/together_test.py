@@ -35,13 +35,6 @@ class Together(Pipes):
             self.write(port, stream(port, times))
         return "".join(" --in %s=file:%s" % (port, port) for port in ports)
 
-    def test_three_files_are_matched_by_equal_times(self):
-        options = self.feed(
-            place=[100, 200, 300, 400], score=[100, 200, 395, 400], words=[100, 200, 300, 400, 500]
-        )
-        self.assertEqual(self.sets(str(TRIO) + options), [(t, t, t) for t in (100, 200, 400)])
-        self.assertIn("trio: place: dropped 1 unmatched, 0 on queue overflow\n", self.err)
-
     def random_times(self, count):
         chance = random.Random(5)
         return {
@@ -73,11 +66,6 @@ class Together(Pipes):
         plays = " & ".join("hc play --speed max %s --out %s-%s" % (p, name, p) for p in KINDS)
         shared = " ".join("--in '%s=%s-%s?wait=60'" % (port, name, port) for port in KINDS)
         self.assertEqual(self.sets("{ %s & %s %s; }" % (plays, TRIO, shared)), sets)
-
-    def test_a_writer_that_starts_anew_is_followed(self):
-        again = [1000, 2000, 3000] + [10, 20, 30]
-        self.write("all", "".join(message(port, time) for time in again for port in KINDS))
-        self.assertEqual(self.sets("%s < all" % TRIO), [(t, t, t) for t in again])
 
     def test_the_end_of_one_input_ends_the_module(self):
         self.write("place", stream("place", [100]))

@@ -3,12 +3,11 @@
 """hc trace: the parts of a path on a graph with known delays, running and recorded."""
 
 import json
-import os
 import statistics
 import unittest
 
 from graphs import Graphs
-from harness import BUILD, WATCHDOG
+from harness import BUILD
 
 PROGRAMS = "%s/tests/programs" % BUILD
 
@@ -53,20 +52,6 @@ def graph(script="0:1 1000:end", text=GRAPH):
 
 
 class Tracing(Graphs):
-    def run_named(self, text, last):
-        self.write_graph(text)
-        self.name = "trace_%d" % os.getpid()
-        return self.run_graph("--as " + self.name, last)
-
-    def hc(self, words):
-        return self.shell("hc " + words)
-
-    def stop_named(self, process):
-        self.hc("graph stop --of " + self.name)
-        _, err = process.communicate(timeout=WATCHDOG)
-        self.assertEqual(process.returncode, 0, err)
-        self.assertNotIn(b"trace", err)  # nothing is said of it
-
     def trace_and_age(self, messages):
         """The path of last.in as hc trace has it, and the median age that hc top shows meanwhile."""
         tracing = self.start(
@@ -86,7 +71,7 @@ class Tracing(Graphs):
         return path, statistics.median(ages)
 
     def test_the_parts_add_up_to_the_age_that_top_shows(self):
-        process = self.run_named(graph(), "last: started")
+        self.name, process = self.run_named("trace", graph(), "last: started")
         messages = self.observe(process, self.name)
         self.state(messages, lambda state: self.age(state) is not None)
         # Medians add up where the parts are alike from message to message: on a machine with more
@@ -127,7 +112,7 @@ class Tracing(Graphs):
         self.shell("hc trace last.out --of " + self.name, 2)
         self.assertIn('no linked port "last.out", did you mean', self.err)
         self.shell("hc trace", 2)
-        self.stop_named(process)
+        self.assertNotIn("trace", self.stop(process)[1])
 
     @staticmethod
     def age(state):
@@ -140,7 +125,7 @@ class Tracing(Graphs):
         self.write("shell", SHELL, 0o755)
         text = graph().replace('program = "%s/delay"' % PROGRAMS, 'program = "./shell"', 1)
         text = text.replace("parameters.seconds = 0.2\n", "")
-        process = self.run_named(text, "last: started")
+        self.name, process = self.run_named("trace", text, "last: started")
         messages = self.observe(process, self.name)
         self.state(messages, lambda state: self.age(state) is not None)
         traced = json.loads(self.hc("trace last.in --json --duration 3 --of " + self.name))
@@ -150,7 +135,7 @@ class Tracing(Graphs):
             [("source", False), ("first", True), ("second", False), ("last", False)],
         )
         self.assertIn("(outside)", self.hc("trace last.in --duration 2 --of " + self.name))
-        self.stop_named(process)
+        self.assertNotIn("trace", self.stop(process)[1])
 
     def test_a_recording_is_traced(self):
         self.write_graph(graph("0:1 4:end"))

@@ -11,7 +11,6 @@ import json
 import os
 import pathlib
 import re
-import signal
 import subprocess
 import sys
 import unittest
@@ -165,8 +164,7 @@ class Ros2(Graphs):
 
     def test_what_is_no_message_is_refused(self):
         """In one line for each topic, counted, without much memory; what is one still comes."""
-        self.write_graph(MIRROR)
-        graph = self.run_graph(last="second: started")
+        graph = self.running_graph(MIRROR, last="second: started")
         hostile = self.start("exec hostile_peer", stdin=subprocess.PIPE)
         refused = {}
         while len(refused) < len(TYPES):
@@ -181,10 +179,9 @@ class Ros2(Graphs):
         for pid in children.read_text().split():
             status = pathlib.Path("/proc/%s/status" % pid).read_text()
             self.assertLess(int(re.search(r"VmHWM:\s+(\d+)", status)[1]), 300_000, status)
-        os.kill(graph.pid, signal.SIGINT)
-        _, err = graph.communicate(timeout=WATCHDOG)
+        _, err = self.stop(graph)
         for name in TYPES:
-            self.assertRegex(err.decode(), r"\d+ refused of /peer/%s\b" % name)
+            self.assertRegex(err, r"\d+ refused of /peer/%s\b" % name)
 
 
 if __name__ == "__main__":

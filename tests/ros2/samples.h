@@ -5,6 +5,9 @@
 // is how a member is named, TYPE() how a type.
 
 #include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -244,6 +247,27 @@ void visit(V& v, TYPE(std_msgs, Float64MultiArray) & m) {
   numbers(v, "data", m.M(data),
           V::kIsBack ? Numbers{1, 2, 3, 4, 5, 6.5} : Numbers{99, 1, 2, 3, 4, 5, 6.5});
 }
+
+/// Says a line, once.
+inline void say(const std::string& line) {
+  static std::set<std::string> said;
+  if (!said.insert(line).second) return;
+  std::printf("%s\n", line.c_str());
+  std::fflush(stdout);
+}
+
+template <typename T>
+void say_whether_right(const std::string& name, T& got) {
+  Check check;
+  visit(check, got);
+  say(name + (check.wrong.empty() ? " ok" : " wrong:" + check.wrong));
+}
+
+struct Topic {
+  virtual ~Topic() = default;
+  virtual void write() = 0;
+  virtual void read() = 0;
+};
 
 /// Calls a function with each type, as ROS's package and name.
 #define FOR_EACH_TYPE(call)                                                                        \

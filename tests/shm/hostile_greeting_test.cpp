@@ -11,6 +11,8 @@
 #include "checked_message.h"
 #include "hostile_peer.h"
 
+#include <hc/testing/must.h>
+
 namespace hc::testing {
 namespace {
 
@@ -104,11 +106,10 @@ TEST(HostilePublisher, HandsOverWhatIsNoSealedMemory) {
     auto name = fresh_name();
     FakePublisher publisher(name);
     auto memory = each.make(kLeastMemory);
-    auto source = publisher.open(name, offer(kLeastMemory), numbers_of(memory));
-    ASSERT_FALSE(source) << each.name;
-    EXPECT_EQ(source.error().code, Code::Malformed) << each.name;
-    EXPECT_NE(source.error().detail.find(each.error), std::string::npos)
-        << each.name << ": " << source.error().detail;
+    const auto source = refused(publisher.open(name, offer(kLeastMemory), numbers_of(memory)));
+    EXPECT_EQ(source.code, Code::Malformed) << each.name;
+    EXPECT_NE(source.detail.find(each.error), std::string::npos)
+        << each.name << ": " << source.detail;
   }
 }
 
@@ -144,28 +145,25 @@ TEST(HostilePublisher, SaysWhatIsNoOffer) {
     auto name = fresh_name();
     FakePublisher publisher(name);
     auto memory = make_memfd(kLeastMemory, kSealed);
-    auto source = publisher.open(name, each.text, {memory.get()});
-    ASSERT_FALSE(source) << each.text;
-    EXPECT_NE(source.error().detail.find(each.error), std::string::npos)
-        << each.text << ": " << source.error().detail;
-    for (char letter : source.error().detail) EXPECT_GE(letter, ' ') << source.error().detail;
+    const auto source = refused(publisher.open(name, each.text, {memory.get()}));
+    EXPECT_NE(source.detail.find(each.error), std::string::npos)
+        << each.text << ": " << source.detail;
+    for (char letter : source.detail) EXPECT_GE(letter, ' ') << source.detail;
   }
 }
 
 TEST(HostilePublisher, Refuses) {
   auto name = fresh_name();
   FakePublisher publisher(name);
-  auto source = publisher.open(name, refusal("it is Sunday"), {});
-  ASSERT_FALSE(source);
-  EXPECT_EQ(source.error().text(), "Closed: the publisher refuses: it is Sunday");
+  EXPECT_EQ(refused(publisher.open(name, refusal("it is Sunday"), {})).text(),
+            "Closed: the publisher refuses: it is Sunday");
 }
 
 TEST(HostilePublisher, GoesOrSaysNothing) {
   auto name = fresh_name();
   FakePublisher publisher(name);
-  auto left = publisher.open(name, "", {}, true);
-  ASSERT_FALSE(left);
-  EXPECT_EQ(left.error().text(), "Closed: the publisher closed during the handshake");
+  EXPECT_EQ(refused(publisher.open(name, "", {}, true)).text(),
+            "Closed: the publisher closed during the handshake");
   auto silent = publisher.open(name, "", {});  // waits for as long as an answer may take
   ASSERT_FALSE(silent);
   EXPECT_EQ(silent.error().text(), "Closed: the publisher does not answer");
@@ -347,9 +345,8 @@ TEST_F(HostileReader, CannotBeTooMany) {
   std::vector<std::unique_ptr<Source>> sources;
   while (sources.size() + 1 < internal::kMostReaders)
     sources.push_back(std::move(*open_source(*parse_uri(name_ + "?keep=latest"))));
-  auto refused = open_source(*parse_uri(name_));
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().text(), "Closed: the publisher refuses: it has 64 readers already");
+  EXPECT_EQ(refused(open_source(*parse_uri(name_))).text(),
+            "Closed: the publisher refuses: it has 64 readers already");
   EXPECT_EQ(next_line(), name_ + ": refused a reader: it has 64 readers already");
   expect_to_continue();
 }

@@ -153,17 +153,16 @@ TEST(Inclusion, IsBounded) {
 }
 
 TEST(Outside, EndsMayBeUris) {
-  auto planned = plan("[modules.filter]\n" + link_text("tcp-listen:7000", "filter.in") +
-                      link_text("filter.out", "file:out.mtp", "rate = 3\n"));
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(values_of(planned->modules[0], "--in"),
+  auto planned = must(plan("[modules.filter]\n" + link_text("tcp-listen:7000", "filter.in") +
+                           link_text("filter.out", "file:out.mtp", "rate = 3\n")));
+  EXPECT_EQ(values_of(planned.modules[0], "--in"),
             (std::vector<std::string>{"in=tcp-listen:7000"}));
-  EXPECT_EQ(values_of(planned->modules[0], "--out"),
+  EXPECT_EQ(values_of(planned.modules[0], "--out"),
             (std::vector<std::string>{"out=file:out.mtp?rate=3"}));
-  EXPECT_EQ(planned->links[0].from, "tcp-listen:7000");
-  EXPECT_EQ(planned->links[0].sender_uri, "");
-  EXPECT_EQ(planned->links[1].reader_uri, "");
-  EXPECT_EQ(planned->links[1].sender_uri, "file:out.mtp?rate=3");
+  EXPECT_EQ(planned.links[0].from, "tcp-listen:7000");
+  EXPECT_EQ(planned.links[0].sender_uri, "");
+  EXPECT_EQ(planned.links[1].reader_uri, "");
+  EXPECT_EQ(planned.links[1].sender_uri, "file:out.mtp?rate=3");
 }
 
 TEST(Outside, ErrorsNameTheLineAndWhatWouldBeRight) {

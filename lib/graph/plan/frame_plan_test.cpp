@@ -8,7 +8,7 @@ namespace hc {
 namespace {
 
 TEST(Frames, ModulesGetThemAsText) {
-  auto planned = plan(R"([modules.framed]
+  auto planned = must(plan(R"([modules.framed]
 [modules.own]
 program = "framed"
 parameters.frames = "mine"
@@ -24,15 +24,14 @@ moved_by = "neck.pose"
 parent = "head"
 rotation = [180, 0, 0]
 coord = 200
-)");
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->modules[0].parameters.at("frames"),
+)"));
+  EXPECT_EQ(planned.modules[0].parameters.at("frames"),
             "head 3 robot 0 0.5 1.25 0 0 0 1; left_eye 4 head neck.pose 11; "
             "nose 200 head 0 0 0 1 0 0 0");
-  EXPECT_EQ(planned->modules[1].parameters.at("frames"), "mine");
-  EXPECT_EQ(planned->frames, planned->modules[0].parameters.at("frames"));
-  EXPECT_TRUE(planned->modules[2].parameters.empty());
-  EXPECT_TRUE(planned->modules[0].known.at("file").options.fixed);
+  EXPECT_EQ(planned.modules[1].parameters.at("frames"), "mine");
+  EXPECT_EQ(planned.frames, planned.modules[0].parameters.at("frames"));
+  EXPECT_TRUE(planned.modules[2].parameters.empty());
+  EXPECT_TRUE(planned.modules[0].known.at("file").options.fixed);
 }
 
 constexpr const char* kFramedHead = R"([modules.framed]

@@ -35,18 +35,16 @@ Result<Plan> plan_hosts(const std::string& text, const HostPlaces& places = kPla
 }
 
 TEST(HostsOfAGraph, AreDeclaredAndHaveModules) {
-  auto planned = plan_hosts(far("a", "robot") + far("b", "lab", "a") + far("c", "", "a"));
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->modules[0].host, "robot");
-  EXPECT_EQ(planned->modules[1].host, "lab");
-  EXPECT_EQ(planned->modules[2].host, "");
+  auto planned = must(plan_hosts(far("a", "robot") + far("b", "lab", "a") + far("c", "", "a")));
+  EXPECT_EQ(planned.modules[0].host, "robot");
+  EXPECT_EQ(planned.modules[1].host, "lab");
+  EXPECT_EQ(planned.modules[2].host, "");
 }
 
 TEST(HostsOfAGraph, HaveLinksOverTlsBetweenThem) {
-  auto planned = plan_hosts(far("a", "robot") + far("b", "lab", "a") + far("c", "robot", "a") +
-                            far("d", "", "a") + far("e", "robot", "d"));
-  ASSERT_TRUE(planned) << planned.error().detail;
-  const auto& links = planned->links;
+  auto planned = must(plan_hosts(far("a", "robot") + far("b", "lab", "a") + far("c", "robot", "a") +
+                                 far("d", "", "a") + far("e", "robot", "d")));
+  const auto& links = planned.links;
   EXPECT_EQ(links[0].sender_uri,
             "tls-listen:0.0.0.0:7001?readers=1&stay=1&key=/proc/self/fd/3&peer=F2");
   EXPECT_EQ(links[0].reader_uri, "tls:10.0.0.2:7001?wait=60&key=/proc/self/fd/3&peer=F1");
@@ -59,31 +57,25 @@ TEST(HostsOfAGraph, HaveLinksOverTlsBetweenThem) {
 }
 
 TEST(HostsOfAGraph, MayHaveAddressesOfVersion6) {
-  auto planned = plan_hosts(far("a", "lab") + far("b", "", "a"));
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_TRUE(planned->links[0].sender_uri.starts_with("tls-listen:[::]:7001?"));
-  EXPECT_TRUE(planned->links[0].reader_uri.starts_with("tls:[fe80::3]:7001?"));
+  auto planned = must(plan_hosts(far("a", "lab") + far("b", "", "a")));
+  EXPECT_TRUE(planned.links[0].sender_uri.starts_with("tls-listen:[::]:7001?"));
+  EXPECT_TRUE(planned.links[0].reader_uri.starts_with("tls:[fe80::3]:7001?"));
 }
 
 TEST(HostsOfAGraph, WithoutAnAddressHaveNoLinks) {
   const HostPlaces nowhere = {{"", {"", "", "F0"}}, {"robot", {"", "", "F1"}}};
-  auto planned = plan_hosts(far("a", "robot") + far("b", "", "a"), nowhere);
-  ASSERT_FALSE(planned);
-  EXPECT_EQ(planned.error().detail,
+  EXPECT_EQ(plan_hosts(far("a", "robot") + far("b", "", "a"), nowhere).error().detail,
             "g.toml:13: host robot has no address that links can use: say address = \"…\" in its "
             "table");
-  planned = plan_hosts(far("a", "") + far("b", "robot", "a"), nowhere);
-  ASSERT_FALSE(planned);
-  EXPECT_EQ(planned.error().detail,
+  EXPECT_EQ(plan_hosts(far("a", "") + far("b", "robot", "a"), nowhere).error().detail,
             "g.toml:13: host robot has no address of this one that links can use: connect to it by "
             "another, not a link-local one");
 }
 
 TEST(HostsOfAGraph, HavePlainLinksWhereTheFileSaysSo) {
-  auto planned = plan_hosts(far("a", "robot") + far("b", "", "a", ", via = \"tcp\""));
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->links[0].sender_uri, "tcp-listen:0.0.0.0:7001?readers=1&stay=1");
-  EXPECT_EQ(planned->links[0].reader_uri, "tcp:10.0.0.2:7001?wait=60");
+  auto planned = must(plan_hosts(far("a", "robot") + far("b", "", "a", ", via = \"tcp\"")));
+  EXPECT_EQ(planned.links[0].sender_uri, "tcp-listen:0.0.0.0:7001?readers=1&stay=1");
+  EXPECT_EQ(planned.links[0].reader_uri, "tcp:10.0.0.2:7001?wait=60");
 }
 
 TEST(HostsOfAGraph, ShareATopicOfDdsWhereTheFileSaysSo) {
@@ -91,12 +83,12 @@ TEST(HostsOfAGraph, ShareATopicOfDdsWhereTheFileSaysSo) {
                              {"robot", {"10.0.0.2", "10.0.0.1", "F1"}},
                              {"lab", {"10.0.0.3", "10.1.0.1", "F2"}}};
   const std::string dds = ", via = \"dds\"", dropped = dds + ", keep = \"latest\"";
-  auto planned = plan_hosts(far("a", "robot") + far("b", "lab", "a", dropped) +
-                                far("c", "", "a", dds + ", keep = 3, rate = 5, memory = 1000") +
-                                far("d", "robot", "a") + far("e", "lab", "a"),
-                            places);
-  ASSERT_TRUE(planned) << planned.error().detail;
-  const auto& links = planned->links;
+  auto planned =
+      must(plan_hosts(far("a", "robot") + far("b", "lab", "a", dropped) +
+                          far("c", "", "a", dds + ", keep = 3, rate = 5, memory = 1000") +
+                          far("d", "robot", "a") + far("e", "lab", "a"),
+                      places));
+  const auto& links = planned.links;
   EXPECT_EQ(links[0].sender_uri, "dds:t/a/out?readers=2&stay=1&interface=10.0.0.2&keep=3");
   EXPECT_EQ(links[0].reader_uri, "dds:t/a/out?wait=60&interface=10.0.0.3&keep=latest");
   EXPECT_EQ(links[1].sender_uri, links[0].sender_uri);
@@ -104,21 +96,19 @@ TEST(HostsOfAGraph, ShareATopicOfDdsWhereTheFileSaysSo) {
             "dds:t/a/out?wait=60&interface=10.0.0.1&keep=3&memory=1000&rate=5");
   EXPECT_TRUE(links[2].reader_uri.starts_with("shm:")) << links[2].reader_uri;
   EXPECT_TRUE(links[3].reader_uri.starts_with("tls:")) << links[3].reader_uri;
-  EXPECT_EQ(values_of(planned->modules[0], "--out").size(), 3U);
+  EXPECT_EQ(values_of(planned.modules[0], "--out").size(), 3U);
   // One reader that is to get all has its writer wait; and the host of hc run may have several
   // addresses.
-  planned = plan_hosts(far("a", "") + far("b", "lab", "a", dropped) + far("c", "robot", "a", dds),
-                       places);
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->links[0].sender_uri,
+  planned = must(plan_hosts(
+      far("a", "") + far("b", "lab", "a", dropped) + far("c", "robot", "a", dds), places));
+  EXPECT_EQ(planned.links[0].sender_uri,
             "dds:t/a/out?readers=2&stay=1&interface=10.0.0.1,10.1.0.1");
 }
 
 TEST(HostsOfAGraph, HaveAddressesOfVersion4ForDds) {
-  auto planned = plan_hosts(far("a", "lab") + far("b", "robot", "a", ", via = \"dds\""));
-  ASSERT_FALSE(planned);
+  const auto refused = plan_hosts(far("a", "lab") + far("b", "robot", "a", ", via = \"dds\""));
   EXPECT_EQ(
-      planned.error().detail,
+      refused.error().detail,
       "g.toml:14: dds needs the IPv4 address of host lab, not fe80::3: say address = \"…\" in "
       "its table");
   EXPECT_EQ(wrong(kHosts + "[modules.java]\nhost = \"robot\"\n" +
@@ -183,17 +173,15 @@ std::string seen(const std::string& policy, const std::string& port = "any",
 
 TEST(HostsOfAGraph, HaveImagesConvertedByTheirSender) {
   const std::string policy = R"(as = "jpeg", quality = 80, scale = 0.5)";
-  auto planned = plan_hosts(seen(policy));
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->links[0].sender_uri,
+  auto planned = must(plan_hosts(seen(policy)));
+  EXPECT_EQ(planned.links[0].sender_uri,
             "tls-listen:0.0.0.0:7001?readers=1&stay=1&key=/proc/self/fd/3&peer=F0&keep=latest&as="
             "jpeg&quality=80&scale=0.5");
-  EXPECT_EQ(planned->links[0].reader_uri, "tls:10.0.0.2:7001?wait=60&key=/proc/self/fd/3&peer=F1");
+  EXPECT_EQ(planned.links[0].reader_uri, "tls:10.0.0.2:7001?wait=60&key=/proc/self/fd/3&peer=F1");
   // Also on one host, by memory that others do not share.
-  planned = plan_hosts(seen(policy, "any", "robot"));
-  ASSERT_TRUE(planned) << planned.error().detail;
+  planned = must(plan_hosts(seen(policy, "any", "robot")));
   EXPECT_EQ(
-      planned->links[0].sender_uri,
+      planned.links[0].sender_uri,
       "shm:t.camera.image.fixed.any?readers=1&stay=1&keep=latest&as=jpeg&quality=80&scale=0.5");
 }
 

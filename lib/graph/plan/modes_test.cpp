@@ -30,47 +30,43 @@ module = "workspace"
 const std::string kBid = link_text("track.bid", "workspace.bids");
 
 TEST(Modes, ModulesGetTheirModes) {
-  auto planned = plan(kModes + kBid);
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->modes, (std::map<std::string, std::int64_t>{{"read", 3}, {"track", 1}}));
-  EXPECT_EQ(planned->workspaces, std::set<std::string>{"workspace"});
-  EXPECT_EQ(values_of(planned->modules[0], "--mode"), (Words{"1"}));
-  EXPECT_EQ(values_of(planned->modules[1], "--modes"), (Words{"3"}));
-  EXPECT_EQ(values_of(planned->modules[2], "--exclusive"), (Words{"command"}));
-  EXPECT_EQ(planned->modules[3].parameters.at("mode_names"), "read=3,track=1");
-  EXPECT_EQ(planned->modules[3].parameters.at("source_names"), "read.bid=4,track.bid=2");
-  EXPECT_EQ(planned->modules[0].mode, "track");
-  EXPECT_EQ(planned->modules[1].modes, (Words{"read"}));
-  EXPECT_EQ(planned->modules[2].exclusive, (std::set<std::string>{"command"}));
+  auto planned = must(plan(kModes + kBid));
+  EXPECT_EQ(planned.modes, (std::map<std::string, std::int64_t>{{"read", 3}, {"track", 1}}));
+  EXPECT_EQ(planned.workspaces, std::set<std::string>{"workspace"});
+  EXPECT_EQ(values_of(planned.modules[0], "--mode"), (Words{"1"}));
+  EXPECT_EQ(values_of(planned.modules[1], "--modes"), (Words{"3"}));
+  EXPECT_EQ(values_of(planned.modules[2], "--exclusive"), (Words{"command"}));
+  EXPECT_EQ(planned.modules[3].parameters.at("mode_names"), "read=3,track=1");
+  EXPECT_EQ(planned.modules[3].parameters.at("source_names"), "read.bid=4,track.bid=2");
+  EXPECT_EQ(planned.modules[0].mode, "track");
+  EXPECT_EQ(planned.modules[1].modes, (Words{"read"}));
+  EXPECT_EQ(planned.modules[2].exclusive, (std::set<std::string>{"command"}));
 }
 
 TEST(Modes, ModulesThatShowThemGetTheirNames) {
-  auto planned = plan(
-      "[modules.titled]\n[modules.other]\nprogram = \"titled\"\nparameters.mode_names = "
-      "\"mine=1\"\n"
-      "[modules.counted]\n" +
-      kModes + kBid);
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->modules[0].parameters.at("mode_names"), "read=3,track=1");
-  EXPECT_EQ(planned->modules[1].parameters.at("mode_names"), "mine=1");
-  EXPECT_FALSE(planned->modules[2].parameters.contains("mode_names"));
-  const auto without = plan("[modules.titled]\n");
-  ASSERT_TRUE(without) << without.error().detail;
-  EXPECT_FALSE(without->modules[0].parameters.contains("mode_names"));
+  auto planned =
+      must(plan("[modules.titled]\n[modules.other]\nprogram = \"titled\"\nparameters.mode_names = "
+                "\"mine=1\"\n"
+                "[modules.counted]\n" +
+                kModes + kBid));
+  EXPECT_EQ(planned.modules[0].parameters.at("mode_names"), "read=3,track=1");
+  EXPECT_EQ(planned.modules[1].parameters.at("mode_names"), "mine=1");
+  EXPECT_FALSE(planned.modules[2].parameters.contains("mode_names"));
+  const auto without = must(plan("[modules.titled]\n"));
+  EXPECT_FALSE(without.modules[0].parameters.contains("mode_names"));
 }
 
 TEST(Modes, TheFocusIsLinkedToWhoFollowsIt) {
-  auto planned = plan(kModes + kBid);
-  ASSERT_TRUE(planned) << planned.error().detail;
+  auto planned = must(plan(kModes + kBid));
   EXPECT_EQ(
-      values_of(planned->modules[3], "--out"),
+      values_of(planned.modules[3], "--out"),
       (Words{"focus=unix-listen:@t.workspace.focus.read.focus?readers=1&stay=1&keep=latest",
              "focus=unix-listen:@t.workspace.focus.actor.focus?readers=1&stay=1&keep=latest"}));
-  EXPECT_EQ(values_of(planned->modules[1], "--in"),
+  EXPECT_EQ(values_of(planned.modules[1], "--in"),
             (Words{"focus=unix:@t.workspace.focus.read.focus?reconnect=86400"}));
-  ASSERT_EQ(planned->links.size(), 6U);
-  EXPECT_EQ(planned->links[5].from, "workspace.focus");
-  EXPECT_EQ(planned->links[5].to, "actor.focus");
+  ASSERT_EQ(planned.links.size(), 6U);
+  EXPECT_EQ(planned.links[5].from, "workspace.focus");
+  EXPECT_EQ(planned.links[5].to, "actor.focus");
   // Bids go round by the focus, which makes no messages.
   EXPECT_EQ(wrong(kModes + kBid), "");
   EXPECT_EQ(
@@ -78,9 +74,8 @@ TEST(Modes, TheFocusIsLinkedToWhoFollowsIt) {
       "g.toml:13: mode track never gets the focus: no module with mode = \"track\" sends bids "
       "to a workspace");
   // A link of one's own stays the only one.
-  auto own = plan(kModes + kBid + link_text("workspace.focus", "actor.focus"));
-  ASSERT_TRUE(own) << own.error().detail;
-  EXPECT_EQ(own->links.size(), 6U);
+  auto own = must(plan(kModes + kBid + link_text("workspace.focus", "actor.focus")));
+  EXPECT_EQ(own.links.size(), 6U);
 }
 
 TEST(Modes, ErrorsNameTheLineAndWhatWouldBeRight) {
@@ -134,13 +129,12 @@ TEST(Modes, AnActorHasOneWriterUnlessItIsExclusiveOrRouted) {
 }
 
 TEST(Modes, ModulesAreStartedAgainAsTheFileSays) {
-  auto planned = plan(
-      "restart = \"never\"\n[modules.source]\n[modules.sink]\nrestart = \"always\"\n"
-      "[modules.any]\nrestart = \"failure\"\n");
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->modules[0].restart, Restart::Never);
-  EXPECT_EQ(planned->modules[1].restart, Restart::Always);
-  EXPECT_EQ(planned->modules[2].restart, Restart::Failure);
+  auto planned =
+      must(plan("restart = \"never\"\n[modules.source]\n[modules.sink]\nrestart = \"always\"\n"
+                "[modules.any]\nrestart = \"failure\"\n"));
+  EXPECT_EQ(planned.modules[0].restart, Restart::Never);
+  EXPECT_EQ(planned.modules[1].restart, Restart::Always);
+  EXPECT_EQ(planned.modules[2].restart, Restart::Failure);
   EXPECT_EQ(plan("[modules.source]\n")->modules[0].restart, Restart::Failure);
   EXPECT_EQ(wrong("restart = \"nevr\"\n[modules.source]\nrestart = 3\n"),
             "g.toml:2: \"restart\" must be \"never\", \"failure\" or \"always\", did you mean "

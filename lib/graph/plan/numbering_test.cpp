@@ -21,18 +21,17 @@ addresses.command = 22
                             link_text("router.out", "other.command");
 
 TEST(Numbering, InputsGroupsAndRoutesReachTheModules) {
-  auto planned = plan(kRouted);
-  ASSERT_TRUE(planned) << planned.error().detail;
+  auto planned = must(plan(kRouted));
   // Outputs come first: task has 1 and 2, router 3 and 4, actor 5, other 6.
-  EXPECT_EQ(planned->addresses,
+  EXPECT_EQ(planned.addresses,
             (std::map<std::string, std::int64_t>{{"actor.command", 7}, {"other.command", 22}}));
-  EXPECT_EQ(values_of(planned->modules[0], "--to"), (Words{"bid=-1", "command=7"}));
+  EXPECT_EQ(values_of(planned.modules[0], "--to"), (Words{"bid=-1", "command=7"}));
   EXPECT_EQ(
-      values_of(planned->modules[1], "--route"),
+      values_of(planned.modules[1], "--route"),
       (Words{"in=unix:@t.task.command.router.in?reconnect=86400 peer=task",
              "out=unix-listen:@t.router.out.actor.command?readers=1&stay=1 to=-1,7 peer=actor",
              "out=unix-listen:@t.router.out.other.command?readers=1&stay=1 to=-1,22 peer=other"}));
-  EXPECT_TRUE(values_of(planned->modules[2], "--route").empty());
+  EXPECT_TRUE(values_of(planned.modules[2], "--route").empty());
 }
 
 TEST(Numbering, AddresseesAreNumbersGroupsInputsOrAll) {
@@ -64,11 +63,10 @@ TEST(Numbering, ErrorsNameTheLineAndWhatWouldBeRight) {
 
 TEST(Numbering, TheFileMaySayTheRoute) {
   auto planned =
-      plan("[modules.router]\n" + link_text("router.out", "tcp:7000", "route = \"all\"\n") +
-           link_text("router.out", "tcp:7001", "route = [21, 0, -5]\n") +
-           link_text("router.out", "tcp:7002"));
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(values_of(planned->modules[0], "--route"),
+      must(plan("[modules.router]\n" + link_text("router.out", "tcp:7000", "route = \"all\"\n") +
+                link_text("router.out", "tcp:7001", "route = [21, 0, -5]\n") +
+                link_text("router.out", "tcp:7002")));
+  EXPECT_EQ(values_of(planned.modules[0], "--route"),
             (Words{"out=tcp:7000 to=*", "out=tcp:7001 to=21,0,-5", "out=tcp:7002 to=-1"}));
   EXPECT_EQ(
       wrong("[modules.filter]\n" + link_text("filter.out", "tcp:1", "route = [1]\n")),
@@ -77,28 +75,25 @@ TEST(Numbering, TheFileMaySayTheRoute) {
 }
 
 TEST(Numbering, NumbersStayWhenAGraphIsPlannedAnew) {
-  auto before = plan(kRouted);
-  ASSERT_TRUE(before);
+  auto before = must(plan(kRouted));
   std::string text = "[modules.first]\nprogram = \"task\"\n" + kRouted;
-  auto planned = plan(text, {}, &*before);
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->modules[1].options, before->modules[0].options);
-  EXPECT_EQ(planned->addresses.at("actor.command"), before->addresses.at("actor.command"));
-  for (const auto& [port, source] : before->sources) EXPECT_EQ(planned->sources.at(port), source);
+  auto planned = must(plan(text, {}, &before));
+  EXPECT_EQ(planned.modules[1].options, before.modules[0].options);
+  EXPECT_EQ(planned.addresses.at("actor.command"), before.addresses.at("actor.command"));
+  for (const auto& [port, source] : before.sources) EXPECT_EQ(planned.sources.at(port), source);
 }
 
 TEST(Numbering, WhatARouterSaysOfItselfIsNotRouted) {
-  auto planned = plan("[modules.router]\n[modules.any]\n" + link_text("router.counts", "any.in") +
-                      link_text("router.counts", "file:counts.mtp"));
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_TRUE(values_of(planned->modules[0], "--route").empty());
-  EXPECT_TRUE(planned->addresses.empty());
+  auto planned =
+      must(plan("[modules.router]\n[modules.any]\n" + link_text("router.counts", "any.in") +
+                link_text("router.counts", "file:counts.mtp")));
+  EXPECT_TRUE(values_of(planned.modules[0], "--route").empty());
+  EXPECT_TRUE(planned.addresses.empty());
 }
 
 TEST(Numbering, WhatARouterPassesHasALinkOfItsOwn) {
-  auto planned = plan(kRouted);
-  ASSERT_TRUE(planned);
-  EXPECT_NE(planned->links[1].sender_uri, planned->links[2].sender_uri);
+  auto planned = must(plan(kRouted));
+  EXPECT_NE(planned.links[1].sender_uri, planned.links[2].sender_uri);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <graph/plan.h>
+#include <hc/testing/must.h>
 
 namespace hc {
 

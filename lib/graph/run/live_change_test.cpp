@@ -58,9 +58,8 @@ TEST_F(LiveChange, AGraphEndsAtOnceWhileAChangeIsPlanned) {
     await(stop);
   };
   thread_ = std::thread([&] { EXPECT_EQ(ask({"add b p"}), Lines{"the graph is stopping"}); });
-  auto report = run();
-  ASSERT_TRUE(report);
-  EXPECT_TRUE(report->stopped);
+  auto report = must(run());
+  EXPECT_TRUE(report.stopped);
 }
 
 TEST_F(LiveChange, ModulesComeAndGo) {
@@ -78,13 +77,12 @@ TEST_F(LiveChange, ModulesComeAndGo) {
     plan_next(plan_);
     EXPECT_EQ(ask({"add goes program"}), Lines{"ok"}) << "while it may be stopping still";
   });
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  auto report = must(run());
   EXPECT_EQ(count("stays: started"), 1);
   EXPECT_EQ(count("comes: started"), 1);
   EXPECT_EQ(count("goes: started"), 2);
-  ASSERT_EQ(report->state.modules.size(), 2U);
-  EXPECT_EQ(report->state.modules[1].name, "goes");
+  ASSERT_EQ(report.state.modules.size(), 2U);
+  EXPECT_EQ(report.state.modules[1].name, "goes");
 }
 
 TEST_F(LiveChange, AnotherProgramIsStartedInThePlaceOfTheFirst) {
@@ -113,18 +111,16 @@ TEST_F(LiveChange, AParameterIsSetWithoutPlanning) {
     EXPECT_EQ(ask({"set a.fixed=3"}),
               (Lines{"ok", "restarting a, since fixed is fixed while it runs"}));
   });
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
-  EXPECT_EQ(report->state.modules[0].parameters,
+  auto report = must(run());
+  EXPECT_EQ(report.state.modules[0].parameters,
             (std::map<std::string, std::string>{{"fixed", "3"}, {"rate", "3"}}));
 }
 
 TEST_F(LiveChange, StopIsACommand) {
   add("a");
   thread_ = std::thread([&] { EXPECT_EQ(ask({"stop"}), Lines{"ok"}); });
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
-  EXPECT_TRUE(report->stopped);
+  auto report = must(run());
+  EXPECT_TRUE(report.stopped);
 }
 
 TEST_F(LiveChange, WhoHasEndedRestsUntilThereIsMoreToRead) {

@@ -22,10 +22,6 @@ namespace hc {
 
 using Lines = std::vector<std::string>;
 
-inline std::string peer_of(const std::string& listening) {
-  return "unix" + listening.substr(listening.find(':'));
-}
-
 /// A graph that is loaded again when it is asked to be, as the plan that a test gave it.
 class LiveChange : public Run, private GraphLoader {
  protected:

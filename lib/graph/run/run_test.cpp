@@ -7,15 +7,15 @@
 #include <csignal>
 
 #include <graph/run/running_test.h>
+#include <hc/testing/must.h>
 
 namespace hc {
 namespace {
 
 TEST_F(Run, LinesHaveTheModulesName) {
   add("a", "echo hello >&2; echo 'a: myself' >&2; echo; printf 'to the end' >&2");
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
-  EXPECT_FALSE(report->stopped);
+  auto report = must(run());
+  EXPECT_FALSE(report.stopped);
   EXPECT_EQ(lines_, (std::vector<std::string>{"a: started", "a: hello", "a: myself",
                                               "a: to the end", "a: ended"}));
 }
@@ -23,19 +23,16 @@ TEST_F(Run, LinesHaveTheModulesName) {
 TEST_F(Run, AFailureEndsTheOthers) {
   add("a", "exec sleep 1000");
   add("b", "exit 3");
-  auto report = run();
-  ASSERT_FALSE(report);
-  EXPECT_EQ(report.error().code, Code::Closed);
-  EXPECT_EQ(report.error().detail, "module b: failed with status 3");
+  const auto report = refused(run());
+  EXPECT_EQ(report.code, Code::Closed);
+  EXPECT_EQ(report.detail, "module b: failed with status 3");
   EXPECT_TRUE(said("b: failed with status 3"));
   EXPECT_TRUE(said("a: ended"));  // by our signal, which it did not catch
 }
 
 TEST_F(Run, ASignalIsNamed) {
   add("a", "kill -KILL $$");
-  auto report = run();
-  ASSERT_FALSE(report);
-  EXPECT_EQ(report.error().detail, "module a: killed by signal 9");
+  EXPECT_EQ(refused(run()).detail, "module a: killed by signal 9");
   EXPECT_TRUE(said("a: killed by signal 9"));
 }
 
@@ -43,10 +40,9 @@ TEST_F(Run, AMissingProgramIsNamed) {
   add("a", "exec sleep 1000");
   add("b", "");
   plan_.modules[1].program = "/nowhere/program";
-  auto report = run();
-  ASSERT_FALSE(report);
-  EXPECT_EQ(report.error().code, Code::NotFound);
-  EXPECT_EQ(report.error().detail, "b: exec(/nowhere/program): No such file or directory");
+  const auto report = refused(run());
+  EXPECT_EQ(report.code, Code::NotFound);
+  EXPECT_EQ(report.detail, "b: exec(/nowhere/program): No such file or directory");
 }
 
 TEST_F(Run, AFloodOfLinesDoesNotKeepItFromStopping) {
@@ -71,8 +67,7 @@ TEST_F(Run, AFloodOfLinesDoesNotKeepItFromStopping) {
 TEST_F(Run, WhoHoldsStandardErrorOpenIsNotWaitedFor) {
   // The shell continues when standard output is closed, which is when the sleep begins.
   add("a", "pid=$(setsid sh -c 'echo $$; exec sleep 1000 >&2' &); echo $pid >&2");
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  must(run());
   ASSERT_EQ(lines_.size(), 3U);
   EXPECT_EQ(lines_[2], "a: ended");
   EXPECT_EQ(::kill(std::stoi(lines_[1].substr(3)), 0), -1) << "it has been left";
@@ -81,8 +76,7 @@ TEST_F(Run, WhoHoldsStandardErrorOpenIsNotWaitedFor) {
 TEST_F(Run, LastWordsAreHeard) {
   constexpr int kLines = 8000;  // some 40 kB, which stand in the pipe when it has ended
   add("a", "seq 1 " + std::to_string(kLines) + " >&2");
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  must(run());
   EXPECT_EQ(lines_.size(), kLines + 2U);
   EXPECT_TRUE(said("a: 8000"));
 }

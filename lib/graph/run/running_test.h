@@ -11,8 +11,13 @@
 
 #include <graph/run.h>
 #include <hc/os/event.h>
+#include <hc/testing/must.h>
 
 namespace hc {
+
+inline std::string peer_of(const std::string& listening) {
+  return "unix" + listening.substr(listening.find(':'));
+}
 
 /// A graph of shells, each with the script that it runs; what is said of it is in `lines`.
 class Run : public ::testing::Test {

@@ -9,6 +9,7 @@
 #include <graph/run/running_test.h>
 #include <hc/link/link.h>
 #include <hc/mtp/rows.h>
+#include <hc/testing/must.h>
 
 namespace hc {
 namespace {
@@ -44,12 +45,11 @@ TEST_F(Supervision, OneThatIsKilledComesBackAndTheOthersGoOn) {
       ASSERT_EQ(::kill(std::stoi(std::string(line.substr(3))), SIGKILL), 0);
     }
   };
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  auto report = must(run());
   EXPECT_EQ(count("a: killed by signal 9; restarting"), 2);
   EXPECT_EQ(count("b: started"), 1);
-  EXPECT_EQ(module(*report, "a").restarts, 2);
-  EXPECT_EQ(module(*report, "b").restarts, 0);
+  EXPECT_EQ(module(report, "a").restarts, 2);
+  EXPECT_EQ(module(report, "b").restarts, 0);
 }
 
 TEST_F(Supervision, OneThatEndsBeforeItsCutOffWriterDoesIsRestarted) {
@@ -73,19 +73,17 @@ TEST_F(Supervision, OneThatEndsBeforeItsCutOffWriterDoesIsRestarted) {
 
 TEST_F(Supervision, OneThatEndsAtOnceIsPutOffAndGivenUp) {
   add("a", "exit 3");
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  auto report = must(run());
   EXPECT_EQ(count("a: started"), 13);
   EXPECT_EQ(count("a: failed with status 3; restarting"), 4);
   EXPECT_EQ(lines_.back(), "a: failed with status 3; failed permanently after 13 starts");
-  EXPECT_EQ(module(*report, "a").status, ModuleStatus::GivenUp);
-  EXPECT_EQ(module(*report, "a").exit, 3);
+  EXPECT_EQ(module(report, "a").status, ModuleStatus::GivenUp);
+  EXPECT_EQ(module(report, "a").exit, 3);
 }
 
 TEST_F(Supervision, BadArgumentsWouldBeBadAgain) {
   add("a", "exit 2");
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  must(run());
   EXPECT_EQ(lines_,
             (std::vector<std::string>{
                 "a: started", "a: failed with status 2 (bad arguments); failed permanently"}));
@@ -102,8 +100,7 @@ TEST_F(Supervision, OneThatSendsNoReportsIsSeenToBeStopped) {
     if (line == "a: unresponsive: stopped by a signal") ::kill(process, SIGCONT);
     if (line == "a: resumed") stop();
   };
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  must(run());
   EXPECT_EQ(count("a: unresponsive: stopped by a signal"), 1);
 }
 
@@ -112,8 +109,7 @@ TEST_F(Supervision, AlwaysIsAfterAGoodEndToo) {
   heard_ = [this](std::string_view) {
     if (count("a: started") == 7) stop();
   };
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  must(run());
   EXPECT_EQ(count("a: ended; restarting"), 4);
 }
 
@@ -124,18 +120,16 @@ TEST_F(Supervision, AStoppingGraphStartsNothingAgain) {
   heard_ = [this](std::string_view line) {
     if (line.find("restarting in") != std::string_view::npos) stop();
   };
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
-  EXPECT_TRUE(report->stopped);
-  EXPECT_EQ(module(*report, "a").status, ModuleStatus::Ended);
+  auto report = must(run());
+  EXPECT_TRUE(report.stopped);
+  EXPECT_EQ(module(report, "a").status, ModuleStatus::Ended);
 }
 
 TEST_F(Supervision, WhoDoesNotEndWhenAskedToIsKilled) {
   options_.limits.grace = 10ms;
   add("a", "trap '' TERM; echo ready >&2; while :; do sleep 1000; done");
   stop_at_ = "a: ready";
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  must(run());
   EXPECT_TRUE(said("a: killed by signal 9"));
 }
 
@@ -146,10 +140,6 @@ TEST_F(Supervision, AQuietOnePrintsItsLastLinesWhenItFails) {
   ASSERT_EQ(lines_.size(), 22U);
   EXPECT_EQ(lines_[1], "a: 11");
   EXPECT_EQ(lines_[20], "a: 30");
-}
-
-std::string peer_of(const std::string& listening) {
-  return "unix" + listening.substr(listening.find(':'));
 }
 
 /// Reports, as a module does, on the thread that hears of the graph.
@@ -190,8 +180,7 @@ TEST_F(Supervision, OneThatIsStoppedIsShownAsStalledAndGoesOn) {
       reporter->count(2);
     if (line == "a: resumed") stop();
   };
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  must(run());
   EXPECT_TRUE(said("a: resumed"));
 }
 
@@ -218,8 +207,7 @@ TEST_F(Supervision, OneThatWaitsForAReaderIsNotStalledUnlessItIsStopped) {
     if (is_stopped || seen.size() == 1) ::kill(process, is_stopped ? SIGCONT : SIGSTOP);
     if (seen.size() == 3) reporter->publish_state(false);
   };
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  must(run());
   EXPECT_EQ(seen, (std::vector<std::string>{"blocked: waits for its reader", "stopped by a signal",
                                             "blocked: waits for its reader"}));
 }
@@ -246,13 +234,12 @@ TEST_F(Supervision, OneThatHangsIsKilledAndRestarted) {
       if (module.name == "stopped" && module.process > 0 && !again.contains("stopped"))
         ::kill(module.process, SIGSTOP);
   };
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  auto report = must(run());
   EXPECT_TRUE(said("hung: hung for 1 s; restarting"));
   EXPECT_TRUE(said("stopped: hung for 1 s; restarting"));
-  EXPECT_EQ(module(*report, "hung").restarts, 1);
-  EXPECT_EQ(module(*report, "waits").restarts, 0);
-  EXPECT_EQ(module(*report, "patient").restarts, 0);
+  EXPECT_EQ(module(report, "hung").restarts, 1);
+  EXPECT_EQ(module(report, "waits").restarts, 0);
+  EXPECT_EQ(module(report, "patient").restarts, 0);
 }
 
 TEST_F(Supervision, OneThatHangsBeforeItsFirstReportIsKilledAndRestarted) {
@@ -272,8 +259,7 @@ TEST_F(Supervision, OneThatHangsBeforeItsFirstReportIsKilledAndRestarted) {
     if (line.ends_with(": hung for 1 s; restarting")) hung.emplace(line, 0, line.find(':'));
     if (hung.size() == 3) stop();
   };
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  must(run());
   EXPECT_EQ(hung, (std::set<std::string>{"hung", "stopped", "stopped_silent"}));
 }
 
@@ -291,10 +277,9 @@ TEST_F(Supervision, OneThatLoadsForLongerThanItsHangIsLeftAlone) {
       reporter->publish_state(false);
     }
   };
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  auto report = must(run());
   EXPECT_TRUE(said("hung: hung for 3 s; restarting"));
-  EXPECT_EQ(module(*report, "slow").restarts, 0);
+  EXPECT_EQ(module(report, "slow").restarts, 0);
 }
 
 TEST_F(Supervision, OneThatWaitsSaysForWhomSinceWhen) {
@@ -316,8 +301,7 @@ TEST_F(Supervision, OneThatWaitsSaysForWhomSinceWhen) {
     if (waits && *a.waits > *waits) stop();
     waits = a.waits;
   };
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  must(run());
   EXPECT_TRUE(waits);
 }
 
@@ -328,9 +312,8 @@ TEST_F(Supervision, CountsAreThoseOfAllProcesses) {
   heard_ = [&](std::string_view line) {
     if (line == "a: started") Reporter(plan_.modules[0].manage_uri).count(5);
   };
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
-  EXPECT_EQ(report->state.links.at(0).traffic.messages, 65U);
+  auto report = must(run());
+  EXPECT_EQ(report.state.links.at(0).traffic.messages, 65U);
 }
 
 TEST_F(Supervision, TheRateOfALinkIsOfWhatItsReaderTakes) {
@@ -354,8 +337,7 @@ TEST_F(Supervision, TheRateOfALinkIsOfWhatItsReaderTakes) {
     for (auto& [reporter, bytes] : reporters)
       reporter.report(1, std::array<std::int64_t, 4>{count, count * bytes, 0, 1});
   };
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
+  must(run());
   EXPECT_DOUBLE_EQ(link.bytes_per_second, 7 * link.per_second);
   EXPECT_EQ(link.traffic.bytes, 10 * link.traffic.messages);
 }
@@ -387,10 +369,9 @@ TEST_F(Supervision, AModuleAllOfWhoseReadersHaveEndedEnds) {
   add("reader", "exit 0");
   plan_.links = {{"writer.out", "between.in", "", "", "", {}, false},
                  {"between.out", "reader.in", "", "", "", {}, false}};
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
-  EXPECT_FALSE(report->stopped);
-  for (const auto& each : report->state.modules) EXPECT_EQ(each.status, ModuleStatus::Ended);
+  auto report = must(run());
+  EXPECT_FALSE(report.stopped);
+  for (const auto& each : report.state.modules) EXPECT_EQ(each.status, ModuleStatus::Ended);
 }
 
 TEST_F(Supervision, AModuleThatEndsTheGraphTakesAllOthersWithIt) {
@@ -399,10 +380,9 @@ TEST_F(Supervision, AModuleThatEndsTheGraphTakesAllOthersWithIt) {
   add("reader", "exec sleep 1000");
   plan_.links = {{"writer.out", "reader.in", "", "", "", {}, false},
                  {"reader.out", "writer.in", "", "", "", {}, false}};
-  auto report = run();
-  ASSERT_TRUE(report) << report.error().detail;
-  EXPECT_FALSE(report->stopped);
-  for (const auto& each : report->state.modules) EXPECT_EQ(each.status, ModuleStatus::Ended);
+  auto report = must(run());
+  EXPECT_FALSE(report.stopped);
+  for (const auto& each : report.state.modules) EXPECT_EQ(each.status, ModuleStatus::Ended);
 }
 
 TEST_F(Supervision, WhoFailsThoughNobodyNeedsItHasFailed) {
@@ -414,9 +394,7 @@ TEST_F(Supervision, WhoFailsThoughNobodyNeedsItHasFailed) {
     if (line.starts_with("reader: ") && line[8] >= '0' && line[8] <= '9') reader = line.substr(8);
     if (!reader.empty() && said("writer: ready")) ::kill(std::stoi(reader), SIGTERM);
   };
-  auto report = run();
-  ASSERT_FALSE(report);
-  EXPECT_EQ(report.error().detail, "module writer: failed with status 7");
+  EXPECT_EQ(refused(run()).detail, "module writer: failed with status 7");
 }
 
 /// What the test writes in the place of the module "writer" comes to readers, or to those in their
@@ -429,9 +407,8 @@ class StandIns : public Supervision {
       failures_ += line.find(": failed") != std::string_view::npos ? 1 : 0;
       if (failures_ < static_cast<int>(plan_.links.size()) || thread_.joinable()) return;
       thread_ = std::thread([this, sender_uri] {
-        auto sink = open_sink(*parse_uri(sender_uri));
-        EXPECT_TRUE(sink);
-        EXPECT_TRUE((*sink)->send(make_rows(std::array{std::string("for nobody")})));
+        auto sink = must(open_sink(*parse_uri(sender_uri)));
+        EXPECT_TRUE(sink->send(make_rows(std::array{std::string("for nobody")})));
         stop();
       });
     };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <hc/compress/compress.h>
+#include <hc/testing/must.h>
 
 namespace hc {
 namespace {
@@ -34,25 +35,23 @@ std::vector<T> pixels_of(const Message& image) {
 }
 
 TEST(Shrink, GivesTheMeanOfWhatAPixelCovers) {
-  const auto half = shrink(image_of<std::uint8_t>(4, 2, 1, {0, 10, 20, 30, 2, 12, 255, 33}), 2, 1);
-  ASSERT_TRUE(half);
-  EXPECT_EQ(pixels_of<std::uint8_t>(*half), (std::vector<std::uint8_t>{6, 85}));  // 24 / 4, 338 / 4
+  const auto half =
+      must(shrink(image_of<std::uint8_t>(4, 2, 1, {0, 10, 20, 30, 2, 12, 255, 33}), 2, 1));
+  EXPECT_EQ(pixels_of<std::uint8_t>(half), (std::vector<std::uint8_t>{6, 85}));  // 24 / 4, 338 / 4
 }
 
 TEST(Shrink, TakesWhatIsAtAnEdgeInProportion) {
-  const auto smaller = shrink(image_of<std::uint16_t>(3, 1, 1, {0, 300, 60000}), 2, 1);
-  ASSERT_TRUE(smaller);
-  EXPECT_EQ(pixels_of<std::uint16_t>(*smaller), (std::vector<std::uint16_t>{100, 40100}));
+  const auto smaller = must(shrink(image_of<std::uint16_t>(3, 1, 1, {0, 300, 60000}), 2, 1));
+  EXPECT_EQ(pixels_of<std::uint16_t>(smaller), (std::vector<std::uint16_t>{100, 40100}));
 }
 
 TEST(Shrink, KeepsComponentsApartAndTheRestOfTheHeader) {
   const auto image = image_of<std::uint8_t>(2, 2, 3, {0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14});
-  const auto one = shrink(image, 1, 1);
-  ASSERT_TRUE(one);
-  EXPECT_EQ(pixels_of<std::uint8_t>(*one), (std::vector<std::uint8_t>{6, 7, 8}));
+  const auto one = must(shrink(image, 1, 1));
+  EXPECT_EQ(pixels_of<std::uint8_t>(one), (std::vector<std::uint8_t>{6, 7, 8}));
   Header wanted = image.header;
   wanted.width = wanted.height = 1;
-  EXPECT_EQ(one->header, wanted);
+  EXPECT_EQ(one.header, wanted);
 }
 
 TEST(Shrink, LeavesWhiteWhiteAndTheMeanWhereItIs) {
@@ -69,9 +68,8 @@ TEST(Shrink, LeavesWhiteWhiteAndTheMeanWhereItIs) {
 
 TEST(Shrink, ExpandsWhatIsCompressed) {
   const auto image = image_of<std::uint8_t>(2, 1, 1, {10, 20});
-  const auto packed = compress(image, Encoding::Zstd);
-  ASSERT_TRUE(packed);
-  EXPECT_EQ(pixels_of<std::uint8_t>(*shrink(*packed, 1, 1)), std::vector<std::uint8_t>{15});
+  const auto packed = must(compress(image, Encoding::Zstd));
+  EXPECT_EQ(pixels_of<std::uint8_t>(*shrink(packed, 1, 1)), std::vector<std::uint8_t>{15});
 }
 
 }  // namespace

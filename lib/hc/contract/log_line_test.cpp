@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <hc/mtp/rows.h>
+#include <hc/testing/must.h>
 
 namespace hc {
 namespace {
@@ -13,21 +14,19 @@ namespace {
 TEST(LogLine, a_report_says_its_level) {
   for (const auto level :
        {Level::Info, Level::Warning, Level::Error, Level::Result, Level::Notice}) {
-    const auto line = read_log(make_log(level, "said: two words"));
-    ASSERT_TRUE(line) << name(level);
-    EXPECT_EQ(line->level, level);
-    EXPECT_EQ(line->text, "said: two words");
+    const auto line = must(read_log(make_log(level, "said: two words")));
+    EXPECT_EQ(line.level, level);
+    EXPECT_EQ(line.text, "said: two words");
   }
   for (const char* wrong : {"", "fatal: x", "Error x"})
     EXPECT_FALSE(read_log(make_rows(std::array{std::string(wrong)}))) << wrong;
 }
 
 TEST(LogLine, json_brings_back_what_was_said) {
-  const auto line = parse_log_line(to_json({"camera", Level::Error, "no \"device\"\\"}));
-  ASSERT_TRUE(line);
-  EXPECT_EQ(line->module, "camera");
-  EXPECT_EQ(line->level, Level::Error);
-  EXPECT_EQ(line->line(), "camera: error: no \"device\"\\");
+  const auto line = must(parse_log_line(to_json({"camera", Level::Error, "no \"device\"\\"})));
+  EXPECT_EQ(line.module, "camera");
+  EXPECT_EQ(line.level, Level::Error);
+  EXPECT_EQ(line.line(), "camera: error: no \"device\"\\");
   EXPECT_TRUE(parse_log_line(to_json({"a", Level::Info, "\xff"})));
   for (const char* wrong : {"", "[]", "{}", R"({"module":"a","level":3,"text":"b"})",
                             R"({"module":"a","level":"loud","text":"b"})"})

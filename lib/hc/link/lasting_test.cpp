@@ -34,9 +34,7 @@ class LastingLink : public ::testing::TestWithParam<std::string> {
   void begin(const std::string& sink_options, const std::string& source_options = "") {
     sink_ = sink_of(ends_.sink + "?readers=1" + sink_options);
     source_ = source_of(ends_.source + source_options, warnings_.options());
-    std::thread sender([&] { ASSERT_TRUE(sink_->send(numbered(0, 10))); });
-    ASSERT_TRUE(*receive(*source_, message_));
-    sender.join();
+    carry(*sink_, *source_, numbered(0, 10));
   }
 
   const Ends ends_ = ends_of(GetParam());
@@ -77,8 +75,7 @@ TEST_P(QueuedLink, WhatWaitsWhenItIsAbandonedIsLost) {
   const auto bytes_of_one = sink->traffic().bytes;
   EXPECT_GT(bytes_of_one, 0U);
   for (int i = 1; i < 4; ++i) ASSERT_TRUE(sink->send(numbered(i, 10)));
-  ASSERT_TRUE(*receive(*source, message));
-  EXPECT_EQ(message.header.seq, 0);
+  EXPECT_EQ(next(*source).header.seq, 0);
   sink->abandon();
   const auto traffic = sink->traffic();
   EXPECT_EQ(traffic.messages, 4U);
@@ -112,9 +109,7 @@ TEST_P(LastingLink, WhoHasLeftIsGivenUpUntilAnotherComes) {
     const auto sink = sink_of(ends.sink + options);
     auto source = source_of(ends.source);
     Message message;
-    std::thread first([&] { ASSERT_TRUE(sink->send(numbered(0, 10))); });
-    ASSERT_TRUE(*receive(*source, message));
-    first.join();
+    carry(*sink, *source, numbered(0, 10));
     source.reset();
     while (sink->traffic().dropped_timeout < 3) ASSERT_TRUE(sink->send(numbered(1, 10)));
     source = source_of(ends.source);
@@ -123,8 +118,7 @@ TEST_P(LastingLink, WhoHasLeftIsGivenUpUntilAnotherComes) {
       while (!heard) ASSERT_TRUE(sink->send(numbered(2, 10)));
       done = true;
     });
-    ASSERT_TRUE(*receive(*source, message));
-    EXPECT_EQ(message.header.seq, 2);
+    EXPECT_EQ(next(*source).header.seq, 2);
     heard = true;
     while (!done) ASSERT_TRUE(source->take(message));
     sender.join();
@@ -144,8 +138,7 @@ TEST_P(LastingLink, ASourceThatIsToFinishTakesWhatIsLeftAndEnds) {
   ASSERT_TRUE(sink_->send(numbered(1, 10)));
   ASSERT_TRUE(sink_->close());
   source_->finish();
-  ASSERT_TRUE(*receive(*source_, message_));
-  EXPECT_EQ(message_.header.seq, 1);
+  EXPECT_EQ(next(*source_).header.seq, 1);
   EXPECT_FALSE(*receive(*source_, message_));
   EXPECT_EQ(*source_->take(message_), Got::End);
 }

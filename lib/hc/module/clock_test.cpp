@@ -27,6 +27,11 @@ Message at(std::int64_t milliseconds, std::int32_t mode = 0) {
   message.header.mode = mode;
   return message;
 }
+Message focus(std::int64_t milliseconds, std::int32_t mode) {
+  auto message = table({mode});
+  message.header.time = at(milliseconds).header.time;
+  return message;
+}
 Message without_time() {
   return table({-1.0});
 }
@@ -44,6 +49,14 @@ class ByMessages : public RunningModule {
   std::string now() {
     EXPECT_EQ(module.monotonic().count(), module.now());
     return " at " + std::to_string((module.now() - kFirst) / kMillisecond);
+  }
+  /// Has the clock be that of a trace.
+  void follow(const std::vector<TraceEvent>& events) {
+    auto trace = sink_of(uri("clock"));
+    ASSERT_TRUE(trace->send(make_trace(events)));
+    ASSERT_TRUE(trace->close());
+    sinks.push_back(std::move(trace));
+    words[1] = uri("clock");
   }
   /// @param input  with a word behind it: by another link.
   void feed(const std::string& input, const std::vector<Message>& messages) {
@@ -130,11 +143,6 @@ TEST_F(ByMessages, AGeneratorsEndIsTheModules) {
 
 TEST_F(ByMessages, TheFocusIsHeardInItsTime) {
   feed("a", {at(1, 4), at(5, 4), at(9, 4)});
-  auto focus = [](std::int64_t milliseconds, std::int32_t mode) {
-    auto message = table({mode});
-    message.header.time = at(milliseconds).header.time;
-    return Message(message);
-  };
   feed("focus", {focus(3, 4), focus(7, 2), focus(20, 4)});
   words.insert(words.end(), {"--exclusive", "a"});
   EXPECT_EQ(run(), Log({"a 5 at 5"}));
@@ -142,11 +150,6 @@ TEST_F(ByMessages, TheFocusIsHeardInItsTime) {
 
 TEST_F(ByMessages, AFocusExpiresInTheirTime) {
   feed("a", {at(1, 4), at(121, 4), at(122, 4), at(303, 4)});
-  auto focus = [](std::int64_t milliseconds, std::int32_t mode) {
-    auto message = table({mode});
-    message.header.time = at(milliseconds).header.time;
-    return Message(message);
-  };
   feed("focus", {focus(1, 4), focus(300, 4)});
   words.insert(words.end(), {"--exclusive", "a"});
   EXPECT_EQ(run(), Log({"a 1 at 1", "a 121 at 121", "a 303 at 303"}));
@@ -155,10 +158,9 @@ TEST_F(ByMessages, AFocusExpiresInTheirTime) {
 TEST_F(ByMessages, ATraceSaysWhenEachMessageAndTimerComes) {
   using enum TraceEvent::What;
   auto moment = [](std::int64_t milliseconds) { return at(milliseconds).header.time; };
-  auto focus = table({4});
   feed("a", {at(1, 4), at(2, 4)});
   feed("a again", {at(3, 4)});
-  feed("focus", {focus});
+  feed("focus", {table({4})});
   module.every(1s, [&] { log.push_back("timer" + now()); });
   module.every(1s, [&] { log.push_back("other timer" + now()); });
   auto timeout = module.after(1s, [&] { log.push_back("timeout" + now()); });
@@ -170,10 +172,7 @@ TEST_F(ByMessages, ATraceSaysWhenEachMessageAndTimerComes) {
       {Began, "", 0, 0, 0, moment(14), 0},     {Began, "", 0, 0, 0, moment(15), 7},
       {Began, "a", 0, 0, 0, moment(10 + 121)},
   };
-  auto trace = sink_of(uri("clock"));
-  ASSERT_TRUE(trace->send(make_trace(events)));
-  ASSERT_TRUE(trace->close());
-  words[1] = uri("clock");
+  follow(events);
   words.insert(words.end(), {"--exclusive", "a"});
   // The last one was out of focus by then.
   EXPECT_EQ(run(), Log({"start at 5", "other timer at 6", "a 3 at 11", "timeout at 12", "a 1 at 13",
@@ -187,10 +186,7 @@ TEST_F(ByMessages, ATraceSaysWhenAGeneratorIsCalledAndHasTheFocus) {
       {TraceEvent::What::Began, "focus", 0, 0, 0, at(4).header.time},
       {TraceEvent::What::Began, "", 0, 0, 0, at(9).header.time, TraceEvent::kGenerator},
       {TraceEvent::What::Began, "", 0, 0, 0, at(12).header.time, TraceEvent::kGenerator}};
-  auto trace = sink_of(uri("clock"));
-  ASSERT_TRUE(trace->send(make_trace(events)));
-  ASSERT_TRUE(trace->close());
-  words[1] = uri("clock");
+  follow(events);
   module.generate([&] {
     module.keep_rate(1);
     log.push_back("look in " + std::to_string(module.focus()) + now());

@@ -50,8 +50,7 @@ TEST_F(RunningModule, ReportsThatItWaitsForAReader) {
     EXPECT_EQ(awaits_reader(), 1);
     auto reader = source_of(comes);
     EXPECT_EQ(awaits_reader(), 0);
-    Message message;
-    EXPECT_TRUE(*receive(*reader, message));
+    next(*reader);
     EXPECT_EQ(join(), 0);
   }
 }
@@ -111,9 +110,7 @@ TEST_F(RunningModule, ObeysWhileItWaitsForRoom) {
 }
 
 TEST_F(RunningModule, ReportsAgesAndGaps) {
-  Module module{"counted", "Counts."};
-  auto in = module.input("in", table<double>(), "");
-  module.on(in, [](const auto&) {});
+  Taker module{"counted"};
   auto sink = sink_of(uri("in"));
   auto reports = source_of(uri("reports"));
   const std::int64_t hour = 3'600'000'000'000;
@@ -137,10 +134,7 @@ TEST_F(RunningModule, ReportsAgesAndGaps) {
 }
 
 TEST_F(RunningModule, HasOnlyTheLinksOfItsCommands) {
-  Module module{"relay", "Sends on."};
-  auto in = module.input("in", table<double>(), "");
-  auto out = module.output("out", table<double>(), "");
-  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  Relay module{"relay"};
   start_managed(module);
   // Neither standard input, which may have ended, nor standard output.
   EXPECT_TRUE(rows_of(next(*reports_, Report::Links)).empty());
@@ -149,17 +143,13 @@ TEST_F(RunningModule, HasOnlyTheLinksOfItsCommands) {
   ASSERT_TRUE(send_command(*control_, "link out out=" + uri("out")));
   ASSERT_TRUE(send_command(*control_, "link in in=" + uri("first")));
   ASSERT_TRUE(first->send(table({2.0})));
-  Message message;
-  ASSERT_TRUE(*receive(*from, message));
-  EXPECT_EQ(message.view<double>()->at(0, 0), 2);
+  EXPECT_EQ(next(*from).view<double>()->at(0, 0), 2);
   ASSERT_TRUE(first->close());
   EXPECT_EQ(join(), 0);
 }
 
 TEST_F(RunningModule, ReportsWithoutLinksToo) {
-  Module module{"idle", "Has nothing to do yet."};
-  auto in = module.input("in", table<double>(), "");
-  module.on(in, [](const auto&) {});
+  Taker module{"idle"};
   start_managed(module);
   for (int i = 0; i < 2; ++i) EXPECT_EQ(next(*reports_, Report::Counters).header.height, 0);
   ASSERT_TRUE(control_->close());
@@ -167,20 +157,16 @@ TEST_F(RunningModule, ReportsWithoutLinksToo) {
 }
 
 TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
-  Module module{"reader", "Reads."};
-  auto in = module.input("in", table<double>(), "");
-  auto out = module.output("out", table<double>(), "");
-  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  Relay module{"reader"};
   auto handled = source_of(uri("out"));
   auto other = sink_of(uri("other"));
   start_managed(module, {"--in=" + uri("other"), "--out=" + uri("out")});
-  Message message;
   for (double i : {1, 2, 3}) {
     auto sink = open_sink(*parse_uri(uri("in")));
     while (!sink) sink = open_sink(*parse_uri(uri("in")));  // until the end before has closed
     ASSERT_TRUE(send_command(*control_, "link in in=" + uri("in")));
     ASSERT_TRUE((*sink)->send(table({i})));
-    ASSERT_TRUE(*receive(*handled, message));
+    next(*handled);
     ASSERT_TRUE((*sink)->close());
   }
   auto rows = next_counters(*reports_);
@@ -196,17 +182,13 @@ TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
 }
 
 TEST_F(RunningModule, ALinkThatIsTakenAwayHasItsLastNumbersReported) {
-  Module module{"relay", "Sends on."};
-  auto in = module.input("in", table<double>(), "");
-  auto out = module.output("out", table<double>(), "");
-  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  Relay module{"relay"};
   auto sink = sink_of(uri("in"));
   auto from = source_of(uri("out"));
   start_managed(module, {"--in=" + uri("in"), "--out=" + uri("out")});
   EXPECT_EQ(next_counters(*reports_).size(), 2U);
-  Message message;
   ASSERT_TRUE(sink->send(table({1.0})));
-  ASSERT_TRUE(*receive(*from, message));
+  next(*from);
   for (const auto& end : {"in in=" + uri("in"), "out out=" + uri("out")}) {
     ASSERT_TRUE(send_command(*control_, "unlink " + end));
     EXPECT_EQ(next_counters(*reports_).back()[0], 1);
@@ -217,10 +199,7 @@ TEST_F(RunningModule, ALinkThatIsTakenAwayHasItsLastNumbersReported) {
 }
 
 TEST_F(RunningModule, WhatWaitsAtALinkThatIsTakenAwayIsAmongTheLost) {
-  Module module{"relay", "Sends on."};
-  auto in = module.input("in", table<double>(), "");
-  auto out = module.output("out", table<double>(), "");
-  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  Relay module{"relay"};
   const std::string name = "@waits-" + std::to_string(::getpid()), place = "unix-listen:" + name;
   auto sink = sink_of(uri("in")), control = sink_of(uri("control"));
   auto reports = source_of(uri("reports"));
@@ -266,8 +245,7 @@ TEST_F(RunningModule, AnOutputThatNeverWaitsIsHeldUpByNoReader) {
   std::thread sender([&] {
     for (int i = 0; i < kMany; ++i) EXPECT_TRUE(sink->send(table({static_cast<double>(i)})));
   });
-  Message message;
-  for (int i = 0; i < kMany; ++i) ASSERT_TRUE(*receive(*from, message));
+  for (int i = 0; i < kMany; ++i) next(*from);
   sender.join();
   shared.reset(), socket.reset();  // its end waits for what has begun to go
   EXPECT_TRUE(sink->close());
@@ -293,12 +271,10 @@ TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
   };
   obeyed("link in right=" + uri("right"));
   obeyed("link in left=" + place);
-  Message message;
   for (double i : {1, 2}) {
     ASSERT_TRUE(l->send(table({i})));
     ASSERT_TRUE(r->send(table({i})));
-    ASSERT_TRUE(*receive(*sums, message));
-    EXPECT_EQ(message.view<double>()->at(0, 0), 2 * i);
+    EXPECT_EQ(next(*sums).view<double>()->at(0, 0), 2 * i);
     obeyed("unlink in left=" + place);
     place += "_anew";
     l = sink_of(place);
@@ -309,9 +285,7 @@ TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
 }
 
 TEST_F(RunningModule, AFocusLinkIsTakenAwayAlone) {
-  Module module{"busy", "Works."};
-  auto in = module.input("in", table<double>(), "");
-  module.on(in, [](const auto&) {});
+  Taker module{"busy"};
   auto one = sink_of(uri("one")), other = sink_of(uri("other"));
   start_managed(module, {"--in", "focus=" + uri("one"), "--in", "focus=" + uri("other")});
   next(*reports_, Report::State);
@@ -328,8 +302,7 @@ TEST_F(RunningModule, AFocusLinkIsTakenAwayAlone) {
 
 TEST_F(RunningModule, AWriterThatHasEndedForGoodIsNoNews) {
   const std::string name = "shm:writer-" + std::to_string(::getpid());
-  Module module{"reader", "Reads."};
-  module.on(module.input("in", table<double>(), ""), [](const auto&) {});
+  Taker module{"reader"};
   ::testing::internal::CaptureStderr();
   auto writer = sink_of(name);
   start_managed(module, {"--in=" + name + "?reconnect=60"});
@@ -360,8 +333,7 @@ TEST_F(RunningModule, AGeneratorReadsTheWriterThatFollowsAnother) {
 
 TEST_F(RunningModule, ALinkOfAGraphIsNamedByItsPort) {
   const std::string nowhere = "unix:@nowhere-" + std::to_string(::getpid());
-  Module module{"reader", "Reads."};
-  module.on(module.input("in", table<double>(), ""), [](const auto&) {});
+  Taker module{"reader"};
   start_managed(module);
   ASSERT_TRUE(send_command(*control_, "link in in=" + nowhere));
   const auto refusal = read_log(next(*reports_, Report::Log))->text;

@@ -11,25 +11,10 @@
 
 #include <hc/compress/compress.h>
 #include <hc/module/arguments.h>
-#include <hc/module/management.h>
+#include <hc/module/running_module_test.h>
 
 namespace hc {
 namespace {
-
-/// Runs a module on this thread with links inside the process.
-int run(Module& module, std::vector<std::string> words) {
-  words.insert(words.begin(), "module");
-  std::vector<char*> arguments;
-  for (auto& word : words) arguments.push_back(word.data());
-  return module.run(static_cast<int>(arguments.size()), arguments.data());
-}
-
-std::unique_ptr<Source> source_of(const std::string& uri) {
-  return std::move(*open_source(*parse_uri(uri)));
-}
-std::unique_ptr<Sink> sink_of(const std::string& uri) {
-  return std::move(*open_sink(*parse_uri(uri)));
-}
 
 Message stamped(Message message, std::int64_t time, std::int32_t mode = 0) {
   message.header.time = time;
@@ -178,13 +163,18 @@ std::vector<Message> at_times(const std::vector<std::int64_t>& times) {
   return messages;
 }
 
+/// A module with two inputs.
+struct Pair : Module {
+  Pair() : Module("pair", "Pairs.") {}
+  Input<Kind<MatrixType::Table, double>> left = input("left", table<double>(), "");
+  Input<Kind<MatrixType::Table, double>> right = input("right", table<double>(), "");
+  Output<Kind<MatrixType::Table, double>> out = output("out", table<double>(), "");
+};
+
 TEST(Module, TakesTwoInputsTogetherByTime) {
-  Module module{"pair", "Pairs."};
-  auto left = module.input("left", table<double>(), "");
-  auto right = module.input("right", table<double>(), "");
-  auto out = module.output("out", table<double>(), "");
-  module.on(together(left, right), [&](const auto& a, const auto& b) {
-    out.send(table({a.matrix().at(0, 0), b.matrix().at(0, 0)}));
+  Pair module;
+  module.on(together(module.left, module.right), [&](const auto& a, const auto& b) {
+    module.out.send(table({a.matrix().at(0, 0), b.matrix().at(0, 0)}));
   });
   testing::internal::CaptureStderr();
   auto sent = run_on(module, {{"left", at_times({1, 2, 3, 5})}, {"right", at_times({2, 4, 5, 6})}});
@@ -224,11 +214,9 @@ TEST(Module, R43_WhatIsMadeOfSeveralHasTheLatestTime) {
 }
 
 TEST(Module, AnInputThatIsFarAheadWaitsToBeRead) {
-  Module module{"pair", "Pairs."};
-  auto left = module.input("left", table<double>(), "");
-  auto right = module.input("right", table<double>(), "");
-  auto out = module.output("out", table<double>(), "");
-  module.on(together(left, right), [&](const auto&, const auto&) { out.send(table({1.0})); });
+  Pair module;
+  module.on(together(module.left, module.right),
+            [&](const auto&, const auto&) { module.out.send(table({1.0})); });
   std::vector<std::int64_t> often, seldom;
   for (int i = 1; i <= 60; ++i) {
     often.push_back(i);
@@ -238,11 +226,8 @@ TEST(Module, AnInputThatIsFarAheadWaitsToBeRead) {
 }
 
 TEST(Module, AnInputWithoutALinkEndsWhatIsTakenTogetherWithIt) {
-  Module module{"pair", "Pairs."};
-  auto left = module.input("left", table<double>(), "");
-  auto right = module.input("right", table<double>(), "");
-  auto out = module.output("out", table<double>(), "");
-  module.on(together(left, right), [](const auto&, const auto&) { FAIL(); });
+  Pair module;
+  module.on(together(module.left, module.right), [](const auto&, const auto&) { FAIL(); });
   testing::internal::CaptureStderr();
   EXPECT_TRUE(run_on(module, {{"left", at_times({1})}}).empty());
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
@@ -430,11 +415,9 @@ TEST(Module, WhatALibraryThrowsIsLoggedWithoutItsSources) {
 }
 
 TEST(Module, ABadSetIsDropped) {
-  Module module{"pair", "Takes pairs."};
-  auto left = module.input("left", table<double>(), "");
-  auto right = module.input("right", table<double>(), "");
+  Pair module;
   int handled = 0;
-  module.on(together(left, right), [&](const auto& one, const auto&) {
+  module.on(together(module.left, module.right), [&](const auto& one, const auto&) {
     if (one.header.time == 1) throw BadMessage("it does not belong");
     ++handled;
   });
@@ -593,8 +576,7 @@ TEST(Module, DescribesItself) {
 }
 
 TEST(Module, AWrongUriIsWrongUsage) {
-  Module module{"sink", "Takes."};
-  module.on(module.input("in", table<double>(), ""), [](const auto&) {});
+  Taker module{"sink"};
   for (const char* uri : {"tcp-listen:abc", "tcp:1?wait=x", "unix:"}) {
     ::testing::internal::CaptureStderr();
     EXPECT_EQ(run(module, {"--in", uri}), 2) << uri;

@@ -13,19 +13,36 @@
 #include <hc/module/management.h>
 #include <hc/module/module.h>
 #include <hc/mtp/rows.h>
+#include <hc/testing/next.h>
 
 namespace hc {
 
-inline std::unique_ptr<Source> source_of(const std::string& uri) {
-  auto source = open_source(*parse_uri(uri));
-  EXPECT_TRUE(source) << uri;
-  return std::move(*source);
+/// Runs a module on this thread.
+inline int run(Module& module, std::vector<std::string> words) {
+  words.insert(words.begin(), "module");
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  return module.run(static_cast<int>(arguments.size()), arguments.data());
 }
-inline std::unique_ptr<Sink> sink_of(const std::string& uri) {
-  auto sink = open_sink(*parse_uri(uri));
-  EXPECT_TRUE(sink) << uri;
-  return std::move(*sink);
-}
+
+using Doubles = MessageOf<Kind<MatrixType::Table, double>>;
+
+/// A module that takes numbers.
+struct Taker : Module {
+  explicit Taker(const std::string& name = "sink") : Module(name, "Takes.") {
+    on(in, [](const auto&) {});
+  }
+  Input<Kind<MatrixType::Table, double>> in = input("in", table<double>(), "");
+};
+
+/// A module that sends on the numbers that it takes.
+struct Relay : Module {
+  explicit Relay(const std::string& name = "relay") : Module(name, "Sends on.") {
+    on(in, [this](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  }
+  Input<Kind<MatrixType::Table, double>> in = input("in", table<double>(), "");
+  Output<Kind<MatrixType::Table, double>> out = output("out", table<double>(), "");
+};
 
 inline Message in_mode(Message message, std::int32_t mode) {
   message.header.mode = mode;
@@ -45,12 +62,7 @@ class RunningModule : public ::testing::Test {
            ::testing::UnitTest::GetInstance()->current_test_info()->name() + "-" + name;
   }
   void start(Module& module, std::vector<std::string> words) {
-    thread_ = std::thread([this, &module, words = std::move(words)]() mutable {
-      words.insert(words.begin(), "module");
-      std::vector<char*> arguments;
-      for (auto& word : words) arguments.push_back(word.data());
-      status_ = module.run(static_cast<int>(arguments.size()), arguments.data());
-    });
+    thread_ = std::thread([this, &module, words] { status_ = hc::run(module, words); });
   }
   /// The same for one that reports and takes commands.
   void start_managed(Module& module, std::vector<std::string> words = {}) {
@@ -82,8 +94,6 @@ inline Message next(Source& reports, Report kind) {
 inline Status send_command(Sink& control, const std::string& line) {
   return control.send(make_rows(std::vector<std::string>{line}));
 }
-
-using Doubles = MessageOf<Kind<MatrixType::Table, double>>;
 
 /// Numbers of counters; a row for each link.
 using CounterRows = std::vector<std::vector<std::int64_t>>;

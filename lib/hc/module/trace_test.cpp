@@ -110,9 +110,7 @@ TEST_F(RunningModule, ReportsEachMessageThatIsTakenTogether) {
 }
 
 TEST_F(RunningModule, IsTracedFromACommandOn) {
-  Module module{"sink", "Takes."};
-  auto in = module.input("in", table<double>(), "");
-  module.on(in, [](const auto&) {});
+  Taker module{"sink"};
   auto sink = sink_of(uri("in"));
   auto trace = source_of(uri("trace"));
   start_managed(module, {"--in=" + uri("in")});

@@ -11,6 +11,7 @@
 
 #include <hc/mtp/stream_reader.h>
 #include <hc/testing/decode.h>
+#include <hc/testing/must.h>
 
 namespace hc {
 namespace {
@@ -57,9 +58,8 @@ TEST(Codec, AMillionRandomMessagesComeBackToTheBit) {
   for (int i = 0; i < 1'000'000; ++i) {
     Message message = random_message(random);
     std::string bytes = encode(message);
-    auto used = decode(bytes_of(bytes), again);
-    ASSERT_TRUE(used) << used.error().detail;
-    ASSERT_EQ(*used, bytes.size());
+    auto used = must(decode(bytes_of(bytes), again));
+    ASSERT_EQ(used, bytes.size());
     ASSERT_EQ(again.header, message.header);
     ASSERT_EQ(again.characters(), message.characters()) << bytes;
     ASSERT_EQ(encode(again), bytes);
@@ -85,9 +85,8 @@ TEST(Codec, IncompleteIsNoError) {
     std::string bytes = text;
     Message message;
     for (std::size_t size = 0; size < bytes.size(); ++size) {
-      auto used = decode(bytes_of(bytes.substr(0, size)), message);
-      ASSERT_TRUE(used) << used.error().detail;
-      EXPECT_EQ(*used, 0U) << size;
+      auto used = must(decode(bytes_of(bytes.substr(0, size)), message));
+      EXPECT_EQ(used, 0U) << size;
     }
     EXPECT_EQ(*decode(bytes_of(bytes), message), bytes.size());
   }

@@ -14,6 +14,7 @@
 #include <set>
 
 #include <hc/os/program.h>
+#include <hc/testing/must.h>
 
 namespace hc {
 namespace {
@@ -31,10 +32,9 @@ class NewFiles : public ::testing::Test {
   [[nodiscard]] std::string at(const std::string& name) const { return folder_ / name; }
   /// Begins a file and writes to it; its name in the folder.
   [[nodiscard]] std::string begin(const std::string& name, std::string_view contents) const {
-    auto file = begin_file(at(name));
-    EXPECT_TRUE(file) << file.error().text();
-    EXPECT_TRUE(write_all(file->descriptor.get(), contents));
-    return fs::path(file->path).filename();
+    auto file = must(begin_file(at(name)));
+    EXPECT_TRUE(write_all(file.descriptor.get(), contents));
+    return fs::path(file.path).filename();
   }
   [[nodiscard]] std::string contents(const std::string& name) const {
     std::ifstream file(at(name), std::ios::binary);
@@ -72,9 +72,8 @@ TEST_F(NewFiles, AFolderThatIsNotThereIsAnError) {
 }
 
 TEST_F(NewFiles, DevicesAndPipesAreOpenedAsTheyAre) {
-  auto null = begin_file("/dev/null");
-  ASSERT_TRUE(null);
-  EXPECT_EQ(null->path, "/dev/null");
+  auto null = must(begin_file("/dev/null"));
+  EXPECT_EQ(null.path, "/dev/null");
   ASSERT_TRUE(replace_file("/dev/null", "x"));
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
@@ -82,9 +81,8 @@ TEST_F(NewFiles, DevicesAndPipesAreOpenedAsTheyAre) {
 TEST_F(NewFiles, ADescriptorByNameIsAppendedTo) {
   std::ofstream(at("x")) << "shell ";
   const internal::Descriptor own(::open(at("x").c_str(), O_WRONLY | O_APPEND));
-  auto file = begin_file("/proc/self/fd/" + std::to_string(own.get()));
-  ASSERT_TRUE(file);
-  ASSERT_TRUE(write_all(file->descriptor.get(), "ours"));
+  auto file = must(begin_file("/proc/self/fd/" + std::to_string(own.get())));
+  ASSERT_TRUE(write_all(file.descriptor.get(), "ours"));
   EXPECT_EQ(contents("x"), "shell ours");
 }
 

@@ -17,10 +17,7 @@ TEST_P(SocketLink, ASourceMayBeThereBeforeAnyWriter) {
   const int descriptor = source->descriptor();
   for (int i = 0; i < 3; ++i) {  // and outlives several
     auto sink = sink_of(with(listen(), "readers=1"));
-    std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(i, 10))); });
-    ASSERT_TRUE(*receive(*source, message));
-    EXPECT_EQ(message.header.seq, i);
-    sender.join();
+    EXPECT_EQ(carry(*sink, *source, numbered(i, 10)).header.seq, i);
   }
   EXPECT_EQ(source->descriptor(), descriptor);
   EXPECT_EQ(source->traffic().messages, 3U);
@@ -29,18 +26,9 @@ TEST_P(SocketLink, ASourceMayBeThereBeforeAnyWriter) {
 TEST_P(SocketLink, ALossIsLoggedAndItsEnd) {
   Warnings warnings;
   auto source = source_of(with(dial(), "reconnect=60"), warnings.options());
-  Message message;
   for (int i = 0; i < 2; ++i) {
-    {
-      auto sink = sink_of(with(listen(), "readers=1"));
-      std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(i, 10))); });
-      ASSERT_TRUE(*receive(*source, message));
-      sender.join();
-    }
-    while (i == 0 && warnings.lines.empty()) {
-      ASSERT_EQ(*source->take(message), Got::Nothing);
-      ASSERT_TRUE(source->wait());
-    }
+    carry(*sink_of(with(listen(), "readers=1")), *source, numbered(i, 10));
+    await_warning(*source, warnings);
   }
   EXPECT_EQ(warnings.lines, (std::vector<std::string>{
                                 with(dial(), "reconnect=60") + ": sender closed; reconnecting",
@@ -59,8 +47,7 @@ TEST_P(SocketLink, GarbageIsTheEndOfAConnectionAndNotOfTheLink) {
       ASSERT_TRUE(sink->send(numbered(i, 10)));
       if (i == 0) static_cast<void>(sink->send(numbered(9, 2000)));  // whose header is refused
     });
-    ASSERT_TRUE(*receive(*source, message));
-    EXPECT_EQ(message.header.seq, i);
+    EXPECT_EQ(next(*source).header.seq, i);
     while (i == 0 && source->traffic().bad == 0) {
       ASSERT_EQ(*source->take(message), Got::Nothing);
       ASSERT_TRUE(source->wait());
@@ -96,9 +83,7 @@ TEST_P(SocketLink, ASinkThatLosesNothingWaitsForEachReader) {
   auto sink = sink_of(with(dial(), "reconnect=60"));
   std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(0, 10))); });
   auto source = source_of(listen());
-  Message message;
-  ASSERT_TRUE(*receive(*source, message));
-  EXPECT_EQ(message.header.seq, 0);
+  EXPECT_EQ(next(*source).header.seq, 0);
   sender.join();
 }
 
@@ -112,15 +97,10 @@ TEST_P(SocketLink, AMessageThatWasBegunIsSentAnewToTheNextReader) {
     ASSERT_TRUE(sink->send(numbered(0, 10'000'000)));
     ASSERT_TRUE(sink->close());
   });
-  Message message;
-  while (warnings.lines.empty()) {
-    ASSERT_TRUE(source->wait(-1, std::chrono::milliseconds(-1)));
-    ASSERT_EQ(*source->take(message), Got::Nothing);
-  }
+  await_warning(*source, warnings);
   source.reset();
   source = source_of(listen());
-  ASSERT_TRUE(*receive(*source, message));
-  EXPECT_EQ(message.characters(), numbered(0, 10'000'000).characters());
+  EXPECT_EQ(next(*source).characters(), numbered(0, 10'000'000).characters());
   sender.join();
   EXPECT_EQ(sink->traffic().dropped_disconnect, 0U);
 }
@@ -130,9 +110,7 @@ TEST_P(SocketLink, ASinkThatKeepsTheLatestWaitsForNobody) {
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(sink->send(numbered(i, 10)));
   EXPECT_EQ(sink->traffic().dropped_newer, 9U);
   auto source = source_of(listen());
-  Message message;
-  ASSERT_TRUE(*receive(*source, message));  // nothing more needs to be sent
-  EXPECT_EQ(message.header.seq, 9);
+  EXPECT_EQ(next(*source).header.seq, 9);  // nothing more needs to be sent
 }
 
 TEST_P(SocketLink, WhoNeverFindsAnybodySaysSo) {
@@ -140,10 +118,8 @@ TEST_P(SocketLink, WhoNeverFindsAnybodySaysSo) {
     auto source = source_of(with(dial(), options));
     auto sink = sink_of(with(dial(), options));
     Message message;
-    auto got = receive(*source, message);
-    ASSERT_FALSE(got);
-    EXPECT_TRUE(got.error().text().starts_with("NotFound: no peer for 1 s: "))
-        << got.error().text();
+    const auto got = refused(receive(*source, message));
+    EXPECT_TRUE(got.text().starts_with("NotFound: no peer for 1 s: ")) << got.text();
     EXPECT_EQ(*source->take(message), Got::End);
     EXPECT_EQ(sink->send(numbered(0, 1)).error().code, Code::NotFound);
   }
@@ -157,9 +133,7 @@ TEST_P(SocketLink, WhoFindsNobodyAnyMoreGivesUp) {
   {
     auto writer = sink_of(listen());
     source = source_of(with(dial(), "reconnect=1"), warnings.options());
-    std::thread sender([&] { ASSERT_TRUE(writer->send(numbered(0, 1))); });
-    ASSERT_TRUE(*receive(*source, message));
-    sender.join();
+    carry(*writer, *source, numbered(0, 1));
   }
   EXPECT_FALSE(*receive(*source, message));
   ASSERT_EQ(warnings.lines.size(), 2U);

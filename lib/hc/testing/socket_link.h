@@ -66,6 +66,24 @@ struct Warnings {
   }
 };
 
+/// Takes from a source that gets no message, until it has logged something.
+inline void await_warning(Source& source, const Warnings& warnings) {
+  Message message;
+  while (warnings.lines.empty()) {
+    ASSERT_EQ(must(source.take(message)), Got::Nothing);
+    if (warnings.lines.empty()) must(source.wait());
+  }
+}
+
+/// Writes what no link would send.
+inline void write_to(const internal::Descriptor& peer, std::string_view bytes) {
+  ASSERT_EQ(::write(peer.get(), bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+}
+inline bool is_closed(const internal::Descriptor& peer) {
+  char byte = 0;
+  return ::read(peer.get(), &byte, 1) <= 0;
+}
+
 // Tests that use the helpers above alone need not run the suite.
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SocketLink);
 
@@ -79,10 +97,8 @@ class SocketLink : public ::testing::TestWithParam<SocketScheme> {
   /// A listening source with these times for its peers.
   [[nodiscard]] std::unique_ptr<Source> source_with(internal::PeerTimes times,
                                                     Warnings& warnings) const {
-    auto source = internal::listening_source(*GetParam().socket(*parse_uri(listen())),
-                                             warnings.options(), times);
-    EXPECT_TRUE(source) << source.error().text();
-    return std::move(*source);
+    return must(internal::listening_source(*GetParam().socket(*parse_uri(listen())),
+                                           warnings.options(), times));
   }
   std::string place_;
 };

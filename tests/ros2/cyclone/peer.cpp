@@ -6,26 +6,14 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <cstdlib>
-#include <memory>
-#include <set>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <dds/dds.h>
 
 #include "samples.h"
 
 namespace {
-
-void say(const std::string& line) {
-  static std::set<std::string> said;
-  if (!said.insert(line).second) return;
-  std::printf("%s\n", line.c_str());
-  std::fflush(stdout);
-}
 
 dds_qos_t* qos(bool reliable) {
   dds_qos_t* made = dds_create_qos();
@@ -48,12 +36,6 @@ void take(dds_entity_t reader, F each) {
   if (count > 0) dds_return_loan(reader, samples, count);
 }
 
-struct Topic {
-  virtual ~Topic() = default;
-  virtual void write() = 0;
-  virtual void read() = 0;
-};
-
 template <typename T>
 struct TopicOf : Topic {
   TopicOf(dds_entity_t participant, const dds_topic_descriptor_t& type, std::string called)
@@ -71,11 +53,7 @@ struct TopicOf : Topic {
     if (dds_write(writer, &sample) < 0) say(name + ": not written");
   }
   void read() override {
-    take<T>(reader, [&](T& got) {
-      Check check;
-      visit(check, got);
-      say(name + (check.wrong.empty() ? " ok" : " wrong:" + check.wrong));
-    });
+    take<T>(reader, [&](T& got) { say_whether_right(name, got); });
   }
 
   std::string name;

@@ -5,13 +5,8 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <cstdlib>
-#include <memory>
-#include <set>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -51,13 +46,6 @@ bool is_ok(ReturnCode_t code) {
 }
 #endif
 
-void say(const std::string& line) {
-  static std::set<std::string> said;
-  if (!said.insert(line).second) return;
-  std::printf("%s\n", line.c_str());
-  std::fflush(stdout);
-}
-
 struct Ends {
   fast::DomainParticipant* participant;
   fast::Publisher* publisher;
@@ -93,12 +81,6 @@ void take(fast::DataReader* reader, F each) {
     if (info.valid_data) each(sample);
 }
 
-struct Topic {
-  virtual ~Topic() = default;
-  virtual void write() = 0;
-  virtual void read() = 0;
-};
-
 template <typename T, typename Support>
 struct TopicOf : Topic {
   TopicOf(Ends& ends, std::string called) : name(std::move(called)) {
@@ -115,11 +97,7 @@ struct TopicOf : Topic {
     if (!is_ok(writer->write(&sample, fast::HANDLE_NIL))) say(name + ": not written");
   }
   void read() override {
-    take<T>(reader, [&](T& got) {
-      Check check;
-      visit(check, got);
-      say(name + (check.wrong.empty() ? " ok" : " wrong:" + check.wrong));
-    });
+    take<T>(reader, [&](T& got) { say_whether_right(name, got); });
   }
 
   std::string name;

@@ -17,11 +17,8 @@ TEST(ShmMeeting, OneWhoComesLaterGetsWhatIsSentFromThenOn) {
   ASSERT_TRUE(sink->send(numbered(0, kSmall)));
   auto second = source_of(name);
   ASSERT_TRUE(sink->send(numbered(1, kSmall)));
-  Message message;
-  ASSERT_TRUE(*receive(*second, message));
-  EXPECT_EQ(message.header.seq, 1);
-  ASSERT_TRUE(*receive(*first, message));
-  EXPECT_EQ(message.header.seq, 0);
+  EXPECT_EQ(next(*second).header.seq, 1);
+  EXPECT_EQ(next(*first).header.seq, 0);
 }
 
 TEST(ShmMeeting, WhoDropsWaitsForTheFirstReaderAlone) {
@@ -29,8 +26,7 @@ TEST(ShmMeeting, WhoDropsWaitsForTheFirstReaderAlone) {
   auto sink = sink_of(name + "?keep=latest&memory=2M");
   std::thread reader([&] {
     auto source = source_of(name);
-    Message message;
-    EXPECT_TRUE(*receive(*source, message));
+    next(*source);
   });
   ASSERT_TRUE(sink->send(numbered(0, kLarge)));
   reader.join();
@@ -45,9 +41,7 @@ TEST(ShmMeeting, NobodyIsWaitedForWhereReadersIsNone) {
   EXPECT_EQ(sink->traffic().dropped_disconnect, 3000U);
   auto source = source_of(name);
   ASSERT_TRUE(sink->send(numbered(3000, kLarge)));
-  Message message;
-  ASSERT_TRUE(*receive(*source, message));
-  EXPECT_EQ(message.header.seq, 3000);
+  EXPECT_EQ(next(*source).header.seq, 3000);
   source.reset();
   ASSERT_TRUE(sink->send(numbered(3001, kSmall)));
   EXPECT_TRUE(sink->close());
@@ -65,8 +59,7 @@ TEST(ShmMeeting, AReaderOfTheLatestNeverStallsAPublisherThatLosesNothing) {
     EXPECT_EQ(message.header.seq, i);
   }
   message = {};
-  ASSERT_TRUE(*receive(*latest, message));
-  EXPECT_EQ(message.header.seq, 4999);
+  EXPECT_EQ(next(*latest).header.seq, 4999);
 }
 
 /// What is called while send() waits may abandon the sink.
@@ -89,9 +82,8 @@ TEST(ShmMeeting, ASinkThatWaitsCanBeAbandoned) {
 TEST(ShmMeeting, ANameIsFreeAgainAsSoonAsItsPublisherHasGone) {
   auto name = fresh_name();
   auto sink = sink_of(name);
-  auto taken = open_sink(*parse_uri(name));
-  ASSERT_FALSE(taken);
-  EXPECT_NE(taken.error().text().find("in use"), std::string::npos) << taken.error().text();
+  const auto taken = refused(open_sink(*parse_uri(name)));
+  EXPECT_NE(taken.text().find("in use"), std::string::npos) << taken.text();
   ASSERT_TRUE(sink->close());
   EXPECT_TRUE(open_sink(*parse_uri(name)));
 }
@@ -110,8 +102,7 @@ TEST(ShmMeeting, AReaderThatReconnectsFindsTheNextPublisher) {
   });
   Message message;
   for (int i = 0; i < 30; ++i) {
-    ASSERT_TRUE(*receive(*source, message));
-    ASSERT_EQ(message.header.seq, i % 10);
+    ASSERT_EQ(next(*source).header.seq, i % 10);
   }
   publisher.join();
   EXPECT_EQ(source->traffic().messages, 30U);
@@ -150,10 +141,7 @@ TEST(ShmMeeting, AReaderThatReconnectsDoesNotWaitForAPublisherThatIsStopped) {
   stopped.reset();
   reader.reset();
   auto sink = sink_of(name);
-  std::thread publisher([&] { ASSERT_TRUE(sink->send(numbered(1, kSmall))); });
-  ASSERT_TRUE(*receive(*source, message));
-  EXPECT_EQ(message.header.seq, 1);
-  publisher.join();
+  EXPECT_EQ(carry(*sink, *source, numbered(1, kSmall)).header.seq, 1);
   const std::string link = name + "?reconnect=60: ";
   EXPECT_EQ(warnings.lines, (std::vector<std::string>{
                                 link + "the publisher closed during the handshake; reconnecting",
@@ -161,9 +149,7 @@ TEST(ShmMeeting, AReaderThatReconnectsDoesNotWaitForAPublisherThatIsStopped) {
 }
 
 TEST(ShmMeeting, NobodyThereIsSaid) {
-  auto source = open_source(*parse_uri(fresh_name()));
-  ASSERT_FALSE(source);
-  EXPECT_EQ(source.error().code, Code::Closed);
+  EXPECT_EQ(refused(open_source(*parse_uri(fresh_name()))).code, Code::Closed);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include <hc/link/link.h>
+#include <hc/testing/must.h>
 
 namespace hc::internal {
 namespace {
@@ -22,9 +23,7 @@ namespace {
 constexpr std::uint64_t kBytes = 8 * kPageBytes;
 
 SharedMemory make(std::uint64_t reserved) {
-  auto memory = SharedMemory::make(kBytes, reserved);
-  EXPECT_TRUE(memory) << memory.error().text();
-  return std::move(*memory);
+  return must(SharedMemory::make(kBytes, reserved));
 }
 
 std::int64_t pages_of(const SharedMemory& memory) {
@@ -35,22 +34,20 @@ std::int64_t pages_of(const SharedMemory& memory) {
 
 TEST(SharedMemory, IsSeenByBothSides) {
   auto written = make(kBytes);
-  auto read = SharedMemory::map(std::move(*written.read_only()), kBytes);
-  ASSERT_TRUE(read) << read.error().text();
+  auto read = must(SharedMemory::map(std::move(*written.read_only()), kBytes));
   written.data()[kBytes - 1] = std::byte{7};
-  EXPECT_EQ(read->data()[kBytes - 1], std::byte{7});
-  EXPECT_NE(read->data(), written.data());
-  EXPECT_EQ(read->size(), kBytes);
+  EXPECT_EQ(read.data()[kBytes - 1], std::byte{7});
+  EXPECT_NE(read.data(), written.data());
+  EXPECT_EQ(read.size(), kBytes);
 }
 
 TEST(SharedMemory, OnlyItsMakerWritesAndNobodyResizes) {
   auto memory = make(kBytes);
-  auto shown = memory.read_only();
-  ASSERT_TRUE(shown);
-  EXPECT_EQ(::mmap(nullptr, kBytes, PROT_WRITE, MAP_SHARED, shown->get(), 0), MAP_FAILED);
+  auto shown = must(memory.read_only());
+  EXPECT_EQ(::mmap(nullptr, kBytes, PROT_WRITE, MAP_SHARED, shown.get(), 0), MAP_FAILED);
   // A peer may open what it was handed once more, to write; the seals still hold.
   Descriptor again(
-      ::open(("/proc/self/fd/" + std::to_string(shown->get())).c_str(), O_RDWR | O_CLOEXEC));
+      ::open(("/proc/self/fd/" + std::to_string(shown.get())).c_str(), O_RDWR | O_CLOEXEC));
   ASSERT_TRUE(again);
   EXPECT_EQ(::mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_SHARED, again.get(), 0),
             MAP_FAILED);
@@ -83,10 +80,8 @@ TEST(SharedMemory, OutlivesItsMaker) {
 TEST(SharedMemory, OfAnotherSizeIsRefused) {
   auto memory = make(kBytes);
   for (auto bytes : {kBytes - 1, kBytes + 1, kBytes + kPageBytes}) {
-    auto mapped = SharedMemory::map(std::move(*memory.read_only()), bytes);
-    ASSERT_FALSE(mapped);
     EXPECT_EQ(
-        mapped.error().text(),
+        refused(SharedMemory::map(std::move(*memory.read_only()), bytes)).text(),
         "Malformed: the memory that was handed over has 32768 bytes, not " + std::to_string(bytes));
   }
 }

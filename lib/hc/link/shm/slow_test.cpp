@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <hc/link/shm/layout.h>
+#include <hc/testing/must.h>
 
 namespace hc::testing {
 namespace {
@@ -19,8 +20,7 @@ TEST(ShmSlow, APublisherTakesMemoryFromWhoLosesMessagesWhileItWaitsForOthers) {
   constexpr int kCount = 100;
   std::thread publisher([&] {
     for (int i = 0; i < kCount; ++i) {
-      auto sent = sink->send(numbered(i, kLarge));
-      ASSERT_TRUE(sent) << i << ": " << sent.error().text();
+      must(sink->send(numbered(i, kLarge)));
     }
     ASSERT_TRUE(sink->close());
   });
@@ -52,9 +52,8 @@ TEST(ShmSlow, WhoIsOvertakenWhileItReadsGoesOn) {
   });
   Message message;
   while (!done) {
-    auto got = source->take(message);
-    ASSERT_TRUE(got) << got.error().text();
-    if (*got == Got::Message) {
+    auto got = must(source->take(message));
+    if (got == Got::Message) {
       ASSERT_EQ(message.elements.size(), message.header.element_bytes());
     }
   }
@@ -75,9 +74,8 @@ TEST(ShmSlow, WhatIsTakenBackJustThenIsWholeOrLost) {
   Message message;
   std::uint64_t wrong = 0;
   while (!done) {
-    auto got = source->take(message);
-    ASSERT_TRUE(got) << got.error().text();
-    if (*got != Got::Message) continue;
+    auto got = must(source->take(message));
+    if (got != Got::Message) continue;
     auto right = static_cast<std::byte>(message.header.seq * 7 + kBytes);
     for (std::size_t at = 0; at < message.elements.size(); at += 64)
       if (message.elements[at] != right) ++wrong;

@@ -53,11 +53,11 @@ std::string place_of(const internal::Descriptor& listening) {
 }
 
 /// The two ends of a connection.
-struct Ends {
+struct TcpEnds {
   internal::Descriptor dialed, accepted;
 };
 
-Ends make_connection() {
+TcpEnds make_connection() {
   auto listening = *internal::listen_on(loopback_address(0), "any");
   auto dialed = connect(place_of(listening));
   return {std::move(dialed), internal::Descriptor(::accept(listening.get(), nullptr, nullptr))};
@@ -181,10 +181,7 @@ TEST(Tcp, WhereALinkWasAbandonedAnotherCanListen) {
   ASSERT_TRUE(*receive(*source, message));
   sink->abandon();  // and is still there
   auto other = sink_of("tcp-listen:" + place + "?readers=1&keep=latest");
-  std::thread sender([&] { ASSERT_TRUE(other->send(numbered(1, 1))); });
-  ASSERT_TRUE(*receive(*source, message));
-  sender.join();
-  EXPECT_EQ(message.header.seq, 1);
+  EXPECT_EQ(carry(*other, *source, numbered(1, 1)).header.seq, 1);
 }
 
 TEST(Tcp, AConnectionWithItselfIsNone) {
@@ -199,10 +196,7 @@ TEST(Tcp, AConnectionWithItselfIsNone) {
   ASSERT_FALSE(source);
   EXPECT_EQ(source.error().code, Code::Closed);
   auto sink = sink_of("tcp-listen:" + place + "?readers=1");
-  std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(1, 10))); });
-  ASSERT_TRUE(*receive(*patient, message));
-  EXPECT_EQ(message.header.seq, 1);
-  sender.join();
+  EXPECT_EQ(carry(*sink, *patient, numbered(1, 10)).header.seq, 1);
 }
 
 TEST(Tcp, WhoWaitsInsideALargeMessageIsWokenForAGoodPart) {
@@ -242,14 +236,12 @@ TEST(Tcp, WhoWaitsInsideALargeMessageIsWokenForAGoodPart) {
   EXPECT_EQ(*source.take(message), Got::Nothing);
   EXPECT_LE(wakes_at(), 130'000);
   send(rest.size());
-  ASSERT_TRUE(*receive(source, message));
-  EXPECT_EQ(message.header.seq, 7);
+  EXPECT_EQ(next(source).header.seq, 7);
   EXPECT_EQ(take(), Got::Nothing);
   EXPECT_EQ(wakes_at(), 1);
   rest = small;
   send(small.size());
-  ASSERT_TRUE(*receive(source, message));
-  EXPECT_EQ(message.header.seq, 8);
+  EXPECT_EQ(next(source).header.seq, 8);
 }
 
 /// Makes sockets of another user, as root can; any other user takes its own for those.
@@ -280,8 +272,7 @@ TEST(Tcp, TheSameUserIsLetInWhereNobodyElseIs) {
   auto sink = sink_of("tcp-listen:" + place + "?readers=1&same_user=1");
   auto source = source_of("tcp:" + place + "?same_user=1");
   ASSERT_TRUE(sink->send(numbered(0, 1)));
-  Message message;
-  EXPECT_TRUE(*receive(*source, message));
+  next(*source);
   EXPECT_EQ(open_source(*parse_uri("tcp:" + place + "?same_user=2")).error().code, Code::Invalid);
 }
 
@@ -305,9 +296,7 @@ TEST(Tcp, AListenerOfAnotherUserIsRefused) {
   Foreign foreign;
   auto listening = foreign.make([] { return *internal::listen_on(loopback_address(0), "any"); });
   const std::string place = place_of(listening);
-  auto refused = open_source(*parse_uri("tcp:" + place + "?same_user=1"));
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().detail,
+  EXPECT_EQ(refused(open_source(*parse_uri("tcp:" + place + "?same_user=1"))).detail,
             "connect(" + place + "): the listener is a process of " + foreign.name());
   auto peer = connect(place);
   EXPECT_TRUE(internal::tcp_peer_user(peer.get(), internal::Connected::Dialed));
@@ -324,9 +313,7 @@ TEST(Tcp, APeerThatHasLeftIsOfNoUser) {
 }
 
 TEST(Tcp, AHostWithoutAnAddressIsNotFound) {
-  auto source = open_source(*parse_uri("tcp:no.such.host.invalid:80"));
-  ASSERT_FALSE(source);
-  EXPECT_EQ(source.error().code, Code::NotFound);
+  EXPECT_EQ(refused(open_source(*parse_uri("tcp:no.such.host.invalid:80"))).code, Code::NotFound);
   EXPECT_EQ(open_source(*parse_uri("tcp:localhost")).error().code, Code::Invalid);
 }
 
