@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
+
+#include <hc/base/format.h>
 
 namespace hc::pan_tilt {
 namespace {
@@ -337,11 +338,8 @@ std::string Conversation::character() const {
   const auto degrees = [&](int axis, double positions) {
     return positions * step(axis) * 180 / std::numbers::pi;
   };
-  std::array<char, 128> text = {};
-  std::snprintf(text.data(), text.size(),
-                "pan from %.1f to %.1f, tilt from %.1f (up) to %.1f (down) degrees",
-                degrees(0, s[PN]), degrees(0, s[PX]), -degrees(1, s[TX]), -degrees(1, s[TN]));
-  return text.data();
+  return hc::format("pan from {:.1f} to {:.1f}, tilt from {:.1f} (up) to {:.1f} (down) degrees",
+                    degrees(0, s[PN]), degrees(0, s[PX]), -degrees(1, s[TX]), -degrees(1, s[TN]));
 }
 
 }  // namespace hc::pan_tilt

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include <hc/base/format.h>
 #include <hc/base/json_string.h>
 #include <hc/base/suggestion.h>
 #include <hc/base/text.h>
@@ -62,16 +63,15 @@ Result<Entry> read_entry(std::size_t place, std::string_view text) {
     if (!is_word(word))
       return Error{Code::Malformed, which + ": " + quoted(word) + " is no word of it"};
   if (words.size() != kMovedWords && words.size() != kFixedWords)
-    return Error{Code::Malformed, which + ": " +
-                                      quoted(words.empty() ? std::string_view() : words.front()) +
-                                      " has " + std::to_string(words.size()) + " words, not " +
-                                      std::to_string(kMovedWords) + " (moved) or " +
-                                      std::to_string(kFixedWords) + " (fixed)"};
+    return Error{Code::Malformed,
+                 hc::format("{}: {} has {} words, not {} (moved) or {} (fixed)", which,
+                            quoted(words.empty() ? std::string_view() : words.front()),
+                            words.size(), kMovedWords, kFixedWords)};
   Entry entry{place, words[0], words[2], 0, {words.begin() + 3, words.end()}};
   if (!read_number(words[1], entry.number) || entry.number < 0 || entry.number >= kFrameNumbers)
-    return entry.error(Code::Malformed, "a frame's number is from 0 (none) to " +
-                                            std::to_string(kFrameNumbers - 1) + ", not " +
-                                            quoted(words[1]));
+    return entry.error(Code::Malformed,
+                       hc::format("a frame's number is from 0 (none) to {}, not {}",
+                                  kFrameNumbers - 1, quoted(words[1])));
   const std::int32_t standard = standard_number(entry.name);
   if (standard != 0 && entry.number != standard)
     return entry.error(Code::Malformed, "its number is " + std::to_string(standard) + ", not " +
@@ -116,10 +116,10 @@ Status check_movers(const std::vector<Mover>& movers) {
   for (const auto& mover : movers) {
     if (mover.coord != 0) continue;
     if (auto [other, is_new] = unnumbered.emplace(mover.source, &mover); !is_new)
-      return Error{Code::Malformed, "frames: " + other->second->child + " and " + mover.child +
-                                        " are moved by messages of the src " +
-                                        std::to_string(mover.source) +
-                                        ", so they and their parents need numbers"};
+      return Error{Code::Malformed,
+                   hc::format("frames: {} and {} are moved by messages of the src {}, so they and "
+                              "their parents need numbers",
+                              other->second->child, mover.child, mover.source)};
   }
   return {};
 }

@@ -2,10 +2,9 @@
 #include <frames/tree.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <utility>
 
+#include <hc/base/format.h>
 #include <hc/base/json_string.h>
 #include <hc/base/suggestion.h>
 
@@ -26,9 +25,7 @@ std::string duration(std::uint64_t ns) {
     value /= 1e3;
     unit = next;
   }
-  std::array<char, 32> digits{};
-  auto end = std::to_chars(digits.begin(), digits.end(), value, std::chars_format::fixed, 1).ptr;
-  return std::string(digits.begin(), end) + unit;
+  return hc::format("{:.1f}{}", value, unit);
 }
 
 /// ", asked for 25 ns: 5 ns too late", of a time outside the span.
@@ -134,8 +131,8 @@ Status Tree::fix(const Frame& parent, const Frame& child, const Eigen::Isometry3
 
 Status Tree::join(const Frame& parent, const Frame& child, const Memory& memory) {
   if (memory.span.count() <= 0 || memory.poses == 0)
-    return error(Code::Invalid, "a memory of " + std::to_string(memory.poses) + " poses over " +
-                                    std::to_string(memory.span.count()) + " ns keeps nothing");
+    return error(Code::Invalid, hc::format("a memory of {} poses over {} ns keeps nothing",
+                                           memory.poses, memory.span.count()));
   if (memory.gap.count() <= 0)
     return error(Code::Invalid,
                  "a gap of " + std::to_string(memory.gap.count()) + " ns joins nothing");
@@ -184,16 +181,14 @@ Result<Eigen::Isometry3d> Tree::joint_at(std::size_t child, std::int64_t time) c
   if (track == nullptr) return std::get<Eigen::Isometry3d>(nodes_[child].joint);
   const TimeSpan span = track->known();
   if (time < span.first || time > span.last)
-    return error(Code::NotFound, joint_name(child) + " is known from " +
-                                     std::to_string(span.first) + " to " +
-                                     std::to_string(span.last) + " ns" + outside(time, span));
+    return error(Code::NotFound, hc::format("{} is known from {} to {} ns{}", joint_name(child),
+                                            span.first, span.last, outside(time, span)));
   if (auto gap = track->gap_at(time))
-    return error(Code::NotFound, joint_name(child) + " is not known between " +
-                                     std::to_string(gap->first) + " and " +
-                                     std::to_string(gap->last) + " ns, asked for " +
-                                     std::to_string(time) + " ns: a gap of " +
-                                     duration(static_cast<std::uint64_t>(gap->last) -
-                                              static_cast<std::uint64_t>(gap->first)));
+    return error(Code::NotFound,
+                 hc::format("{} is not known between {} and {} ns, asked for {} ns: a gap of {}",
+                            joint_name(child), gap->first, gap->last, time,
+                            duration(static_cast<std::uint64_t>(gap->last) -
+                                     static_cast<std::uint64_t>(gap->first))));
   return track->at(time).transformation();
 }
 
@@ -278,9 +273,9 @@ Result<TimeSpan> Tree::known(const Frame& target, const Frame& source) const {
     }
   }
   if (all.first > all.last)
-    return error(Code::NotFound, joint_name(earliest) + " is known to " + std::to_string(all.last) +
-                                     " ns and " + joint_name(latest) + " from " +
-                                     std::to_string(all.first) + " ns: at no time both");
+    return error(Code::NotFound,
+                 hc::format("{} is known to {} ns and {} from {} ns: at no time both",
+                            joint_name(earliest), all.last, joint_name(latest), all.first));
   // Back in time from the last of all, to before each gap that is met, until none is.
   TimeSpan both = all;
   for (bool is_settled = false; !is_settled;) {
@@ -289,9 +284,9 @@ Result<TimeSpan> Tree::known(const Frame& target, const Frame& source) const {
     for (const Track* track : moving) {
       auto span = track->known_until(both.last);
       if (!span || span->last < all.first)
-        return error(Code::NotFound, "between " + std::to_string(all.first) + " and " +
-                                         std::to_string(all.last) +
-                                         " ns always one joint or another has a gap");
+        return error(Code::NotFound,
+                     hc::format("between {} and {} ns always one joint or another has a gap",
+                                all.first, all.last));
       is_settled = is_settled && span->last == both.last;
       both.last = span->last;
       both.first = std::max(both.first, span->first);

@@ -75,9 +75,8 @@ std::string TrackScore::text() const {
         "(exposure, colour)?",
         degrees, samples);
   return hc::format(
-      "RMS error {:.2f}°, acquired after {:.2f} s, came back {} times, acquired again after {:.2f} "
-      "s "
-      "at most, of {} images",
+      "RMS error {:.2f}°, acquired after {:.2f} s, came back {} times, "
+      "acquired again after {:.2f} s at most, of {} images",
       degrees, *acquired, again.size(), longest(), samples);
 }
 

@@ -7,11 +7,11 @@
 #include <GL/glcorearb.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <hc/base/format.h>
 #include <opencv2/imgproc.hpp>
 
 namespace hc::graphics {
@@ -44,9 +44,8 @@ void main() { colour = vec4(texture(image, place).rgb * brightness, 1.0); }
 )";
 
 Error failure(const char* call) {
-  char number[16];
-  std::snprintf(number, sizeof number, "0x%04x", static_cast<unsigned>(eglGetError()));
-  return Error{Code::Unsupported, std::string("graphics: ") + call + " failed with " + number};
+  return Error{Code::Unsupported, hc::format("graphics: {} failed with 0x{:04x}", call,
+                                             static_cast<unsigned>(eglGetError()))};
 }
 
 /// An OpenGL 3.3 core context over EGL, without a window, a screen or an X server: what is drawn

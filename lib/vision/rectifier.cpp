@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <hc/base/format.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -11,14 +12,13 @@ namespace hc::vision {
 Result<Rectifier> Rectifier::make(const StereoCalibration& calibration, Eye eye, cv::Size size) {
   const auto& c = calibration;
   if (c.size.area() > 0 && c.size != size)
-    return Error{Code::Unsupported, "an image of " + std::to_string(size.width) + " x " +
-                                        std::to_string(size.height) + ", the calibration is for " +
-                                        std::to_string(c.size.width) + " x " +
-                                        std::to_string(c.size.height)};
+    return Error{Code::Unsupported,
+                 hc::format("an image of {} x {}, the calibration is for {} x {}", size.width,
+                            size.height, c.size.width, c.size.height)};
   constexpr int kMostSide = 32766;  // of what cv::remap() takes
   if (size.width < 1 || size.height < 1 || size.width > kMostSide || size.height > kMostSide)
-    return Error{Code::TooLarge, "an image of " + std::to_string(size.width) + " x " +
-                                     std::to_string(size.height) + " cannot be rectified"};
+    return Error{Code::TooLarge,
+                 hc::format("an image of {} x {} cannot be rectified", size.width, size.height)};
   const bool is_left = eye == Eye::Left;
   const auto& M = is_left ? c.M1 : c.M2;
   const auto& D = is_left ? c.D1 : c.D2;

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <frames/messages.h>
 #include <graphics/overlay.h>
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <transports/all.h>
 #include <vision/messages.h>
@@ -160,12 +160,11 @@ int main(int argc, char** argv) {
     const double least = *std::ranges::min_element(samples.right);
     result.send(hc::table(
         {error, worst, share, least, samples.fastest, static_cast<double>(samples.right.size())}));
-    char line[200];
-    std::snprintf(line, sizeof line,
-                  "corners off by %.2f px median, %.2f px at most, pixels right %.1f %% median, "
-                  "%.1f %% at least, the head turning at up to %.0f°/s",
-                  error, worst, 100 * share, 100 * least, samples.fastest * 57.29578);
-    module.log(line, hc::Level::Result);
+    module.log(
+        hc::format("corners off by {:.2f} px median, {:.2f} px at most, pixels right {:.1f} % "
+                   "median, {:.1f} % at least, the head turning at up to {:.0f}°/s",
+                   error, worst, 100 * share, 100 * least, samples.fastest * 57.29578),
+        hc::Level::Result);
     return false;
   });
   return module.run(argc, argv);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How good a disparity map is, against ground truth.
-#include <cstdio>
 #include <string>
 
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <transports/all.h>
 #include <vision/messages.h>
@@ -23,25 +23,23 @@ int main(int argc, char** argv) {
   auto threshold =
       module.parameter("threshold", 2.0, "px", "an error above this is bad", {.min = 0});
 
-  module.on(hc::together(disparity, truth),
-            [&](const hc::Message& found, const hc::Message& known) {
-              cv::Mat levels = hc::value_or_drop(hc::as_mat(known));
-              if (levels.channels() > 1) cv::extractChannel(levels.clone(), levels, 0);
-              const cv::Mat found_mat = hc::value_or_drop(hc::as_mat(found));
-              if (found_mat.size() != levels.size())
-                throw hc::BadMessage("the disparities and the truth have different sizes");
-              cv::Mat true_mat;
-              levels.convertTo(true_mat, CV_32F, *truth_scale);
-              auto score = hc::vision::score(found_mat, true_mat, *threshold);
-              result.send(hc::table({score.bad_share(), score.hole_share(), score.wrong_share(),
-                                     static_cast<double>(score.truth)}));
-              char line[160];
-              std::snprintf(line, sizeof line,
-                            "bad pixels %.2f %% of valid ones (error over %g px), holes %.2f %%, "
-                            "bad or hole %.2f %%, of %lld pixels with known truth",
-                            100 * score.bad_share(), *threshold, 100 * score.hole_share(),
-                            100 * score.wrong_share(), static_cast<long long>(score.truth));
-              module.log(line, hc::Level::Result);
-            });
+  module.on(hc::together(disparity, truth), [&](const hc::Message& found,
+                                                const hc::Message& known) {
+    cv::Mat levels = hc::value_or_drop(hc::as_mat(known));
+    if (levels.channels() > 1) cv::extractChannel(levels.clone(), levels, 0);
+    const cv::Mat found_mat = hc::value_or_drop(hc::as_mat(found));
+    if (found_mat.size() != levels.size())
+      throw hc::BadMessage("the disparities and the truth have different sizes");
+    cv::Mat true_mat;
+    levels.convertTo(true_mat, CV_32F, *truth_scale);
+    auto score = hc::vision::score(found_mat, true_mat, *threshold);
+    result.send(hc::table({score.bad_share(), score.hole_share(), score.wrong_share(),
+                           static_cast<double>(score.truth)}));
+    module.log(hc::format("bad pixels {:.2f} % of valid ones (error over {:g} px), holes {:.2f} "
+                          "%, bad or hole {:.2f} %, of {} pixels with known truth",
+                          100 * score.bad_share(), *threshold, 100 * score.hole_share(),
+                          100 * score.wrong_share(), score.truth),
+               hc::Level::Result);
+  });
   return module.run(argc, argv);
 }

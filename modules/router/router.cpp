@@ -5,6 +5,8 @@
 #include <tuple>
 #include <utility>
 
+#include <hc/base/format.h>
+
 SeenBefore::Entry* SeenBefore::set_of(Window& window, std::int64_t seq) {
   auto sets = static_cast<std::int64_t>(window.entries.size() / kWays);
   return window.entries.data() + static_cast<std::size_t>(seq % sets) * kWays;
@@ -76,9 +78,9 @@ bool SeenBefore::insert(const hc::Header& header, hc::MonotonicTime now) {
 }
 
 std::string RouterCounts::text() const {
-  return std::to_string(passed) + " passed; dropped: " + std::to_string(ttl) + " ttl, " +
-         std::to_string(seen) + " seen before, " + std::to_string(no_route) + " without a route, " +
-         std::to_string(no_address) + " without an address";
+  return hc::format(
+      "{} passed; dropped: {} ttl, {} seen before, {} without a route, {} without an address",
+      passed, ttl, seen, no_route, no_address);
 }
 
 bool Router::admit(hc::Header& header, hc::MonotonicTime now) {

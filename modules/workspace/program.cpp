@@ -5,30 +5,12 @@
 #include <string>
 #include <utility>
 
+#include <hc/base/format.h>
 #include <hc/contract/mode_names.h>
 #include <hc/contract/stops.h>
 #include <hc/module/module.h>
 
 #include "workspace.h"
-
-namespace {
-
-/// Logs refused bids, once a second at most.
-class Complaints {
- public:
-  void log(const hc::Module& module, const hc::Error& why, const Refused& refused,
-           hc::MonotonicTime now) {
-    if (logged_ && now - *logged_ < std::chrono::seconds(1)) return;
-    logged_ = now;
-    module.log("bid refused: " + why.text() + "; " + std::to_string(refused.total()) +
-               " refused so far");
-  }
-
- private:
-  std::optional<hc::MonotonicTime> logged_;
-};
-
-}  // namespace
 
 int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   hc::Module module{"workspace", "Grants the focus to the highest bid and publishes it.", clock};
@@ -78,7 +60,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
                                 {.fixed = true});
 
   Workspace workspace;
-  Complaints complaints;
+  std::optional<hc::MonotonicTime> complained;  // of a refused bid, once a second at most
   std::string modes_read, sources_read;
   auto read_names = [&](auto checked) {
     if (std::exchange(modes_read, *modes) != *modes)
@@ -111,7 +93,10 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
     const double salience = numbers.size() == 1 ? numbers[0] : -1;
     const Bidder who{message.header.mode, message.header.src};
     auto taken = (workspace.*bid)(who, salience, made_at(message.header), now);
-    if (!taken) complaints.log(module, taken.error(), workspace.refused(), now);
+    if (taken || (complained && now - *complained < std::chrono::seconds(1))) return;
+    complained = now;
+    module.log("bid refused: " + taken.error().text() + "; " +
+               std::to_string(workspace.refused().total()) + " refused so far");
   };
   module.on(bids, [&](const auto& message) { take(message, &Workspace::bid); });
   module.on(person, [&](const auto& message) { take(message, &Workspace::bid_of_person); });
@@ -147,9 +132,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
     if (workspace.decide(now)) module.log("focus: " + workspace.last_change());
     report();
     const std::int64_t time = module.now();
-    auto message = hc::table({workspace.focus()});
-    message.header.time = time;
-    focus.send(message);
+    focus.send(hc::table({workspace.focus()}).at(time));
     auto rows = workspace.standings(now);
     auto draft = standings.loan(5, static_cast<std::int32_t>(rows.size()));
     draft.header.time = time;
@@ -166,8 +149,9 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
 
   int status = module.run(argc, argv);
   if (const Refused& refused = workspace.refused(); refused.total() > 0)
-    module.log("bids refused: " + std::to_string(refused.salience) + " for their salience, " +
-               std::to_string(refused.mode) + " for their mode, " + std::to_string(refused.time) +
-               " for their time, " + std::to_string(refused.crowded) + " that were too many");
+    module.log(
+        hc::format("bids refused: {} for their salience, {} for their mode, {} for their "
+                   "time, {} that were too many",
+                   refused.salience, refused.mode, refused.time, refused.crowded));
   return status;
 }
