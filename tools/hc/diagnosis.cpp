@@ -19,12 +19,10 @@ constexpr std::uint64_t kFewProcesses = 256;
 constexpr std::uint64_t kLittleMemory = std::uint64_t{256} << 20;  // [byte]
 
 bool has_word(std::string_view name, std::initializer_list<std::string_view> words) {
-  while (!name.empty()) {
-    auto end = std::min(name.find('_'), name.size());
-    if (std::find(words.begin(), words.end(), name.substr(0, end)) != words.end()) return true;
-    name.remove_prefix(std::min(end + 1, name.size()));
-  }
-  return false;
+  const auto all = "_" + std::string(name) + "_";
+  return std::ranges::any_of(words, [&](std::string_view word) {
+    return all.find("_" + std::string(word) + "_") != std::string::npos;
+  });
 }
 
 bool looks_like_path(std::string_view value) {

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include <hc/base/format.h>
+#include <hc/base/json_string.h>
 
 #include "common.h"
 #include "screen.h"
@@ -26,12 +27,9 @@ std::pair<std::string, std::string> split(const std::string& end) {
 }
 
 std::string in_quotes(const std::string& text) {
-  std::string result = "\"";
-  for (char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + "\"";
+  std::string result;
+  hc::append_json_string(text, result);
+  return result;
 }
 
 /// Text of Graphviz's HTML-like labels.

@@ -139,35 +139,28 @@ CLI::App* add_verb(CLI::App& verb, GraphOptions& options, const std::string& nam
   return added;
 }
 
-/// A verb whose words go to the running graph as one command.
+/// A verb whose words go to the running graph: as one command, or with `is_each` a command for each
+/// of `more_words`, all of which are done or none.
 /// @param more_words  of which there may be any number; without a name: there are none.
 void add_change(CLI::App& verb, GraphOptions& options, const std::string& name,
-                const std::string& doc, const std::vector<Word>& words,
-                const Word& more_words = {}) {
+                const std::string& doc, const std::vector<Word>& words, const Word& more_words = {},
+                bool is_each = false) {
   auto given = std::make_shared<std::vector<std::string>>(words.size());
   auto more = std::make_shared<std::vector<std::string>>();
   auto* added = add_verb(verb, options, name, doc);
   for (std::size_t i = 0; i < words.size(); ++i)
     added->add_option(words[i].name, (*given)[i], words[i].doc)->required();
-  if (!more_words.name.empty()) added->add_option(more_words.name, *more, more_words.doc);
-  added->callback([&options, name, given, more] {
-    std::string command = name;
-    for (const auto* list : {given.get(), more.get()})
-      for (const auto& word : *list) command += " " + word;
-    change(options, {command});
-  });
-}
-
-/// A verb with a command for each of its words; all are done, or none.
-void add_changes(CLI::App& verb, GraphOptions& options, const std::string& name,
-                 const std::string& doc, const Word& word) {
-  auto given = std::make_shared<std::vector<std::string>>();
-  auto* added = add_verb(verb, options, name, doc);
-  added->add_option(word.name, *given, word.doc)->required();
-  added->callback([&options, name, given] {
+  if (!more_words.name.empty())
+    added->add_option(more_words.name, *more, more_words.doc)->required(is_each);
+  added->callback([&options, name, given, more, is_each] {
     std::vector<std::string> commands;
-    for (const auto& each : *given) commands.push_back(hc::format("{} {}", name, each));
-    change(options, commands);
+    for (const auto& word : *more)
+      if (is_each) commands.push_back(name + " " + word);
+    if (is_each) return change(options, commands);
+    std::vector<std::string> line = {name};
+    for (const auto* list : {given.get(), more.get()})
+      line.insert(line.end(), list->begin(), list->end());
+    change(options, {joined(line, " ")});
   });
 }
 
@@ -191,15 +184,16 @@ void add_graph(CLI::App& app) {
              {{"MODULE", "its name, new in the graph"},
               {"PROGRAM", "a module's program, or the path of any program"}},
              {"SETTING", "a parameter, as PARAMETER=VALUE (default: its own default)"});
-  add_changes(*verb, options, "remove", "Stop and remove modules, and their links", module);
-  add_changes(*verb, options, "restart", "Restart modules", module);
+  add_change(*verb, options, "remove", "Stop and remove modules, and their links", {}, module,
+             true);
+  add_change(*verb, options, "restart", "Restart modules", {}, module, true);
   add_change(*verb, options, "link", "Add a link, or change its policy", {from, to},
              {"POLICY",
               "a setting of the policy, as KEY=VALUE: keep, rate, burst, memory, timeout, as, "
               "quality, scale"});
   add_change(*verb, options, "unlink", "Remove a link", {from, to});
-  add_changes(*verb, options, "set", "Set parameters, all or none",
-              {"SETTING", "a parameter and its new value, as MODULE.PARAMETER=VALUE"});
+  add_change(*verb, options, "set", "Set parameters, all or none", {},
+             {"SETTING", "a parameter and its new value, as MODULE.PARAMETER=VALUE"}, true);
   add_change(*verb, options, "stop", "Stop the graph", {});
   auto wanted = std::make_shared<std::vector<std::string>>();
   auto* getter = add_verb(*verb, options, "get", "Print parameters: value, unit, range, default");
