@@ -53,26 +53,22 @@ void Viewer::say_status(int level, const std::string& words, const std::string& 
 }
 
 bool Viewer::subscribe(std::uint32_t subscription, const Channel& channel) {
-  if (channels_.contains(subscription) || by_channel_.contains(channel.id) ||
-      channels_.size() >= kMaxSubscriptions)
-    return false;
-  channels_[subscription] = channel.id;
-  by_channel_[channel.id] = subscription;
-  dropped_[channel.id].topic = channel.topic;
-  return true;
+  if (channel_of(subscription) || subscriptions_.size() >= kMaxSubscriptions) return false;
+  return subscriptions_.try_emplace(channel.id, Subscription{subscription, channel.topic}).second;
+}
+
+std::optional<std::uint32_t> Viewer::channel_of(std::uint32_t subscription) const {
+  for (const auto& [channel, each] : subscriptions_)
+    if (each.id == subscription) return channel;
+  return std::nullopt;
 }
 
 void Viewer::unsubscribe(std::uint32_t subscription) {
-  if (const auto found = channels_.find(subscription); found != channels_.end())
-    forget(found->second);
+  if (const auto channel = channel_of(subscription)) forget(*channel);
 }
 
 void Viewer::forget(std::uint32_t channel) {
-  const auto found = by_channel_.find(channel);
-  if (found == by_channel_.end()) return;
-  channels_.erase(found->second);
-  by_channel_.erase(found);
-  dropped_.erase(channel);
+  subscriptions_.erase(channel);
   std::erase_if(queue_, [&](const Outgoing& each) {
     if (each.channel != channel) return false;
     queued_ -= each.payload.bytes->size();
@@ -81,13 +77,13 @@ void Viewer::forget(std::uint32_t channel) {
 }
 
 void Viewer::count_dropped(std::uint32_t channel, std::uint64_t messages) {
-  const auto found = dropped_.find(channel);
-  if (found != dropped_.end()) found->second.messages += messages;
+  const auto found = subscriptions_.find(channel);
+  if (found != subscriptions_.end()) found->second.dropped += messages;
 }
 
 void Viewer::drop(const std::deque<Outgoing>::iterator& which) {
   queued_ -= which->payload.bytes->size();
-  ++dropped_[which->channel].messages;
+  ++subscriptions_.at(which->channel).dropped;
   queue_.erase(which);
 }
 
@@ -109,17 +105,17 @@ void Viewer::flush() {
     auto [channel, payload] = std::move(queue_.front());
     queue_.pop_front();
     queued_ -= payload.bytes->size();
-    socket_->send(payload.bytes, binary(kMessageData, by_channel_.at(channel), payload.time));
+    socket_->send(payload.bytes, binary(kMessageData, subscriptions_.at(channel).id, payload.time));
   }
 }
 
 void Viewer::report_dropped() {
-  for (auto& [channel, dropped] : dropped_) {
-    if (dropped.messages == dropped.reported) continue;
-    dropped.reported = dropped.messages;
+  for (auto& [channel, each] : subscriptions_) {
+    if (each.dropped == each.reported) continue;
+    each.reported = each.dropped;
     say_status(1,
-               std::to_string(dropped.messages) + " messages of " + dropped.topic +
+               std::to_string(each.dropped) + " messages of " + each.topic +
                    " were dropped: this viewer or its network takes them too slowly",
-               "dropped:" + dropped.topic);
+               "dropped:" + each.topic);
   }
 }

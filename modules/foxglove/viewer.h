@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -38,7 +39,7 @@ class Viewer {
   /// Ends the subscription of a channel that is no longer there.
   void forget(std::uint32_t channel);
   [[nodiscard]] bool is_subscribed(std::uint32_t channel) const {
-    return by_channel_.contains(channel);
+    return subscriptions_.contains(channel);
   }
 
   /// Sends a message soon, if it subscribes to that channel. What waits is bounded: of a large one
@@ -58,20 +59,20 @@ class Viewer {
     std::uint32_t channel = 0;
     Payload payload;
   };
-  struct Dropped {
+  struct Subscription {
+    std::uint32_t id = 0;
     std::string topic;
-    std::uint64_t messages = 0, reported = 0;
+    std::uint64_t dropped = 0, reported = 0;  ///< messages
   };
 
+  [[nodiscard]] std::optional<std::uint32_t> channel_of(std::uint32_t subscription) const;
   void drop(const std::deque<Outgoing>::iterator& which);
   void flush();
 
   const std::shared_ptr<hc::web::WebSocket> socket_;
   const hc::web::Right right_;
   bool is_lost_ = false;
-  std::map<std::uint32_t, std::uint32_t> channels_;    // by subscription
-  std::map<std::uint32_t, std::uint32_t> by_channel_;  // the subscription
+  std::map<std::uint32_t, Subscription> subscriptions_;  // by channel
   std::deque<Outgoing> queue_;
   std::size_t queued_ = 0;  // [byte]
-  std::map<std::uint32_t, Dropped> dropped_;
 };
