@@ -79,7 +79,7 @@ IDS.update(float32=10, float64=11, bool=15, byte=16, string=17)
 def definitions():
     """Of lib/ros/schema.cpp: what messages are made of, by name."""
     source = (ROOT / "lib/ros/schema.cpp").read_text()
-    source = source[source.index("kDefinitions[]") : source.index("kTypes[]")]
+    source = source[source.index("kParts[]") : source.index("find_part")]
     string = r'"(?:[^"\\]|\\.)*"'
     found = re.findall(r"\{(%s),\s*((?:%s\s*)+)\}" % (string, string), source)
     join = lambda text: "".join(json.loads(each) for each in re.findall(string, text))
