@@ -4,8 +4,4 @@
 
 #include <hc/os/descriptor.h>
 
-namespace hc {
-
-using internal::Descriptor;
-
-}  // namespace hc
+namespace hc {}  // namespace hc

@@ -65,7 +65,7 @@ Status Senders::check(const sockaddr_storage& from, const std::string& host,
   if (!user)
     status = Error{Code::Closed, address + ", an unknown user: " + user.error().detail};
   else if (*user)
-    status = internal::check_own(**user, address + ", ");
+    status = check_own(**user, address + ", ");
   else if (std::find(hosts_.begin(), hosts_.end(), host) == hosts_.end())
     status = Error{Code::Closed, address + ": another host, which `sender` does not name"};
   known_.push_back({address, status});

@@ -30,7 +30,7 @@ class Senders {
   /// @param hosts  addresses of other hosts that are heard, "192.168.1.7".
   /// @param silence  a sender that is silent for longer makes room for another.
   Senders(std::vector<std::string> hosts, std::chrono::nanoseconds silence,
-          UserOf user_of = internal::udp_sender_user)
+          UserOf user_of = udp_sender_user)
       : hosts_(std::move(hosts)), user_of_(std::move(user_of)), turn_(silence) {}
 
   /// Begins to handle the packets that have come, which ends what is known of users: another

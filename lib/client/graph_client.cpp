@@ -20,8 +20,7 @@ constexpr std::chrono::minutes kAnswerTime{2};  // it may have to wait for a slo
 
 }  // namespace
 
-GraphClient::GraphClient(internal::Loop& loop, RunningGraph graph)
-    : loop_(loop), graph_(std::move(graph)) {}
+GraphClient::GraphClient(Loop& loop, RunningGraph graph) : loop_(loop), graph_(std::move(graph)) {}
 
 GraphClient::~GraphClient() {
   if (commands_) commands_->abandon();
@@ -108,7 +107,7 @@ void GraphClient::fail(const Error& error) {
 }
 
 Result<GraphAnswer> ask(const RunningGraph& graph, std::vector<std::string> commands, int stop) {
-  auto loop = HC_TRY(internal::Loop::make());
+  auto loop = HC_TRY(Loop::make());
   std::optional<Result<GraphAnswer>> answer;
   const auto stopped = HC_TRY(loop->watch(stop, stop < 0 ? 0U : EPOLLIN, [&](auto) {
     answer = Error{Code::Stopped, "asked to stop"};

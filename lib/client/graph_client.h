@@ -38,7 +38,7 @@ class GraphClient {
   /// (256 commands are waiting), System.
   using Answered = std::function<void(const Result<GraphAnswer>& answer)>;
 
-  GraphClient(internal::Loop& loop, RunningGraph graph);
+  GraphClient(Loop& loop, RunningGraph graph);
   ~GraphClient();
   GraphClient(const GraphClient&) = delete;
   GraphClient& operator=(const GraphClient&) = delete;
@@ -56,7 +56,7 @@ class GraphClient {
  private:
   struct Waiting {
     Answered answered;
-    internal::Loop::TimePoint until;
+    Loop::TimePoint until;
   };
 
   Status open();
@@ -66,7 +66,7 @@ class GraphClient {
   void check();
   void fail(const Error& error);
 
-  internal::Loop& loop_;
+  Loop& loop_;
   const RunningGraph graph_;
   std::optional<Callbacks> callbacks_;  // of watch()
   std::unique_ptr<internal::Intake> states_, answers_;
@@ -75,7 +75,7 @@ class GraphClient {
   std::map<std::int64_t, Waiting> waiting_;  // by number
   std::int64_t sent_ = 0;
   bool is_alive_ = true;  // it has said something since the last check()
-  internal::Loop::Handle check_;
+  Loop::Handle check_;
 };
 
 /// As GraphClient::command(), and waits for the answer.

@@ -21,18 +21,18 @@ namespace {
 bool is_own(const RunningGraph& graph) {
   const auto socket = connect_to(graph);
   if (!socket) return errno == EAGAIN;  // whose a full queue is, is known when it answers
-  const auto user = internal::unix_peer_user(socket->get());
+  const auto user = unix_peer_user(socket->get());
   return user && *user == ::geteuid();
 }
 
 }  // namespace
 
-Result<internal::Descriptor> connect_to(const RunningGraph& graph) {
+Result<Descriptor> connect_to(const RunningGraph& graph) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   const std::string name = graph.command_uri().substr(std::string_view("unix:@").size());
   name.copy(address.sun_path + 1, sizeof address.sun_path - 1);
-  internal::Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
   if (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), size) != 0)
     return Error{Code::Closed,

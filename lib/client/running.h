@@ -22,6 +22,6 @@ std::vector<RunningGraph> find_running();
 
 /// A connection to a graph's socket for commands, which breaks when the graph ends.
 /// Errors: Closed (no graph has that name, or its queue of connections is full).
-Result<internal::Descriptor> connect_to(const RunningGraph& graph);
+Result<Descriptor> connect_to(const RunningGraph& graph);
 
 }  // namespace hc

@@ -16,18 +16,16 @@
 namespace hc {
 namespace {
 
-using internal::Descriptor;
-
 /// A source that is at its end when the graph is: modules restart, so that a broken link is none.
 class TapSource final : public Source {
  public:
   static Result<std::unique_ptr<Source>> make(std::unique_ptr<Source> source, Descriptor graph) {
-    Descriptor both(HC_TRY(
-        internal::system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); })));
+    Descriptor both(
+        HC_TRY(system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); })));
     for (const auto& [number, events] :
          {std::pair(source->descriptor(), EPOLLIN), {graph.get(), EPOLLRDHUP}}) {
       epoll_event event{static_cast<std::uint32_t>(events), {}};
-      HC_TRY(internal::system_call("epoll_ctl", "", [&, watched = number] {
+      HC_TRY(system_call("epoll_ctl", "", [&, watched = number] {
         return ::epoll_ctl(both.get(), EPOLL_CTL_ADD, watched, &event);
       }));
     }

@@ -64,7 +64,7 @@ class Tap {
   const RunningGraph graph_;
   const std::string port_;
   const Callbacks callbacks_;
-  internal::Event wake_ = internal::Event::must_make();
+  Event wake_ = Event::must_make();
   std::atomic<bool> is_open_{false}, is_stopped_{false};
   std::thread thread_;
 };

@@ -79,7 +79,7 @@ Status take_from(int socket, const std::vector<unsigned>& interfaces) {
   program.push_back(BPF_STMT(BPF_RET | BPF_K, 0xffffffff));
   const sock_fprog filter = {static_cast<unsigned short>(program.size()), program.data()};
   if (::setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof filter) != 0)
-    return internal::system_error("setsockopt", "SO_ATTACH_FILTER");
+    return system_error("setsockopt", "SO_ATTACH_FILTER");
   return {};
 }
 

@@ -60,7 +60,7 @@ Result<Place> parse_place(const Uri& uri) {
 
 Result<std::vector<unsigned>> find_interfaces(const Place& place) {
   ifaddrs* first = nullptr;
-  if (::getifaddrs(&first) != 0) return internal::system_error("getifaddrs", "");
+  if (::getifaddrs(&first) != 0) return system_error("getifaddrs", "");
   const std::unique_ptr<ifaddrs, decltype(&::freeifaddrs)> all(first, &::freeifaddrs);
   const auto number_of = [&](const std::string& address) {
     for (const auto* each = all.get(); each != nullptr; each = each->ifa_next) {

@@ -48,7 +48,7 @@ class DdsSink final : public Sink {
   ~DdsSink() override { end(); }
 
   Status begin(const Place& place) {
-    event_ = HC_TRY(internal::Event::make());
+    event_ = HC_TRY(Event::make());
     participant_ = HC_TRY(Participant::open(place, options_.limits));
     const auto qos = make_qos();
     const ListenerOwner listener(dds_create_listener(this));
@@ -261,7 +261,7 @@ class DdsSink final : public Sink {
       }
       if (dds_wait_for_acks(writer_.handle(), DDS_MSECS(20)) != DDS_RETCODE_TIMEOUT) return {};
       const auto now = steady_clock::now();
-      if (!give_up && !internal::wait_for(-1, 0, options_.stop, now)) give_up = now + kGrace;
+      if (!give_up && !wait_for(-1, 0, options_.stop, now)) give_up = now + kGrace;
       if (give_up && now >= *give_up)
         return Error{Code::Truncated, "a reader has not acknowledged what was sent to it"};
     }
@@ -278,7 +278,7 @@ class DdsSink final : public Sink {
   LinkOptions options_;
   internal::Patience patience_;
   Encoder encoder_;
-  internal::Event event_;  // readable when something has changed that is waited for
+  Event event_;  // readable when something has changed that is waited for
 
   mutable std::mutex mutex_;  // of what follows
   Audience audience_;

@@ -68,7 +68,7 @@ class DdsSource final : public Source {
   }
 
   Status begin(const Place& place) {
-    event_ = HC_TRY(internal::Event::make());
+    event_ = HC_TRY(Event::make());
     if (auto started = timer_.start(-1, [this](auto) { event_.raise(); }); !started) return started;
     if (give_up_ != TimePoint::max()) timer_.call_at(give_up_);
     participant_ = HC_TRY(Participant::open(place, options_.limits));
@@ -187,7 +187,7 @@ class DdsSource final : public Source {
   const bool loses_nothing_;
   const LinkOptions options_;
   const std::chrono::seconds reconnect_;
-  internal::Event event_;
+  Event event_;
 
   std::mutex reading_;  // of what follows; before the other one
   internal::HeaderMemo memo_;
@@ -204,7 +204,7 @@ class DdsSource final : public Source {
   bool has_instance_ = false;             // keeps the topic's until the domain ends
   TimePoint give_up_ = TimePoint::max();  // while there is no writer
 
-  internal::Watch timer_;
+  Watch timer_;
   Cache cache_{*this};  // outlives the participant
   std::unique_ptr<Participant> participant_;
   Entity reader_;

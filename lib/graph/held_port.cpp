@@ -14,11 +14,11 @@ Result<std::shared_ptr<const HeldPort>> hold_port(bool of_all_addresses, std::ui
   place.sin_family = AF_INET;
   place.sin_port = htons(number);
   place.sin_addr.s_addr = htonl(of_all_addresses ? INADDR_ANY : INADDR_LOOPBACK);
-  const internal::Address address(&place, sizeof place);
-  auto socket = HC_TRY(internal::bind_socket(
+  const Address address(&place, sizeof place);
+  auto socket = HC_TRY(bind_socket(
       address, (of_all_addresses ? "0.0.0.0:" : "127.0.0.1:") + std::to_string(number)));
   socklen_t size = sizeof place;
-  HC_TRY(internal::system_call("getsockname", "", [&] {
+  HC_TRY(system_call("getsockname", "", [&] {
     return ::getsockname(socket.get(), reinterpret_cast<sockaddr*>(&place), &size);
   }));
   return std::make_shared<const HeldPort>(HeldPort{std::move(socket), ntohs(place.sin_port)});

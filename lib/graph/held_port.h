@@ -12,7 +12,7 @@ namespace hc {
 /// A TCP port that no other program is given. It is bound and nobody listens here, so that a
 /// program that knows the number and sets SO_REUSEADDR can listen on it, again and again.
 struct HeldPort {
-  internal::Descriptor socket;
+  Descriptor socket;
   std::uint16_t number = 0;
 };
 

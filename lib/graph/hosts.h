@@ -15,9 +15,7 @@
 
 namespace hc {
 
-namespace internal {
 class Loop;
-}
 class ModuleProcess;
 struct ModuleCallbacks;
 
@@ -70,7 +68,7 @@ class Hosts {
 
   /// The loop, which must turn while a host is connected: an agent that hears nothing for 3 s
   /// ends.
-  [[nodiscard]] virtual internal::Loop& loop() = 0;
+  [[nodiscard]] virtual Loop& loop() = 0;
   /// Calls `work`, which may wait for hosts, on another thread, and turns the loop until it
   /// returns. Errors: System.
   virtual Status serve(const std::function<void()>& work) = 0;

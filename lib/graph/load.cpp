@@ -230,8 +230,8 @@ class FileLoader : public GraphLoader {
   ///
   /// Errors: System.
   Status ask_hosts(const Graph& graph, Problems& problems, int stop, HostAnswers& elsewhere) {
-    const auto loop = HC_TRY(internal::Loop::make());
-    std::vector<internal::Aside> asked;
+    const auto loop = HC_TRY(Loop::make());
+    std::vector<Aside> asked;
     std::size_t answers = 0;
     for (const auto& declared : graph.hosts) {
       std::set<std::string> programs;
@@ -251,7 +251,7 @@ class FileLoader : public GraphLoader {
           problems.add(declared.place, "host {}: {}", declared.name,
                        there.connected.error().detail);
       };
-      asked.push_back(HC_TRY(internal::run_aside(
+      asked.push_back(HC_TRY(run_aside(
           *loop,
           [=, &declared = declared, this](int) {
             return ask_host(*options_.hosts, declared, programs, stop);

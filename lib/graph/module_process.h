@@ -56,7 +56,7 @@ class ModuleProcess {
   [[nodiscard]] virtual pid_t number() const = 0;
   /// What it and all that it has started use.
   /// @param with_memory  whether to measure memory, and look for further processes.
-  virtual internal::Usage usage(bool with_memory) = 0;
+  virtual Usage usage(bool with_memory) = 0;
 };
 
 /// Runs the processes of a module on this host.
@@ -64,9 +64,8 @@ class ModuleProcess {
 /// @param key  descriptor that they get as kKeyDescriptor; -1: none.
 ///
 /// Errors: Invalid, System (the name is in use).
-Result<std::unique_ptr<ModuleProcess>> make_process_here(internal::Loop& loop,
-                                                         const std::string& manage_uri, int key,
-                                                         ModuleCallbacks callbacks);
+Result<std::unique_ptr<ModuleProcess>> make_process_here(Loop& loop, const std::string& manage_uri,
+                                                         int key, ModuleCallbacks callbacks);
 
 /// Reads and drops the messages of a link whose reader has ended, as long as the result exists, so
 /// that its writer does not wait.
@@ -75,7 +74,6 @@ Result<std::unique_ptr<ModuleProcess>> make_process_here(internal::Loop& loop,
 /// @param key  as above.
 ///
 /// Errors: as open_source().
-Result<std::shared_ptr<void>> read_in_place_here(internal::Loop& loop, std::string reader_uri,
-                                                 int key);
+Result<std::shared_ptr<void>> read_in_place_here(Loop& loop, std::string reader_uri, int key);
 
 }  // namespace hc

@@ -113,7 +113,7 @@ TEST(Plan, ALinkGoesOverTcpWhereBothEndsHaveNothingBetter) {
   EXPECT_NE(ports.at("t.java.out.filter.in")->number, number);
   // Who listens there can do so, and the port stays that of the link in the next plan.
   sockaddr_in place{AF_INET, htons(number), {htonl(INADDR_LOOPBACK)}, {}};
-  EXPECT_TRUE(internal::listen_on({&place, sizeof place}, port));
+  EXPECT_TRUE(listen_on({&place, sizeof place}, port));
   auto next = must(plan(text + "parameters.rate = 1\n", {}, &planned, hold));
   EXPECT_EQ(next.ports, planned.ports);
   EXPECT_EQ(next.links[1].sender_uri, planned.links[1].sender_uri);

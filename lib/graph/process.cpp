@@ -17,10 +17,6 @@
 
 namespace hc {
 
-using internal::Descriptor;
-using internal::system_call;
-using internal::system_error;
-
 namespace {
 
 /// What a guard and its program get from us. Between fork and exec, and in a guard all its life,

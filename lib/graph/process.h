@@ -72,10 +72,10 @@ class Process {
  private:
   Process() = default;
 
-  pid_t number_ = -1;            // of the guard, and its group
-  internal::Descriptor handle_;  // a pidfd
-  internal::Descriptor output_, errors_, input_;
-  internal::Descriptor life_;  // closed: the guard is to kill
+  pid_t number_ = -1;  // of the guard, and its group
+  Descriptor handle_;  // a pidfd
+  Descriptor output_, errors_, input_;
+  Descriptor life_;  // closed: the guard is to kill
   std::optional<int> status_;
   struct Owned {  // a moved-from process owns nothing
     bool flag = true;

@@ -23,8 +23,6 @@
 namespace hc::hosts {
 namespace {
 
-using internal::Aside;
-using internal::Loop;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kTimeToEnd{1};
@@ -249,7 +247,7 @@ class Agent {
   /// Answers a question on another thread, since programs that are asked may be slow.
   void answer_next() {
     if (aside_.is_busy() || questions_.empty()) return;
-    auto aside = internal::run_aside(
+    auto aside = run_aside(
         *loop_,
         [this, question = questions_.front()](int stop) {
           return answer_of(question, "text", answer_to(question, stop));
@@ -278,7 +276,7 @@ class Agent {
   std::unique_ptr<Loop> loop_;
   Aside aside_;
   std::unique_ptr<Conversation> conversation_;
-  internal::Descriptor key_;
+  Descriptor key_;
   std::map<std::int64_t, Child> children_;
   std::map<std::int64_t, std::shared_ptr<const HeldPort>> ports_;
   std::map<std::int64_t, std::shared_ptr<void>> readers_;  // in the place of modules

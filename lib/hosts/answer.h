@@ -20,13 +20,13 @@ using Give = std::function<void(Result<T>)>;
 ///
 /// Errors: Stopped (`stop` is readable), Closed (no answer in time), System.
 template <typename T>
-Result<T> answer_of(internal::Loop& loop, int stop, std::chrono::nanoseconds timeout,
+Result<T> answer_of(Loop& loop, int stop, std::chrono::nanoseconds timeout,
                     std::function<void(Give<T>)> begin) {
   struct Here {
-    std::unique_ptr<internal::Loop> loop;
+    std::unique_ptr<Loop> loop;
     std::optional<Result<T>> answer;
   };
-  auto here = std::make_shared<Here>(Here{HC_TRY(internal::Loop::make()), {}});
+  auto here = std::make_shared<Here>(Here{HC_TRY(Loop::make()), {}});
   loop.post([here, begin = std::move(begin)] {
     begin([here](Result<T> value) {
       here->loop->post(

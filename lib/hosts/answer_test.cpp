@@ -27,14 +27,14 @@ class AnswerTest : public ::testing::Test {
     return answer.get();
   }
 
-  std::unique_ptr<internal::Loop> loop_ = std::move(*internal::Loop::make());
+  std::unique_ptr<Loop> loop_ = std::move(*Loop::make());
   bool is_done_ = false;
 };
 
 TEST_F(AnswerTest, ComesAtOnceOrLater) {
   EXPECT_EQ(*ask([](const auto& give) { give(std::string("now")); }), "now");
   is_done_ = false;
-  internal::Loop::Handle timer;
+  Loop::Handle timer;
   EXPECT_EQ(*ask([&](const auto& give) {
     timer = loop_->call_at({}, [give] { give(std::string("later")); });
   }),
@@ -49,7 +49,7 @@ TEST_F(AnswerTest, ComesAtOnceOrLater) {
 }
 
 TEST_F(AnswerTest, IsNotAwaitedForEver) {
-  const auto stop = internal::Event::must_make();
+  const auto stop = Event::must_make();
   Give<std::string> late;
   auto asked = [&](const auto& give) {
     late = give;

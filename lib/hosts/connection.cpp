@@ -117,7 +117,7 @@ class Connection::Module final : public ModuleProcess {
     return true;
   }
   [[nodiscard]] pid_t number() const override { return process_; }
-  internal::Usage usage(bool) override { return usage_; }
+  Usage usage(bool) override { return usage_; }
 
   // Events that the agent reports.
 
@@ -158,7 +158,7 @@ class Connection::Module final : public ModuleProcess {
   const ModuleCallbacks callbacks_;
   bool runs_ = false, is_listening_ = false;
   pid_t process_ = 0;
-  internal::Usage usage_;
+  Usage usage_;
 };
 
 bool Connection::is_of(const GraphHost& declared) const {
@@ -229,8 +229,7 @@ void Connection::ask_for_port(bool of_all, std::uint16_t number, Give<std::uint1
 /// A port there, released when its last owner ends, on whichever thread.
 std::shared_ptr<const HeldPort> Connection::held(std::uint16_t number, bool of_all) {
   ports_[number] = of_all;
-  return {new HeldPort{internal::Descriptor(), number},
-          [host = weak_from_this()](const HeldPort* port) {
+  return {new HeldPort{Descriptor(), number}, [host = weak_from_this()](const HeldPort* port) {
             if (auto self = host.lock())
               self->loop_.post([self, held = port->number] {
                 self->ports_.erase(held);

@@ -31,7 +31,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
     std::function<void()> changed;
   };
 
-  Connection(internal::Loop& loop, Parts parts) : loop_(loop), parts_(std::move(parts)) {
+  Connection(Loop& loop, Parts parts) : loop_(loop), parts_(std::move(parts)) {
     state_.name = parts_.declared.name;
   }
 
@@ -94,7 +94,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   [[nodiscard]] std::string reason_of(const std::string& noticed) const;
   void disconnect();
 
-  internal::Loop& loop_;
+  Loop& loop_;
   const Parts parts_;
   std::function<void(Status)> opened_;  // to be called with the outcome of the first attempt
   bool is_closed_ = false;
@@ -104,7 +104,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   // While ssh runs.
   std::optional<Process> ssh_;
   std::unique_ptr<Conversation> conversation_;
-  internal::Loop::Handle ssh_errors_, heartbeat_, again_;
+  Loop::Handle ssh_errors_, heartbeat_, again_;
   std::string error_text_;  // what ssh has written to its standard error
   bool is_greeted_ = false;
   Backoff pause_{std::chrono::milliseconds(100), std::chrono::seconds(5)};

@@ -61,7 +61,7 @@ Message make_bytes(std::string_view bytes, std::int64_t process) {
   return std::move(draft).finish();
 }
 
-Result<std::unique_ptr<Conversation>> Conversation::make(internal::Loop& loop, int in, int out,
+Result<std::unique_ptr<Conversation>> Conversation::make(Loop& loop, int in, int out,
                                                          std::chrono::milliseconds patience,
                                                          Callbacks callbacks) {
   std::unique_ptr<Conversation> made(new Conversation(in, out, std::move(callbacks)));
@@ -121,7 +121,7 @@ void Conversation::read() {
     if (size == 0) return end(std::string(kEnded));
     if (size < 0 && errno == EINTR) continue;
     if (size < 0 && errno == EAGAIN) return;
-    if (size < 0) return end(internal::system_error("read", "agent").detail);
+    if (size < 0) return end(system_error("read", "agent").detail);
     reader_.commit(static_cast<std::size_t>(size));
   }
 }

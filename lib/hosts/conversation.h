@@ -72,7 +72,7 @@ class Conversation {
   /// @param in, out  descriptors that do not block, and stay open as long as this.
   /// @param patience  how long the first message may take.
   /// Errors: System.
-  static Result<std::unique_ptr<Conversation>> make(internal::Loop& loop, int in, int out,
+  static Result<std::unique_ptr<Conversation>> make(Loop& loop, int in, int out,
                                                     std::chrono::milliseconds patience,
                                                     Callbacks callbacks);
 
@@ -97,7 +97,7 @@ class Conversation {
   std::string waiting_;
   std::chrono::steady_clock::time_point heard_;
   std::chrono::milliseconds patience_{0};
-  internal::Loop::Handle readable_, writable_, silence_;
+  Loop::Handle readable_, writable_, silence_;
 };
 
 }  // namespace hc::hosts

@@ -18,7 +18,7 @@ namespace {
 
 class AllHosts final : public Hosts {
  public:
-  AllHosts(std::string version, std::unique_ptr<internal::Loop> loop)
+  AllHosts(std::string version, std::unique_ptr<Loop> loop)
       : version_(std::move(version)), loop_(std::move(loop)) {}
   AllHosts(const AllHosts&) = delete;
   AllHosts& operator=(const AllHosts&) = delete;
@@ -46,7 +46,7 @@ class AllHosts final : public Hosts {
   }
   Status serve(const std::function<void()>& work) override {
     bool is_done = false;
-    const auto aside = HC_TRY(internal::run_aside(
+    const auto aside = HC_TRY(run_aside(
         *loop_, [&work](int) { return work(), true; }, [&](bool) { is_done = true; }));
     while (!is_done) HC_TRY(loop_->turn());
     return {};
@@ -56,7 +56,7 @@ class AllHosts final : public Hosts {
     const auto found = hosts_.find(name);
     return found == hosts_.end() ? nullptr : found->second;
   }
-  [[nodiscard]] internal::Loop& loop() override { return *loop_; }
+  [[nodiscard]] Loop& loop() override { return *loop_; }
   [[nodiscard]] std::string fingerprint() const override { return fingerprint_; }
   [[nodiscard]] int key() const override { return key_.get(); }
   [[nodiscard]] int descriptor() const override { return changed_.descriptor(); }
@@ -115,20 +115,20 @@ class AllHosts final : public Hosts {
 
   const std::string version_;
   std::string fingerprint_;
-  internal::Descriptor key_;
-  const std::unique_ptr<internal::Loop> loop_;
-  internal::Event changed_ = internal::Event::must_make();
+  Descriptor key_;
+  const std::unique_ptr<Loop> loop_;
+  Event changed_ = Event::must_make();
   std::vector<std::string> events_;
   std::map<std::string, std::shared_ptr<Connection>> hosts_;
   std::set<std::shared_ptr<Connection>> opening_;
   std::optional<std::int64_t> wall_offset_;
-  internal::Loop::Handle clock_;
+  Loop::Handle clock_;
 };
 
 }  // namespace
 
 Result<std::unique_ptr<Hosts>> make_hosts(std::string version) {
-  auto loop = HC_TRY(internal::Loop::make());
+  auto loop = HC_TRY(Loop::make());
   auto hosts = std::make_unique<AllHosts>(std::move(version), std::move(loop));
   HC_TRY(hosts->make_key());
   return std::unique_ptr<Hosts>(std::move(hosts));

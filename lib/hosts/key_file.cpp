@@ -9,15 +9,15 @@
 
 namespace hc::hosts {
 
-Result<internal::Descriptor> make_key_file(std::string_view key) {
-  internal::Descriptor file(HC_TRY(internal::system_call("memfd_create", "key", [] {
+Result<Descriptor> make_key_file(std::string_view key) {
+  Descriptor file(HC_TRY(system_call("memfd_create", "key", [] {
     return ::memfd_create("hypercolumn key", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   })));
   constexpr mode_t kOwnerOnly = 0600;
-  HC_TRY(internal::system_call("fchmod", "key", [&] { return ::fchmod(file.get(), kOwnerOnly); }));
+  HC_TRY(system_call("fchmod", "key", [&] { return ::fchmod(file.get(), kOwnerOnly); }));
   HC_TRY(write_all(file.get(), key));
   // Modules have it too, and one must not change it for the others.
-  HC_TRY(internal::system_call("fcntl", "key", [&] {
+  HC_TRY(system_call("fcntl", "key", [&] {
     constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL;
     return ::fcntl(file.get(), F_ADD_SEALS, kSeals);
   }));

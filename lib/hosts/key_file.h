@@ -10,6 +10,6 @@
 namespace hc::hosts {
 
 /// @param key  in PEM. Errors: System.
-Result<internal::Descriptor> make_key_file(std::string_view key);
+Result<Descriptor> make_key_file(std::string_view key);
 
 }  // namespace hc::hosts

@@ -25,7 +25,7 @@ struct Capture::Queue {
   std::deque<Heard> pieces;
   std::size_t most = 1;
   std::int64_t lost = 0;
-  internal::Event event;  // while there are any
+  Event event;  // while there are any
   SystemClock clock;
 
   void put(const void* bytes, std::size_t size) {
@@ -57,7 +57,7 @@ Capture::Capture(AudioSystem system, std::unique_ptr<Queue> queue)
 Result<std::unique_ptr<Capture>> Capture::open(const std::string& device, const Format& format,
                                                int frames) {
   auto system = HC_TRY(start_audio());
-  auto event = HC_TRY(internal::Event::make());
+  auto event = HC_TRY(Event::make());
   std::unique_ptr<Capture> capture(new Capture(std::move(system), std::make_unique<Queue>()));
   capture->queue_->event = std::move(event);
   const auto per_second = static_cast<std::size_t>(format.rate) / static_cast<std::size_t>(frames);

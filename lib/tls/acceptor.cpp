@@ -12,9 +12,6 @@
 namespace hc::tls {
 namespace {
 
-using internal::ConnectedSocket;
-using internal::Descriptor;
-
 std::string name_of_peer(int socket) {
   sockaddr_storage address{};
   socklen_t size = sizeof address;
@@ -31,10 +28,10 @@ std::string name_of_peer(int socket) {
 }  // namespace
 
 Result<Descriptor> Acceptor::start() {
-  Descriptor readable = HC_TRY(internal::open_descriptor(
-      "eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); }));
+  Descriptor readable = HC_TRY(
+      open_descriptor("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); }));
   event_ = readable.get();
-  loop_ = HC_TRY(internal::Loop::make());
+  loop_ = HC_TRY(Loop::make());
   auto watched = loop_->watch(socket_.descriptor.get(), EPOLLIN, [this](auto) { accept_all(); });
   if (!watched) return watched.error();
   listening_ = std::move(*watched);
@@ -80,8 +77,8 @@ Status Acceptor::let_in(ConnectedSocket accepted) {
   }
   const int number = accepted.get();
   accepted.channel = std::make_unique<TlsChannel>(context_, number, TlsChannel::Side::Listens);
-  const auto peer = half_open_.insert(
-      half_open_.end(), {std::move(accepted), name_of_peer(number), internal::Loop::Handle()});
+  const auto peer = half_open_.insert(half_open_.end(),
+                                      {std::move(accepted), name_of_peer(number), Loop::Handle()});
   auto watched = loop_->watch(number, EPOLLIN,
                               [this, peer](std::uint32_t events) { go_on(peer, events == 0); });
   if (!watched) {

@@ -30,47 +30,47 @@ class Acceptor {
   /// How long a handshake may take.
   static constexpr std::chrono::seconds kPatience{4};
 
-  Acceptor(internal::ListeningSocket socket, std::shared_ptr<const Context> context)
+  Acceptor(ListeningSocket socket, std::shared_ptr<const Context> context)
       : socket_(std::move(socket)), context_(std::move(context)) {}
   ~Acceptor() { watch_.end(); }
   Acceptor(const Acceptor&) = delete;
   Acceptor& operator=(const Acceptor&) = delete;
 
   /// Begins; gives a descriptor that is readable when take() has something to do. Errors: System.
-  Result<internal::Descriptor> start();
+  Result<Descriptor> start();
   /// The next peer that has been agreed with; none (-1) when there is none. On any thread.
-  internal::ConnectedSocket take(const LogSink& log);
+  ConnectedSocket take(const LogSink& log);
 
  private:
   struct HalfOpen {
-    internal::ConnectedSocket socket;
+    ConnectedSocket socket;
     std::string name;  // "192.168.1.7:40312"
-    internal::Loop::Handle watch;
+    Loop::Handle watch;
   };
   using Peer = std::list<HalfOpen>::iterator;
 
   void accept_all();
-  Status let_in(internal::ConnectedSocket accepted);
+  Status let_in(ConnectedSocket accepted);
   void go_on(Peer peer, bool is_late);
   void say(std::string line);
   void raise() const { ::eventfd_write(event_, 1); }
 
-  internal::ListeningSocket socket_;
+  ListeningSocket socket_;
   std::shared_ptr<const Context> context_;
-  std::unique_ptr<internal::Loop> loop_;  // of the listening socket and the half-open connections
-  internal::Loop::Handle listening_;
+  std::unique_ptr<Loop> loop_;  // of the listening socket and the half-open connections
+  Loop::Handle listening_;
   std::list<HalfOpen> half_open_;
   bool is_crowded_ = false;
   internal::Remarks remarks_;
   std::mutex mutex_;
-  std::deque<internal::ConnectedSocket> agreed_;  // with the mutex
+  std::deque<ConnectedSocket> agreed_;  // with the mutex
   int event_ = -1;
-  internal::Watch watch_;
+  Watch watch_;
 };
 
 /// The listener at `tls:HOST:PORT`, and a socket that listens at `tls-listen:[HOST:]PORT`.
 /// Errors: Invalid, NotFound, System.
 Result<internal::Peer> find_peer(const Uri& uri);
-Result<internal::ListeningSocket> listen(const Uri& uri);
+Result<ListeningSocket> listen(const Uri& uri);
 
 }  // namespace hc::tls

@@ -142,7 +142,7 @@ void TlsChannel::fail(int result) {
   if (state_ != State::Agreed) {
     failure_ = Error{Code::Closed, why_refused(result)};
   } else if (send_errno_ != 0) {
-    failure_ = internal::system_error("write", "", send_errno_);
+    failure_ = system_error("write", "", send_errno_);
   } else if (const auto error = ERR_peek_error();
              error == 0 || ERR_GET_REASON(error) == SSL_R_UNEXPECTED_EOF_WHILE_READING) {
     failure_ = Error{Code::Closed, "the peer vanished"};
@@ -170,7 +170,7 @@ ssize_t TlsChannel::read(std::span<std::byte> space) {
   }
   if (error == SSL_ERROR_SYSCALL && number != 0 && !failure_) {
     failure_ = number == ECONNRESET ? Error{Code::Closed, "the peer vanished"}
-                                    : internal::system_error("read", "", number);
+                                    : system_error("read", "", number);
     state_ = State::Failed;
   }
   fail(got);

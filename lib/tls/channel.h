@@ -18,7 +18,7 @@ namespace hc::tls {
 /// TLS over a socket. A client has agreed once the server has said that it accepts the client's
 /// key, so that one that is refused hears of it before it sends anything; the server says it by its
 /// next write(), of nothing at least.
-class TlsChannel final : public internal::SecureChannel {
+class TlsChannel final : public SecureChannel {
  public:
   enum class Side { Dials, Listens };
 

@@ -78,7 +78,7 @@ std::string fingerprint(const X509& certificate) {
 
 Result<File> open_file(const std::string& path) {
   File file(BIO_new_file(path.c_str(), "r"));
-  if (!file) return internal::system_error("open", path);
+  if (!file) return system_error("open", path);
   return file;
 }
 
@@ -118,7 +118,7 @@ Status Context::set_up() {
 
 Status Context::use_key(const std::string& path) {
   struct stat status {};
-  auto looked = internal::system_call("open", path, [&] { return ::stat(path.c_str(), &status); });
+  auto looked = system_call("open", path, [&] { return ::stat(path.c_str(), &status); });
   if (!looked) return looked.error();
   if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
     return Error{Code::Invalid,

@@ -58,12 +58,12 @@ Result<std::string> make_key_text() {
 Status make_key(const std::string& path) {
   const auto text = HC_TRY(make_key_text());
   constexpr mode_t kOwnerOnly = 0600;
-  const auto file = HC_TRY(internal::open_descriptor("open", path, [&] {
+  const auto file = HC_TRY(open_descriptor("open", path, [&] {
     return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerOnly);
   }));
   for (std::string_view rest = text; !rest.empty();) {
-    auto written = internal::system_call(
-        "write", path, [&] { return ::write(file.get(), rest.data(), rest.size()); });
+    auto written =
+        system_call("write", path, [&] { return ::write(file.get(), rest.data(), rest.size()); });
     if (!written) {
       ::unlink(path.c_str());
       return written.error();

@@ -8,7 +8,7 @@ namespace hc::testing {
 namespace {
 
 /// A plain socket whose bytes go over TLS to a place, and come from there.
-internal::Descriptor connect(const std::string& place) {
+Descriptor connect(const std::string& place) {
   static const Context kContext = make_context("b");
   auto socket = connect_plainly(place);
   auto session = shake_hands(kContext.get(), socket);

@@ -82,8 +82,8 @@ inline Context make_context(const std::string& key) {
 }
 
 /// A TCP socket that is connected to a place.
-inline internal::Descriptor connect_plainly(const std::string& place) {
-  internal::Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+inline Descriptor connect_plainly(const std::string& place) {
+  Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in address = loopback(parse_host_port(place)->port);
   EXPECT_EQ(::connect(socket.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
   return socket;
@@ -96,7 +96,7 @@ inline std::string complaint() {
 }
 
 /// Carries bytes between a plain socket and TLS until one of them has ended, in a thread.
-inline void relay(Session session, internal::Descriptor secure, internal::Descriptor plain) {
+inline void relay(Session session, Descriptor secure, Descriptor plain) {
   std::thread([session = std::move(session), secure = std::move(secure), plain = std::move(plain)] {
     std::array<char, 1 << 14> bytes{};
     std::array<pollfd, 2> polled = {{{plain.get(), POLLIN, 0}, {secure.get(), POLLIN, 0}}};
@@ -125,14 +125,14 @@ inline void relay(Session session, internal::Descriptor secure, internal::Descri
 }
 
 /// The two ends of a pair of sockets.
-inline std::pair<internal::Descriptor, internal::Descriptor> make_pair() {
+inline std::pair<Descriptor, Descriptor> make_pair() {
   std::array<int, 2> ends{};
   EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
-  return {internal::Descriptor(ends[0]), internal::Descriptor(ends[1])};
+  return {Descriptor(ends[0]), Descriptor(ends[1])};
 }
 
 /// Shakes hands over a socket, whose calls wait, as a client; null where that was in vain.
-inline Session shake_hands(SSL_CTX* context, const internal::Descriptor& socket) {
+inline Session shake_hands(SSL_CTX* context, const Descriptor& socket) {
   ERR_clear_error();
   Session session(SSL_new(context));
   SSL_set_fd(session.get(), socket.get());

@@ -144,7 +144,7 @@ TEST(Tls, AtAPlainPort) {
 TEST_F(TlsRefusal, AThousandThatStartAndSayNoMore) {
   constexpr std::size_t kCount = 1000;
   const auto before = open_descriptors();
-  std::vector<internal::Descriptor> sockets;
+  std::vector<Descriptor> sockets;
   constexpr char kBegin[] = {22, 3, 1, 2};  // of a client's first record
   for (std::size_t i = 0; i < kCount; ++i) {
     sockets.push_back(connect_plainly(place_));
@@ -159,7 +159,7 @@ TEST_F(TlsRefusal, AThousandThatStartAndSayNoMore) {
 
 // A relay between two ends that know each other, with a key of its own.
 TEST_F(TlsRefusal, AManInTheMiddle) {
-  const auto listening = *internal::listen_on(loopback_address(0), "relay");
+  const auto listening = *listen_on(loopback_address(0), "relay");
   sockaddr_in address{};
   socklen_t size = sizeof address;
   ASSERT_EQ(::getsockname(listening.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
@@ -169,7 +169,7 @@ TEST_F(TlsRefusal, AManInTheMiddle) {
 
   pollfd polled{listening.get(), POLLIN, 0};
   ASSERT_EQ(::poll(&polled, 1, -1), 1);
-  const internal::Descriptor accepted(::accept4(listening.get(), nullptr, nullptr, SOCK_CLOEXEC));
+  const Descriptor accepted(::accept4(listening.get(), nullptr, nullptr, SOCK_CLOEXEC));
   const auto context = make_context("c");
   const Session session(SSL_new(context.get()));
   SSL_set_fd(session.get(), accepted.get());

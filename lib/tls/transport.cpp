@@ -18,13 +18,13 @@ Result<internal::Peer> find_peer(const Uri& uri) {
   return peer;
 }
 
-Result<internal::ListeningSocket> listen(const Uri& uri) {
+Result<ListeningSocket> listen(const Uri& uri) {
   auto context = HC_TRY(Context::make(uri));
   auto listening = internal::listen_tcp(uri);
   if (!listening) return listening;
   auto acceptor = std::make_shared<Acceptor>(std::move(*listening), std::move(context));
   auto readable = HC_TRY(acceptor->start());
-  internal::ListeningSocket socket;
+  ListeningSocket socket;
   socket.descriptor = std::move(readable);
   socket.take_agreed = [acceptor](const LogSink& log) { return acceptor->take(log); };
   return socket;

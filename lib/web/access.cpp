@@ -102,7 +102,7 @@ bool Access::is_origin(std::string_view origin, std::string_view host) const {
 }
 
 std::string Access::make_token(Right right) {
-  tokens_.emplace_back(internal::make_secret(), right);
+  tokens_.emplace_back(make_secret(), right);
   if (tokens_.size() > kMaxTokens) tokens_.pop_front();
   return tokens_.back().first;
 }
@@ -140,7 +140,7 @@ std::string Access::sign(std::string_view begin) const {
 }
 
 std::string Access::begin_session(Right right) {
-  const std::string begin = std::string(name_of(right)) + "." + internal::make_secret() + ".";
+  const std::string begin = std::string(name_of(right)) + "." + make_secret() + ".";
   return begin + sign(begin);
 }
 

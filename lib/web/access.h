@@ -39,7 +39,7 @@ struct Place {
 class Access {
  public:
   /// @param key  signs sessions: one of the same key and port knows those of another process.
-  explicit Access(Place place, std::string key = internal::run_secret())
+  explicit Access(Place place, std::string key = run_secret())
       : place_(std::move(place)), key_(std::move(key)) {}
 
   /// Whether a `Host` header means this server, and not a name that somebody has pointed at it.

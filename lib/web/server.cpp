@@ -167,7 +167,7 @@ class Visitor {
 };
 
 Peer peer_of(tcp::socket& socket) {
-  const auto user = internal::tcp_peer_user(socket.native_handle(), internal::Connected::Accepted);
+  const auto user = tcp_peer_user(socket.native_handle(), Connected::Accepted);
   if (user) return {"user " + std::to_string(*user), *user != ::geteuid() && *user != 0};
   beast::error_code error;
   const auto address = socket.remote_endpoint(error).address();
@@ -372,7 +372,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     head << response.base();
     piece_ = head.str();
     // Never waits for the other end of a FIFO.
-    file_ = internal::Descriptor(
+    file_ = Descriptor(
         reply_.size == 0 ? -1 : ::open(reply_.file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
     // The body is shared by all pages, and not copied.
     left_ = Left(Buffers{asio::buffer(piece_), asio::buffer(body)});
@@ -410,8 +410,8 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   std::optional<http::request_parser<http::empty_body>> parser_;
   // What is being written.
   Reply reply_;
-  internal::Descriptor file_;  // of the reply
-  std::string piece_;          // its head, or a piece of the file
+  Descriptor file_;    // of the reply
+  std::string piece_;  // its head, or a piece of the file
   using Buffers = std::array<asio::const_buffer, 2>;
   using Left = beast::buffers_suffix<Buffers>;
   Left left_;  // of the piece, and of the body behind the head
@@ -419,7 +419,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
 
 class BeastServer final : public Server {
  public:
-  BeastServer(LogSink log, std::unique_ptr<internal::Loop> loop) : loop_(std::move(loop)) {
+  BeastServer(LogSink log, std::unique_ptr<Loop> loop) : loop_(std::move(loop)) {
     shared_->log = std::move(log);
   }
   ~BeastServer() override { loop_ready_.release(); }  // its descriptor is the loop's
@@ -477,7 +477,7 @@ class BeastServer final : public Server {
           loop_->call_at(std::chrono::steady_clock::now() + kMoment, [this] { context_.stop(); });
     });
   }
-  internal::Loop& loop() override { return *loop_; }
+  Loop& loop() override { return *loop_; }
   void post(std::function<void()> call) override {
     loop_->post([shared = shared_, call = std::move(call)] { shared->guard(call); });
   }
@@ -533,10 +533,10 @@ class BeastServer final : public Server {
   std::optional<asio::ssl::context> secure_;
   asio::io_context context_{1};
   tcp::acceptor acceptor_{context_};
-  std::unique_ptr<internal::Loop> loop_;
+  std::unique_ptr<Loop> loop_;
   asio::posix::stream_descriptor loop_ready_{context_, loop_->descriptor()};
-  std::list<internal::Loop::Handle> timers_;
-  internal::Loop::Handle stop_;
+  std::list<Loop::Handle> timers_;
+  Loop::Handle stop_;
 };
 
 }  // namespace
@@ -561,7 +561,7 @@ std::string_view option(std::string_view query, std::string_view name) {
 Result<std::unique_ptr<Server>> Server::listen(const std::string& address, std::uint16_t port,
                                                int ports, const std::string& identity,
                                                LogSink log) {
-  auto loop = internal::Loop::make();
+  auto loop = Loop::make();
   if (!loop) return loop.error();
   auto server = std::make_unique<BeastServer>(std::move(log), std::move(*loop));
   if (auto opened = server->open(address, port, ports); !opened) return opened.error();

@@ -104,7 +104,7 @@ class Server {
   /// Ends run() in a moment, so that what was sent last arrives. From any thread.
   virtual void stop() = 0;
   /// The loop of the thread of run(), for what else is done there.
-  [[nodiscard]] virtual internal::Loop& loop() = 0;
+  [[nodiscard]] virtual Loop& loop() = 0;
   /// As Loop::post(); what the function throws is logged.
   virtual void post(std::function<void()> call) = 0;
   /// Calls a function periodically, until it ends. To be called before run().

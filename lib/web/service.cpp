@@ -13,7 +13,7 @@ bool is_local(const std::string& address) {
   return address == "127.0.0.1" || address == "::1" || address == "localhost";
 }
 
-Result<std::unique_ptr<Service>> Service::open(const Listening& listening, internal::Loop& loop,
+Result<std::unique_ptr<Service>> Service::open(const Listening& listening, Loop& loop,
                                                std::function<void(std::string_view)> log) {
   constexpr int kPorts = 10;
   std::string identity;

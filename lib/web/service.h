@@ -36,7 +36,7 @@ class Service {
   /// @param loop  of the module's thread; it lives longer.
   /// @param log  called in the loop with lines of the server.
   /// Errors: as Server::listen() and load_identity().
-  static Result<std::unique_ptr<Service>> open(const Listening& listening, internal::Loop& loop,
+  static Result<std::unique_ptr<Service>> open(const Listening& listening, Loop& loop,
                                                std::function<void(std::string_view)> log);
   /// Closes the site, and waits a moment until what was sent last has arrived.
   ~Service();

@@ -37,8 +37,8 @@ class Hello final : public Site {
 };
 
 /// Asks for a path.
-internal::Descriptor ask(std::uint16_t port, const std::string& path) {
-  internal::Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+Descriptor ask(std::uint16_t port, const std::string& path) {
+  Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const auto place = testing::loopback(port);
   EXPECT_EQ(::connect(socket.get(), reinterpret_cast<const sockaddr*>(&place), sizeof place), 0);
   const std::string request =
@@ -65,7 +65,7 @@ std::string answer(int socket) {
 }
 
 TEST(Service, serves_a_site_and_closes_it_at_the_end) {
-  const auto loop = *internal::Loop::make();
+  const auto loop = *Loop::make();
   std::atomic<int> closed = 0;  // when the service ends, too
   auto service = Service::open({}, *loop, [](std::string_view) {});
   ASSERT_TRUE(service) << service.error().text();
@@ -86,7 +86,7 @@ TEST(Server, hosts_of_ipv4_are_told_apart_at_a_socket_of_ipv6) {
   Hello site(closed);
   std::thread thread([&] { (*server)->run(site); });
   const auto connect = [&](const char* from) {
-    internal::Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
     auto place = testing::loopback(0);
     EXPECT_EQ(::inet_pton(AF_INET, from, &place.sin_addr), 1);
     EXPECT_EQ(::bind(socket.get(), reinterpret_cast<const sockaddr*>(&place), sizeof place), 0);
@@ -95,7 +95,7 @@ TEST(Server, hosts_of_ipv4_are_told_apart_at_a_socket_of_ipv6) {
     return socket;
   };
   const auto one = connect("127.0.0.2");
-  std::vector<internal::Descriptor> crowd;
+  std::vector<Descriptor> crowd;
   while (crowd.size() < 200) crowd.push_back(connect("127.0.0.1"));  // more than may be strangers
   EXPECT_TRUE(is_readable(crowd.front().get())) << "the crowd's oldest is closed";
   const std::string request = "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
@@ -106,7 +106,7 @@ TEST(Server, hosts_of_ipv4_are_told_apart_at_a_socket_of_ipv6) {
 }
 
 TEST(Service, logs_in_the_loop_alone) {
-  const auto loop = *internal::Loop::make();
+  const auto loop = *Loop::make();
   std::string logged;
   std::atomic<int> closed = 0;  // when the service ends, too
   auto service = Service::open({}, *loop, [&](std::string_view line) { logged = line; });
@@ -120,7 +120,7 @@ TEST(Service, logs_in_the_loop_alone) {
 }
 
 TEST(Service, a_call_that_throws_is_logged_and_made_again) {
-  const auto loop = *internal::Loop::make();
+  const auto loop = *Loop::make();
   std::vector<std::string> logged;
   std::atomic<int> closed = 0, calls = 0;
   auto service =
@@ -139,7 +139,7 @@ TEST(Service, a_call_that_throws_is_logged_and_made_again) {
 }
 
 TEST(Service, ends_though_it_served_nothing) {
-  const auto loop = *internal::Loop::make();
+  const auto loop = *Loop::make();
   EXPECT_TRUE(Service::open({}, *loop, [](std::string_view) {}));
 }
 

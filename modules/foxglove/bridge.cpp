@@ -69,7 +69,7 @@ Bridge::Bridge(Options options, web::Access& access, web::Server& server)
     : options_(std::move(options)),
       access_(access),
       server_(server),
-      session_(hc::internal::make_secret()),
+      session_(hc::make_secret()),
       catalog_(options_.jpeg),
       graph_(server.loop(), options_.graph) {
   for (const auto& joint : options_.joints.fixed) joints_[joint.child] = joint;

@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
                                  "coordinate systems, by `hc run`; else those of the default head",
                                  {.fixed = true});
 
-  const auto loop = hc::value_or_end(hc::internal::Loop::make());
+  const auto loop = hc::value_or_end(hc::Loop::make());
   std::unique_ptr<web::Service> service;
   Bridge* bridge = nullptr;  // that it serves
   module.on_start([&] {

@@ -108,7 +108,7 @@ int main(int argc, char** argv) {
 
   const ModuleClock clock(module);
   std::unique_ptr<hc::record::Writer> recording;  // null: before the start
-  const auto loop = hc::value_or_end(hc::internal::Loop::make());
+  const auto loop = hc::value_or_end(hc::Loop::make());
   std::optional<GraphMetadata> metadata;
   std::optional<hc::GraphClient> graph;  // nothing: there is none, or it is not kept
   bool has_failed = false;

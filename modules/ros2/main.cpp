@@ -111,7 +111,7 @@ int main(int argc, char** argv) {
                                        {.fixed = true});
 
   // From other threads; what they say again and again waits in bounds.
-  const auto loop = hc::value_or_end(hc::internal::Loop::make());
+  const auto loop = hc::value_or_end(hc::Loop::make());
   std::atomic<int> waiting{0};
   const auto log = [&](const std::string& kind, const std::string& line) {
     constexpr int kMostWaiting = 1000;
@@ -125,7 +125,7 @@ int main(int argc, char** argv) {
   const std::function<void(std::string_view)> warn = [&](std::string_view line) {
     log("warnings of Cyclone DDS", "Cyclone DDS: " + std::string(line));
   };
-  const auto arrived = hc::internal::Event::must_make();
+  const auto arrived = hc::Event::must_make();
   const std::function<void()> wake = [&] { arrived.raise(); };
 
   std::optional<hc::ros::GraphJoints> joints;

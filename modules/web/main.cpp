@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
       module.parameter("leave", 0.0, "s", "end when no page has been open for so long; 0: never",
                        {.min = 0, .max = 1e6});
 
-  const auto make_loop = [] { return hc::value_or_end(hc::internal::Loop::make()); };
+  const auto make_loop = [] { return hc::value_or_end(hc::Loop::make()); };
   const auto stops = make_loop(), loop = make_loop();  // the stop comes first
   Robot robot;
   std::optional<Stop> wanted;

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cstring>
-#include <sstream>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include <hc/base/words.h>
 #include <hc/contract/description.h>
 #include <hc/mtp/codec.h>
 #include <hc/mtp/rows.h>
@@ -80,13 +80,6 @@ hc::Result<hc::Message> read_frame(std::string_view bytes) {
   if (auto whole = reader.finish(); !whole) return whole.error();
   if (!found) return hc::Error{hc::Code::Malformed, "no message in a frame"};
   return *found;
-}
-
-Rows words_of(const std::string& line) {
-  std::istringstream stream(line);
-  Rows words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
 }
 
 }  // namespace
@@ -284,7 +277,8 @@ void Page::answer(const Asked& asked, const Rows& rows) {
 void Page::take_command(std::uint64_t number, const std::string& command) {
   Session& session = sessions_.at(number);
   const Asked asked{number, session.commands++};
-  const auto words = words_of(command);
+  const auto parts = hc::words_of(command);
+  const Rows words(parts.begin(), parts.end());
   if (words.empty()) return answer(asked, {"there is no command"});
   if (words[0] == "estop") {
     if (const auto problem = stop(asked, words)) answer(asked, *problem);

@@ -34,11 +34,10 @@ int main(int argc, char** argv) {
   auto log = module.parameter("log", "/dev/null", "",
                               "file that a line is added to: monotonic time [ns], seq, hash, time");
   auto fails = module.parameter("fails", false, "", "end with status 1 at once");
-  hc::internal::Descriptor file;
+  hc::Descriptor file;
   module.on_start([&] {
     if (*fails) throw hc::ModuleError("fails, as it was set to");
-    file = hc::internal::Descriptor(
-        ::open(log->c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600));
+    file = hc::Descriptor(::open(log->c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600));
     if (!file) throw hc::ModuleError(*log + ": cannot be opened");
   });
   module.on_raw(in, [&](const hc::Message& message) {

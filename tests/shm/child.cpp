@@ -58,8 +58,8 @@ int count_entries(const std::filesystem::path& folder) {
 Child::Child(const std::vector<std::string>& arguments, const std::string& crash_at) {
   std::array<int, 2> ends{};
   EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
-  socket_ = internal::Descriptor(ends[0]);
-  internal::Descriptor other(ends[1]);
+  socket_ = Descriptor(ends[0]);
+  Descriptor other(ends[1]);
   pid_ = ::fork();
   EXPECT_GE(pid_, 0);
   if (pid_ == 0) become(arguments, crash_at, other.get());

@@ -60,7 +60,7 @@ class Child {
 
  private:
   pid_t pid_ = -1;
-  internal::Descriptor socket_;
+  Descriptor socket_;
   std::string heard_;
 };
 

@@ -16,9 +16,7 @@
 namespace hc::testing {
 namespace {
 
-using internal::Descriptor;
 using internal::kLeastMemory;
-using internal::kPageBytes;
 
 /// What is handed over, and what is said of it.
 struct Case {

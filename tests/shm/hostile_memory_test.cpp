@@ -16,7 +16,6 @@ namespace {
 using internal::Cell;
 using internal::kCells;
 using internal::kLeastMemory;
-using internal::kPageBytes;
 using internal::kSlotsBegin;
 
 constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();

@@ -16,7 +16,7 @@ class FakeReader {
  public:
   FakeReader(const std::string& name, std::uint64_t keep)
       : socket_(connect_to_publisher(name)),
-        page_(std::move(*internal::SharedMemory::make(internal::kPageBytes, 0))),
+        page_(std::move(*SharedMemory::make(kPageBytes, 0))),
         offer_(greet(keep)) {}
 
   [[nodiscard]] internal::ReaderPage& page() const {
@@ -33,9 +33,9 @@ class FakeReader {
     return std::move(*internal::await_offer(socket_.get(), -1));
   }
 
-  internal::Descriptor socket_;
-  internal::SharedMemory page_;
-  internal::Descriptor pipe_ = make_pipe();
+  Descriptor socket_;
+  SharedMemory page_;
+  Descriptor pipe_ = make_pipe();
   internal::Offer offer_;
 };
 
@@ -62,7 +62,7 @@ void disturb(const FakeReader& reader, const std::atomic<bool>& done) {
         break;
       case 5:
         words.progress.fetch_add(1, std::memory_order_relaxed);
-        internal::futex_wake(words.progress);  // else the publisher would mostly sleep
+        futex_wake(words.progress);  // else the publisher would mostly sleep
         break;
       default:
         words.held[number / 8 % internal::kMostHeld].store(
@@ -128,7 +128,7 @@ TEST(HostileReaderPage, TheCursorGoesBackwards) {
         hostile.page().cursor.store(position.load(), std::memory_order_relaxed);
       if (dice() % 64 != 0) continue;
       hostile.page().progress.fetch_add(1);
-      internal::futex_wake(hostile.page().progress);
+      futex_wake(hostile.page().progress);
     }
     hostile.page().cursor.store(internal::ReaderPage::kLeft);
   });

@@ -30,8 +30,8 @@ inline std::string fresh_name() {
 
 constexpr int kSealed = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
 
-inline internal::Descriptor make_memfd(std::uint64_t bytes, int seals) {
-  internal::Descriptor memory(::memfd_create("hostile", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+inline Descriptor make_memfd(std::uint64_t bytes, int seals) {
+  Descriptor memory(::memfd_create("hostile", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   EXPECT_EQ(::ftruncate(memory.get(), static_cast<off_t>(bytes)), 0);
   EXPECT_TRUE(seals == 0 || ::fcntl(memory.get(), F_ADD_SEALS, seals) == 0);
   return memory;
@@ -60,16 +60,16 @@ class Writable {
   }
 
  private:
-  internal::Descriptor descriptor_;
+  Descriptor descriptor_;
   std::uint64_t bytes_;
   void* data_ = nullptr;
 };
 
-inline internal::Descriptor make_pipe() {
+inline Descriptor make_pipe() {
   std::array<int, 2> ends{};
   EXPECT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
-  internal::Descriptor other(ends[1]);
-  return internal::Descriptor(ends[0]);
+  Descriptor other(ends[1]);
+  return Descriptor(ends[0]);
 }
 
 inline void hand_over(int socket, std::string text, const std::vector<int>& descriptors) {
@@ -113,8 +113,7 @@ class FakePublisher {
   void answer(const std::string& text, const std::vector<int>& descriptors) {
     pollfd polled{listening_.descriptor.get(), POLLIN, 0};
     ASSERT_EQ(::poll(&polled, 1, -1), 1);
-    peer_ = internal::Descriptor(
-        ::accept4(listening_.descriptor.get(), nullptr, nullptr, SOCK_CLOEXEC));
+    peer_ = Descriptor(::accept4(listening_.descriptor.get(), nullptr, nullptr, SOCK_CLOEXEC));
     polled.fd = peer_.get();
     ASSERT_EQ(::poll(&polled, 1, -1), 1);
     if (auto hello = internal::take_hello(peer_.get(), 0)) page_ = std::move(hello->page);
@@ -138,9 +137,9 @@ class FakePublisher {
   }
 
  private:
-  internal::ListeningSocket listening_;
-  internal::Descriptor peer_;
-  internal::SharedMemory page_;
+  ListeningSocket listening_;
+  Descriptor peer_;
+  SharedMemory page_;
 };
 
 /// The bytes of a greeting, in which `change` has changed what it wants.
@@ -188,7 +187,7 @@ inline std::int64_t rounds(std::int64_t default_value) {
 }
 
 /// A connection to the publisher of the name.
-inline internal::Descriptor connect_to_publisher(const std::string& name) {
+inline Descriptor connect_to_publisher(const std::string& name) {
   auto place = internal::meeting_place(*parse_uri(name));
   place.options.emplace_back("wait", "20");  // many at once do not fit into its backlog
   auto socket = internal::connect_now(*internal::unix_peer(place), place, {});

@@ -60,7 +60,7 @@ RunningGraph choose_running(const std::string& wanted) {
 }
 
 Observer::Observer(const RunningGraph& graph)
-    : loop_(value_or_fail(hc::internal::Loop::make(), graph.text())), client_(*loop_, graph) {
+    : loop_(value_or_fail(hc::Loop::make(), graph.text())), client_(*loop_, graph) {
   const auto watched = client_.watch({[this](const auto& state, auto) {
                                         state_ = state;
                                         is_new_ = true;

@@ -35,7 +35,7 @@ class Observer {
   std::optional<hc::GraphState> next_measured();
 
  private:
-  std::unique_ptr<hc::internal::Loop> loop_;
+  std::unique_ptr<hc::Loop> loop_;
   hc::GraphClient client_;
   hc::GraphState state_;
   bool is_new_ = false, has_ended_ = false;

@@ -149,7 +149,7 @@ void run(RunOptions options) {
   take_record(options, load_options);
   load_options.holds_ports = true;
   // What a module starts, such as `hc`, means this graph; no thread reads the environment yet.
-  ::setenv(hc::internal::kRunSecret, hc::internal::make_secret().c_str(), 1);
+  ::setenv(hc::kRunSecret, hc::make_secret().c_str(), 1);
   ::setenv("HC_GRAPH", (name_of(options) + "." + std::to_string(::getpid())).c_str(), 1);
   const auto hosts = make_hosts();
   load_options.hosts = hosts.get();

@@ -29,7 +29,7 @@ Result<Plan> plan_hosts(const std::string& text, const HostPlaces& places = kPla
   auto number = std::make_shared<std::uint16_t>(7000);
   auto hold = [number](const std::string&, bool) {
     return Result<std::shared_ptr<const HeldPort>>(
-        std::make_shared<const HeldPort>(HeldPort{internal::Descriptor(), ++*number}));
+        std::make_shared<const HeldPort>(HeldPort{Descriptor(), ++*number}));
   };
   return plan(kHosts + text, {}, nullptr, hold, places);
 }

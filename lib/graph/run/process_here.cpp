@@ -18,7 +18,6 @@ namespace {
 
 using internal::Announcer;
 using internal::Intake;
-using internal::Loop;
 
 constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
 constexpr int kLastPieces = 16;  // a pipe can be made to hold a MiB; source: man 7 pipe
@@ -52,7 +51,7 @@ class ProcessHere final : public ModuleProcess {
     process_.emplace(std::move(started));
     said_ = std::move(said);
     ended_ = std::move(ended);
-    number_ = internal::first_child(process_->guard_number());
+    number_ = first_child(process_->guard_number());
     return {};
   }
 
@@ -88,11 +87,11 @@ class ProcessHere final : public ModuleProcess {
   bool send(const Message& command) override { return !commands_ || commands_->say(command); }
 
   [[nodiscard]] pid_t number() const override { return number_; }
-  internal::Usage usage(bool with_memory) override {
+  Usage usage(bool with_memory) override {
     if (!process_) return {};
     with_memory = with_memory || !memory_;
-    if (with_memory) processes_ = internal::descendants(process_->guard_number());
-    auto usage = internal::usage_of(processes_, with_memory);
+    if (with_memory) processes_ = descendants(process_->guard_number());
+    auto usage = usage_of(processes_, with_memory);
     if (with_memory) memory_ = usage.memory;
     usage.memory = *memory_;
     return usage;

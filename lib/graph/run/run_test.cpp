@@ -51,10 +51,10 @@ TEST_F(Run, AFloodOfLinesDoesNotKeepItFromStopping) {
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   add("a", "echo flood >&2; exec 3>" + path + "; while echo flood >&2; do echo >&3; done");
   stop_at_ = "a: flood";
-  internal::Descriptor fifo;
+  Descriptor fifo;
   heard_ = [&](std::string_view line) {
     if (line != "a: flood") return;
-    if (!fifo) fifo = internal::Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!fifo) fifo = Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     char letter = 0;
     EXPECT_GE(::read(fifo.get(), &letter, 1), 0);
   };

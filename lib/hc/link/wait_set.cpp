@@ -64,7 +64,7 @@ Status WaitSet::watch(int descriptor, std::uint32_t events, std::uint64_t what) 
   if (again && ::epoll_ctl(poll_.get(), EPOLL_CTL_MOD, descriptor, &event) == 0) return {};
   if (::epoll_ctl(poll_.get(), EPOLL_CTL_ADD, descriptor, &event) == 0 || errno == EEXIST)
     return {};
-  if (errno != EPERM) return internal::system_error("epoll_ctl", "");
+  if (errno != EPERM) return system_error("epoll_ctl", "");
   never_sleeps_ = true;
   return {};
 }
@@ -82,8 +82,8 @@ Status WaitSet::prepare(std::span<Source* const> sources) {
   poll_.reset();
   watched_.clear();
   never_sleeps_ = false;
-  poll_ = HC_TRY(internal::open_descriptor("epoll_create1", "",
-                                           [] { return ::epoll_create1(EPOLL_CLOEXEC); }));
+  poll_ =
+      HC_TRY(open_descriptor("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); }));
   HC_TRY(watch(stop_, EPOLLIN, kStop));
   for (const Source* source : sources) {
     const auto number = source->number_;
@@ -101,7 +101,7 @@ bool WaitSet::was_woken_by(const Source& source) const {
 /// Waits for the descriptors.
 Result<bool> WaitSet::sleep(nanoseconds timeout) {
   std::array<epoll_event, 8> events;
-  const int count = HC_TRY(internal::system_call(
+  const int count = HC_TRY(system_call(
       "epoll_pwait2", "", [&] { return wait_for_events(poll_.get(), events, timeout); }));
   for (const auto& event : std::span(events).first(static_cast<std::size_t>(count)))
     if (event.data.u64 == kStop)
@@ -117,9 +117,8 @@ Result<bool> WaitSet::wait(std::span<Source* const> sources, std::span<const int
   was_short_ = false;
   if (sources.size() == 1 && descriptors.empty() && sources[0]->wake_descriptor() < 0) {
     woken_by_.push_back(sources[0]->number_);
-    return internal::wait_for(
-        sources[0]->descriptor(), POLLIN, stop_,
-        timeout.count() < 0 ? internal::Deadline::max() : Clock::now() + timeout);
+    return wait_for(sources[0]->descriptor(), POLLIN, stop_,
+                    timeout.count() < 0 ? Deadline::max() : Clock::now() + timeout);
   }
   HC_TRY(prepare(sources));
   // Each time: their owner may have closed one and opened another with the same number.

@@ -62,7 +62,7 @@ class WaitSet {
   Result<bool> sleep(std::chrono::nanoseconds timeout);
 
   int stop_;
-  internal::Descriptor poll_;             // an epoll instance of all that is waited for
+  Descriptor poll_;                       // an epoll instance of all that is waited for
   std::vector<std::uint64_t> watched_;    // the sources in it, by their numbers
   bool never_sleeps_ = false;             // one is a file, which is always readable
   std::vector<std::uint64_t> woken_by_;   // the sources whose events ended the last sleep

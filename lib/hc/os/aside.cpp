@@ -3,7 +3,7 @@
 
 #include <hc/os/thread.h>
 
-namespace hc::internal {
+namespace hc {
 
 Result<Aside> Aside::begin(Loop& loop, std::function<void(int stop)> work,
                            std::function<void()> done) {
@@ -37,4 +37,4 @@ void Aside::stop() {
   state_->stop.raise();
 }
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -12,7 +12,7 @@
 #include <hc/os/event.h>
 #include <hc/os/loop.h>
 
-namespace hc::internal {
+namespace hc {
 
 /// Work on a thread, as run_aside() begins it. To be destroyed in the loop's thread, or after the
 /// loop's last turn.
@@ -65,4 +65,4 @@ template <typename Work, typename Done>
       [result, done = std::move(done)]() mutable { done(std::move(**result)); });
 }
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace hc::internal {
+namespace hc {
 
 Result<int> poll_until(std::span<pollfd> polled, Deadline deadline) {
   using std::chrono::nanoseconds;
@@ -25,4 +25,4 @@ Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline)
   return ready > 0;
 }
 
-}  // namespace hc::internal
+}  // namespace hc

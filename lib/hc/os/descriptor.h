@@ -16,7 +16,7 @@
 
 #include <hc/base/result.h>
 
-namespace hc::internal {
+namespace hc {
 
 /// Owns a file descriptor, or none (-1).
 class Descriptor {
@@ -80,4 +80,4 @@ Result<int> poll_until(std::span<pollfd> polled, Deadline deadline);
 /// Errors: Stopped when `stop` is readable and the descriptor has none of the events; System.
 Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline = Deadline::max());
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -9,7 +9,7 @@
 #include <hc/base/check.h>
 #include <hc/os/descriptor.h>
 
-namespace hc::internal {
+namespace hc {
 
 /// An eventfd: readable from raise() to clear(), both of which any thread may call.
 class Event {
@@ -43,4 +43,4 @@ class Event {
   Descriptor descriptor_;
 };
 
-}  // namespace hc::internal
+}  // namespace hc

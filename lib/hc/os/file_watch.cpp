@@ -3,7 +3,7 @@
 
 #include <sys/stat.h>
 
-namespace hc::internal {
+namespace hc {
 
 FileWatch::Stamp FileWatch::stamp_of(const std::string& file) {
   struct stat about {};
@@ -31,4 +31,4 @@ void FileWatch::look() {
   changed_();
 }
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -13,7 +13,7 @@
 
 #include <hc/os/loop.h>
 
-namespace hc::internal {
+namespace hc {
 
 /// Calls when one of some files has been written or taken away, or another put in its place, and
 /// nothing more happens to them: what comes in quick succession is one call. It looks at them,
@@ -50,4 +50,4 @@ class FileWatch {
   Loop::Handle timer_;
 };
 
-}  // namespace hc::internal
+}  // namespace hc

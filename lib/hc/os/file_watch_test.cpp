@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace hc::internal {
+namespace hc {
 namespace {
 
 namespace fs = std::filesystem;
@@ -103,4 +103,4 @@ TEST_F(FileWatchTest, OtherFilesPlayNoPart) {
 }
 
 }  // namespace
-}  // namespace hc::internal
+}  // namespace hc

@@ -7,7 +7,7 @@
 #include <array>
 #include <span>
 
-namespace hc::internal {
+namespace hc {
 
 constexpr std::uint64_t kTimerId = 0;  // entries have others
 
@@ -139,4 +139,4 @@ Status Loop::turn(std::chrono::milliseconds timeout) {
   return {};
 }
 
-}  // namespace hc::internal
+}  // namespace hc

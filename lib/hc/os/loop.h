@@ -19,7 +19,7 @@
 
 #include <hc/os/descriptor.h>
 
-namespace hc::internal {
+namespace hc {
 
 /// An epoll instance with a timer in it. It can be nested: descriptor() is readable when turn() has
 /// something to do.
@@ -124,4 +124,4 @@ class Loop {
   std::vector<std::function<void()>> posted_;  // while there are any, timer_ is due
 };
 
-}  // namespace hc::internal
+}  // namespace hc

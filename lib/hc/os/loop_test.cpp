@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-namespace hc::internal {
+namespace hc {
 namespace {
 
 using namespace std::chrono_literals;
@@ -182,4 +182,4 @@ TEST_F(LoopTest, WorkAsideMayFollowWork) {
 }
 
 }  // namespace
-}  // namespace hc::internal
+}  // namespace hc

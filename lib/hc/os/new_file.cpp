@@ -14,13 +14,11 @@ namespace hc {
 namespace {
 
 namespace fs = std::filesystem;
-using internal::Descriptor;
-using internal::system_error;
 
 constexpr mode_t kMode = 0666;
 
 Result<Descriptor> open_file(const std::string& path, int flags) {
-  return internal::open_descriptor("open", path, [&] {
+  return open_descriptor("open", path, [&] {
     return ::open(path.c_str(), flags | O_CREAT | O_CLOEXEC | O_NOCTTY, kMode);
   });
 }

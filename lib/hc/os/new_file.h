@@ -23,7 +23,7 @@ std::string free_name(const std::string& path, std::string_view ending,
 
 /// A file that is open for writing, and locked (flock) as long as it is.
 struct NewFile {
-  internal::Descriptor descriptor;
+  Descriptor descriptor;
   std::string path;
 };
 

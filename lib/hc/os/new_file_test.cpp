@@ -80,7 +80,7 @@ TEST_F(NewFiles, DevicesAndPipesAreOpenedAsTheyAre) {
 
 TEST_F(NewFiles, ADescriptorByNameIsAppendedTo) {
   std::ofstream(at("x")) << "shell ";
-  const internal::Descriptor own(::open(at("x").c_str(), O_WRONLY | O_APPEND));
+  const Descriptor own(::open(at("x").c_str(), O_WRONLY | O_APPEND));
   auto file = must(begin_file("/proc/self/fd/" + std::to_string(own.get())));
   ASSERT_TRUE(write_all(file.descriptor.get(), "ours"));
   EXPECT_EQ(contents("x"), "shell ours");

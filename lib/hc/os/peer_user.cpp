@@ -15,7 +15,7 @@
 
 #include <hc/os/descriptor.h>
 
-namespace hc::internal {
+namespace hc {
 namespace {
 
 struct Question {
@@ -105,4 +105,4 @@ Status check_own(const Result<uid_t>& peer, const std::string& what) {
   return Error{Code::Closed, what + "another user (uid " + std::to_string(*peer) + ")"};
 }
 
-}  // namespace hc::internal
+}  // namespace hc

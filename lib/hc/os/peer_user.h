@@ -8,7 +8,7 @@
 
 #include <hc/base/result.h>
 
-namespace hc::internal {
+namespace hc {
 
 /// How this end came to its connection.
 enum class Connected { Accepted, Dialed };
@@ -26,4 +26,4 @@ Result<uid_t> unix_peer_user(int socket);
 /// @param what  begins the error: "refused a peer of another user (uid 1000)". Errors: Closed.
 Status check_own(const Result<uid_t>& peer, const std::string& what);
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -13,7 +13,7 @@
 
 #include <hc/os/descriptor.h>
 
-namespace hc::internal {
+namespace hc {
 namespace {
 
 std::string text_of(const std::string& path) {
@@ -106,4 +106,4 @@ Usage usage_of(const std::vector<pid_t>& processes, bool with_memory) {
   return usage;
 }
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace hc::internal {
+namespace hc {
 
 /// The process that a guard has started first, and has not outlived; 0 where there is none.
 pid_t first_child(pid_t process);
@@ -27,4 +27,4 @@ struct Usage {
 /// @param with_memory  whether `memory` is wanted, which takes the kernel longer than the rest.
 Usage usage_of(const std::vector<pid_t>& processes, bool with_memory);
 
-}  // namespace hc::internal
+}  // namespace hc

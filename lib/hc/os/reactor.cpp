@@ -9,7 +9,7 @@
 
 #include <hc/os/thread.h>
 
-namespace hc::internal {
+namespace hc {
 
 struct Watch::State {
   Loop::Callback callback;
@@ -109,4 +109,4 @@ void Watch::call_at(TimePoint when) {
   if (!state_->has_ended) state_->handle.call_at(when);
 }
 
-}  // namespace hc::internal
+}  // namespace hc

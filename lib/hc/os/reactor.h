@@ -9,7 +9,7 @@
 
 #include <hc/os/loop.h>
 
-namespace hc::internal {
+namespace hc {
 
 /// A descriptor that the thread watches, and a timer with it.
 ///
@@ -53,4 +53,4 @@ class Watch {
   std::shared_ptr<State> state_;
 };
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -17,7 +17,7 @@
 
 #include <hc/os/descriptor.h>
 
-namespace hc::internal {
+namespace hc {
 namespace {
 
 using std::chrono::hours;
@@ -199,4 +199,4 @@ TEST(Watch, AFileIsRefused) {
 }
 
 }  // namespace
-}  // namespace hc::internal
+}  // namespace hc

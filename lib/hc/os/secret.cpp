@@ -10,7 +10,7 @@
 #include <hc/base/check.h>
 #include <hc/base/format.h>
 
-namespace hc::internal {
+namespace hc {
 
 std::string make_secret() {
   std::array<unsigned char, 16> bytes;
@@ -23,4 +23,4 @@ std::string run_secret() {
   return given == nullptr || *given == '\0' ? make_secret() : given;
 }
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace hc::internal {
+namespace hc {
 
 /// 128 random bits, in hexadecimal digits.
 std::string make_secret();
@@ -15,4 +15,4 @@ inline constexpr const char* kRunSecret = "HC_SECRET";
 /// That of this run; outside of one, a new one.
 std::string run_secret();
 
-}  // namespace hc::internal
+}  // namespace hc

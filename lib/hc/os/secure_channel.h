@@ -12,7 +12,7 @@
 #include <hc/base/result.h>
 #include <hc/os/descriptor.h>
 
-namespace hc::internal {
+namespace hc {
 
 /// Reads and writes the bytes of a connection in place of recv() and sendmsg(); never waits.
 class SecureChannel {
@@ -48,4 +48,4 @@ struct ConnectedSocket {
   explicit operator bool() const { return static_cast<bool>(descriptor); }
 };
 
-}  // namespace hc::internal
+}  // namespace hc

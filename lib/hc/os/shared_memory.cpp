@@ -11,7 +11,7 @@
 #include <climits>
 #include <ctime>
 
-namespace hc::internal {
+namespace hc {
 namespace {
 
 constexpr int kFixedSize = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
@@ -125,4 +125,4 @@ void futex_wake(const SharedWord<std::uint32_t>& word) {
   ::syscall(SYS_futex, &word, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
 }
 
-}  // namespace hc::internal
+}  // namespace hc

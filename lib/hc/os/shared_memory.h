@@ -11,7 +11,7 @@
 
 #include <hc/os/descriptor.h>
 
-namespace hc::internal {
+namespace hc {
 
 /// A word that several processes see; exactly one of them writes it.
 template <typename T>
@@ -74,4 +74,4 @@ void futex_wait(const SharedWord<std::uint32_t>& word, std::uint32_t value,
 /// Wakes everybody who sleeps on `word`.
 void futex_wake(const SharedWord<std::uint32_t>& word);
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -15,7 +15,7 @@
 
 #include <hc/base/backoff.h>
 
-namespace hc::internal {
+namespace hc {
 Address::Address(const void* data, unsigned length) : size(length) {
   HC_CHECK(length <= sizeof storage, length);
   std::memcpy(&storage, data, length);
@@ -128,4 +128,4 @@ void await_acknowledgement(int socket, std::chrono::milliseconds longest) {
   }
 }
 
-}  // namespace hc::internal
+}  // namespace hc

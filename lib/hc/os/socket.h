@@ -15,7 +15,7 @@
 #include <hc/base/log.h>
 #include <hc/os/secure_channel.h>
 
-namespace hc::internal {
+namespace hc {
 
 /// A socket that listens, and what is to be cleaned up when it stops.
 struct ListeningSocket {
@@ -125,4 +125,4 @@ void ListeningSocket::accept_all(Handle& watch, const LogSink& log,
     static_cast<void>(watch.want(must_wait ? 0U : EPOLLIN));
 }
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -10,7 +10,7 @@
 
 #include <hc/base/result.h>
 
-namespace hc::internal {
+namespace hc {
 
 /// Starts a thread in which every signal is blocked: signals are for the program's own threads.
 ///
@@ -30,4 +30,4 @@ Result<std::thread> start_thread(Work work) {
   return started;
 }
 
-}  // namespace hc::internal
+}  // namespace hc

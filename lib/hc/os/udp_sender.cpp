@@ -20,7 +20,7 @@
 
 #include <hc/os/descriptor.h>
 
-namespace hc::internal {
+namespace hc {
 namespace {
 
 /// Whether this host has the address: only such ones can be bound to. Where that cannot be tried,
@@ -85,4 +85,4 @@ Result<std::optional<uid_t>> udp_sender_user(const sockaddr_storage& from) {
   return user;
 }
 
-}  // namespace hc::internal
+}  // namespace hc

@@ -9,7 +9,7 @@
 
 #include <hc/base/result.h>
 
-namespace hc::internal {
+namespace hc {
 
 /// The user whose socket sent a UDP packet that came from this address; nothing where the address
 /// is another host's. Where several sockets have that address, one of another user counts before
@@ -18,4 +18,4 @@ namespace hc::internal {
 /// Errors: NotFound (the socket is closed meanwhile). Cost: a look at all UDP sockets of this host.
 Result<std::optional<uid_t>> udp_sender_user(const sockaddr_storage& from);
 
-}  // namespace hc::internal
+}  // namespace hc

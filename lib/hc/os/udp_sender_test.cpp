@@ -11,7 +11,7 @@
 
 #include <hc/os/descriptor.h>
 
-namespace hc::internal {
+namespace hc {
 namespace {
 
 sockaddr_storage address(const char* host, std::uint16_t port) {
@@ -54,4 +54,4 @@ TEST(UdpSender, WithoutADescriptorNobodyIsTakenForAnotherHosts) {
 }
 
 }  // namespace
-}  // namespace hc::internal
+}  // namespace hc

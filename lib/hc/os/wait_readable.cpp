@@ -13,9 +13,8 @@ Result<std::size_t> wait_readable(std::span<const int> descriptors, int stop,
   std::vector<pollfd> polled;
   for (int descriptor : descriptors) polled.push_back({descriptor, POLLIN, 0});
   polled.push_back({stop, POLLIN, 0});
-  using internal::Deadline;
-  HC_TRY(internal::poll_until(
-      polled, timeout.count() < 0 ? Deadline::max() : Deadline::clock::now() + timeout));
+  HC_TRY(
+      poll_until(polled, timeout.count() < 0 ? Deadline::max() : Deadline::clock::now() + timeout));
   if (polled.back().revents != 0) return Error{Code::Stopped, "asked to stop"};
   auto first = std::find_if(polled.begin(), polled.end() - 1,
                             [](const pollfd& entry) { return entry.revents != 0; });

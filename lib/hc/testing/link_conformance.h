@@ -50,7 +50,7 @@ class Stop {
   }
 
  private:
-  internal::Event event_ = internal::Event::must_make();
+  Event event_ = Event::must_make();
 };
 
 /// Sends a message by another thread, as the sink may wait for its reader; gives what comes.

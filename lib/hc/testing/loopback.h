@@ -26,7 +26,7 @@ inline sockaddr_in loopback(std::uint16_t port) {
 
 /// A port that the kernel has just found free.
 inline std::string free_port() {
-  internal::Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));
+  Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));
   sockaddr_in address = loopback(0);
   socklen_t size = sizeof address;
   EXPECT_EQ(::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), size), 0);
@@ -34,7 +34,7 @@ inline std::string free_port() {
   return "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
 }
 
-inline internal::Address loopback_address(std::uint16_t port) {
+inline Address loopback_address(std::uint16_t port) {
   sockaddr_in address = loopback(port);
   return {&address, sizeof address};
 }
@@ -51,15 +51,15 @@ class SilentPort {
     EXPECT_EQ(::listen(listening_.get(), 0), 0);
     port_ = ntohs(address.sin_port);
     for (auto& socket : waiting_) {
-      socket = internal::Descriptor(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0));
+      socket = Descriptor(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0));
       ::connect(socket.get(), place, size);
     }
   }
   [[nodiscard]] std::uint16_t port() const { return port_; }
 
  private:
-  internal::Descriptor listening_{::socket(AF_INET, SOCK_STREAM, 0)};
-  std::array<internal::Descriptor, 4> waiting_;
+  Descriptor listening_{::socket(AF_INET, SOCK_STREAM, 0)};
+  std::array<Descriptor, 4> waiting_;
   std::uint16_t port_ = 0;
 };
 

@@ -71,7 +71,7 @@ TEST_P(SocketLink, BehindAConnectionThatLivedPausesAreShortAgain) {
     auto connection = *dialer.dial(now);
     for (; !connection; connection = *dialer.dial(now)) {
       ASSERT_GE(dialer.descriptor(), 0) << dialer.why();
-      ASSERT_TRUE(internal::wait_for(dialer.descriptor(), dialer.events(), -1));
+      ASSERT_TRUE(wait_for(dialer.descriptor(), dialer.events(), -1));
     }
     now += internal::kFirstPause;
     dialer.lost(now, false, "it was killed");

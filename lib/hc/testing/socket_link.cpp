@@ -156,7 +156,7 @@ class NoDescriptors {
  public:
   explicit NoDescriptors(rlim_t but = 0) {
     ::getrlimit(RLIMIT_NOFILE, &saved_);
-    internal::Descriptor lowest(::eventfd(0, EFD_CLOEXEC));
+    Descriptor lowest(::eventfd(0, EFD_CLOEXEC));
     rlimit none = {static_cast<rlim_t>(lowest.get()) + but, saved_.rlim_max};
     EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
   }
@@ -168,7 +168,7 @@ class NoDescriptors {
 
 /// Starts the thread that all links of a process share, whose descriptors stay open.
 static void start_link_thread() {
-  ASSERT_TRUE(internal::Watch().start(-1, [](auto) {}));
+  ASSERT_TRUE(Watch().start(-1, [](auto) {}));
 }
 
 constexpr int kPeersThatLeave = static_cast<int>(internal::kMaxPeers) + 20;
@@ -261,7 +261,7 @@ static std::size_t head_of(const std::string& message) {
 }
 
 /// Sends a message and the header of the next, and returns when the source has read both.
-static void enter_message(const internal::Descriptor& peer, Source& source) {
+static void enter_message(const Descriptor& peer, Source& source) {
   std::string message = encode(numbered(0, 1));
   std::string bytes = message + message.substr(0, head_of(message));
   write_to(peer, bytes);
@@ -271,7 +271,7 @@ static void enter_message(const internal::Descriptor& peer, Source& source) {
 TEST_P(SocketLink, WhoIsSilentLongestMakesRoom) {
   Warnings warnings;
   auto source = source_of(listen(), warnings.options());
-  std::vector<internal::Descriptor> peers;
+  std::vector<Descriptor> peers;
   Message message;
   for (std::size_t i = 0; i < internal::kMaxPeers; ++i) {
     peers.push_back(GetParam().connect(place_));
@@ -319,7 +319,7 @@ TEST_P(AcceptingLink, AHeaderThatCameWhileItsReaderWasBusyIsNotLate) {
 
 TEST_P(SocketLink, WhoIsInsideAMessageKeepsItsPlace) {
   auto source = source_of(listen());
-  std::vector<internal::Descriptor> peers;
+  std::vector<Descriptor> peers;
   std::string bytes = encode(numbered(1, 1));
   Message message;
   for (std::size_t i = 0; i < internal::kMaxPeers; ++i) {
@@ -339,7 +339,7 @@ TEST_P(SocketLink, WhoIsSilentForLongInsideAMessageGivesItsPlaceToOneWhoWaits) {
   EXPECT_EQ(internal::PeerTimes().silence, std::chrono::seconds(30));
   Warnings warnings;
   auto source = source_with({.silence = std::chrono::seconds(0)}, warnings);
-  std::vector<internal::Descriptor> peers;
+  std::vector<Descriptor> peers;
   Message message;
   for (std::size_t i = 0; i < internal::kMaxPeers; ++i) {
     peers.push_back(GetParam().connect(place_));
@@ -357,7 +357,7 @@ TEST_P(SocketLink, WhoIsSilentForLongInsideAMessageGivesItsPlaceToOneWhoWaits) {
 
 TEST_P(SocketLink, MoreReadersThanThereIsRoomForWait) {
   auto sink = sink_of(listen());
-  std::vector<internal::Descriptor> peers;
+  std::vector<Descriptor> peers;
   for (std::size_t i = 0; i < internal::kMaxPeers; ++i) {
     peers.push_back(GetParam().connect(place_));
     ASSERT_TRUE(sink->send(numbered(0, 1)));

@@ -30,10 +30,10 @@ struct SocketScheme {
   std::function<std::string()> place;  ///< one that nobody listens on: "localhost:7000", "/tmp/x"
   std::string dial, listen;            ///< schemes
   /// A stream socket that is connected to a place, for what no link would send.
-  std::function<internal::Descriptor(const std::string& place)> connect;
+  std::function<Descriptor(const std::string& place)> connect;
   /// What the two schemes stand for.
   std::function<Result<internal::Peer>(const Uri&)> peer = {};
-  std::function<Result<internal::ListeningSocket>(const Uri&)> socket = {};
+  std::function<Result<ListeningSocket>(const Uri&)> socket = {};
   std::string options = {};  ///< of every end, such as "?key=eyes.pem"
   int cuts = 10'000;         ///< how many streams to cut
 };
@@ -76,10 +76,10 @@ inline void await_warning(Source& source, const Warnings& warnings) {
 }
 
 /// Writes what no link would send.
-inline void write_to(const internal::Descriptor& peer, std::string_view bytes) {
+inline void write_to(const Descriptor& peer, std::string_view bytes) {
   ASSERT_EQ(::write(peer.get(), bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
 }
-inline bool is_closed(const internal::Descriptor& peer) {
+inline bool is_closed(const Descriptor& peer) {
   char byte = 0;
   return ::read(peer.get(), &byte, 1) <= 0;
 }

@@ -24,7 +24,7 @@ Result<File> File::create(const std::string& path) {
 Status File::write(std::span<const std::byte> bytes) {
   const std::uint64_t begin = size_;
   while (!bytes.empty()) {
-    auto size = internal::system_call("write", path_, [&] {
+    auto size = system_call("write", path_, [&] {
       return ::pwrite(descriptor_.get(), bytes.data(), bytes.size(), static_cast<off_t>(size_));
     });
     if (!size) {
@@ -42,11 +42,11 @@ Status File::write(std::span<const std::byte> bytes) {
 Status File::reserve(std::uint64_t bytes) const {
   rlimit limit{};
   if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && size_ + bytes > limit.rlim_cur)
-    return internal::system_error("write", path_, EFBIG);
+    return system_error("write", path_, EFBIG);
   const int reserved = ::fallocate(descriptor_.get(), FALLOC_FL_KEEP_SIZE,
                                    static_cast<off_t>(size_), static_cast<off_t>(bytes));
   if (reserved == 0 || (errno != ENOSPC && errno != EDQUOT)) return {};
-  return internal::system_error("write", path_);
+  return system_error("write", path_);
 }
 
 Status File::append(std::span<const std::byte> records, Opcode opcode,

@@ -41,7 +41,7 @@ class File {
     std::uint32_t count = 0;
   };
 
-  File(std::string path, internal::Descriptor descriptor)
+  File(std::string path, Descriptor descriptor)
       : path_(std::move(path)), descriptor_(std::move(descriptor)) {}
   Status write(std::span<const std::byte> bytes);
   [[nodiscard]] Status reserve(std::uint64_t bytes) const;
@@ -51,7 +51,7 @@ class File {
   [[nodiscard]] std::vector<std::byte> summary();
 
   std::string path_;
-  internal::Descriptor descriptor_;
+  Descriptor descriptor_;
   std::uint64_t size_ = 0;
   std::map<Opcode, Group> summary_;
   std::uint64_t begin_ = 0, end_ = 0;              // first and last log time [ns]

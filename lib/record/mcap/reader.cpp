@@ -48,10 +48,10 @@ Error Reader::truncated(std::uint64_t at) const {
 }
 
 Result<Reader> Reader::open(const std::string& path, const ReaderLimits& limits) {
-  internal::Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-  if (!descriptor) return internal::system_error("open", path);
+  Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  if (!descriptor) return system_error("open", path);
   struct stat status {};
-  if (::fstat(descriptor.get(), &status) != 0) return internal::system_error("fstat", path);
+  if (::fstat(descriptor.get(), &status) != 0) return system_error("fstat", path);
   if (!S_ISREG(status.st_mode))
     return Error{Code::Unsupported, path + ": a recording in MCAP is a file, not a pipe or device"};
   Reader reader(path, std::move(descriptor), static_cast<std::uint64_t>(status.st_size), limits);
@@ -76,7 +76,7 @@ Result<std::vector<std::byte>> Reader::read(std::uint64_t at, std::uint64_t size
   if (at > size_ || size > size_ - at) return truncated(at);
   std::vector<std::byte> bytes(size);
   for (std::size_t done = 0; done < bytes.size();) {
-    const auto got = internal::system_call("read", path_, [&] {
+    const auto got = system_call("read", path_, [&] {
       return ::pread(descriptor_.get(), bytes.data() + done, bytes.size() - done,
                      static_cast<off_t>(at + done));
     });

@@ -108,8 +108,7 @@ class Reader {
     std::shared_ptr<OpenPart> part;
   };
 
-  Reader(std::string path, internal::Descriptor descriptor, std::uint64_t size,
-         const ReaderLimits& limits)
+  Reader(std::string path, Descriptor descriptor, std::uint64_t size, const ReaderLimits& limits)
       : path_(std::move(path)), descriptor_(std::move(descriptor)), size_(size), limits_(limits) {}
 
   [[nodiscard]] Error truncated(std::uint64_t at) const;
@@ -138,7 +137,7 @@ class Reader {
   void pop();
 
   std::string path_;
-  internal::Descriptor descriptor_;
+  Descriptor descriptor_;
   std::uint64_t size_ = 0;
   ReaderLimits limits_;
   std::uint64_t declared_ = 0;  // schemas and channels [byte]

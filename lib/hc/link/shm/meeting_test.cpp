@@ -116,15 +116,14 @@ class StoppedPublisher {
   explicit StoppedPublisher(const std::string& name)
       : listening_(std::move(*internal::listen_unix(internal::meeting_place(*parse_uri(name))))) {}
   /// What the next reader has said, and nothing is answered.
-  internal::Descriptor await_reader() {
+  Descriptor await_reader() {
     pollfd polled{listening_.descriptor.get(), POLLIN, 0};
     EXPECT_EQ(::poll(&polled, 1, -1), 1);
-    return internal::Descriptor(
-        ::accept4(listening_.descriptor.get(), nullptr, nullptr, SOCK_CLOEXEC));
+    return Descriptor(::accept4(listening_.descriptor.get(), nullptr, nullptr, SOCK_CLOEXEC));
   }
 
  private:
-  internal::ListeningSocket listening_;
+  ListeningSocket listening_;
 };
 
 TEST(ShmMeeting, AReaderThatReconnectsDoesNotWaitForAPublisherThatIsStopped) {

@@ -79,7 +79,7 @@ class DialerTest : public ::testing::Test {
 
   std::string name_ = "@hc-dialer-" + std::to_string(::getpid());
   std::function<Status(int)> admit_;
-  internal::ListeningSocket listening_;
+  ListeningSocket listening_;
   TimePoint now_{seconds(1000)};
 };
 

@@ -21,7 +21,7 @@ class Stdio : public ::testing::Test {
     int ends[2];
     ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
     for (int i : {0, 1}) {
-      saved_[i] = internal::Descriptor(::fcntl(i, F_DUPFD_CLOEXEC, 3));
+      saved_[i] = Descriptor(::fcntl(i, F_DUPFD_CLOEXEC, 3));
       ::dup2(ends[i], i);
       ::close(ends[i]);
     }
@@ -32,7 +32,7 @@ class Stdio : public ::testing::Test {
   /// Lets go of our copy of an end, so that the other one notices.
   void release(int i) const { ::dup2(saved_[i].get(), i); }
 
-  internal::Descriptor saved_[2];
+  Descriptor saved_[2];
 };
 
 TEST_F(Stdio, CarriesMessages) {

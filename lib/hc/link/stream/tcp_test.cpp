@@ -38,14 +38,14 @@ extern "C" int connect(int socket, const sockaddr* address, socklen_t size) {
 namespace hc::testing {
 namespace {
 
-internal::Descriptor connect(const std::string& place) {
-  internal::Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));
+Descriptor connect(const std::string& place) {
+  Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));
   sockaddr_in address = loopback(parse_host_port(place)->port);
   EXPECT_EQ(::connect(socket.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
   return socket;
 }
 
-std::string place_of(const internal::Descriptor& listening) {
+std::string place_of(const Descriptor& listening) {
   sockaddr_in address{};
   socklen_t size = sizeof address;
   EXPECT_EQ(::getsockname(listening.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
@@ -54,13 +54,13 @@ std::string place_of(const internal::Descriptor& listening) {
 
 /// The two ends of a connection.
 struct TcpEnds {
-  internal::Descriptor dialed, accepted;
+  Descriptor dialed, accepted;
 };
 
 TcpEnds make_connection() {
-  auto listening = *internal::listen_on(loopback_address(0), "any");
+  auto listening = *listen_on(loopback_address(0), "any");
   auto dialed = connect(place_of(listening));
-  return {std::move(dialed), internal::Descriptor(::accept(listening.get(), nullptr, nullptr))};
+  return {std::move(dialed), Descriptor(::accept(listening.get(), nullptr, nullptr))};
 }
 
 const SocketScheme kTcp{
@@ -120,7 +120,7 @@ TEST(Tcp, EveryAddressIsTriedAgain) {
 }
 
 /// As if the network cable were pulled: what comes to the socket is thrown away unanswered.
-void cut_off(const internal::Descriptor& socket) {
+void cut_off(const Descriptor& socket) {
   sock_filter drop_all = BPF_STMT(BPF_RET | BPF_K, 0);
   sock_fprog program = {1, &drop_all};
   ASSERT_EQ(::setsockopt(socket.get(), SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program), 0);
@@ -166,7 +166,7 @@ TEST(Tcp, AReaderThatVanishesIsNoticedThoughItsBufferHasRoom) {
   Status sent;
   for (int i = 0; sent; ++i) {
     const auto later = std::chrono::steady_clock::now() + backoff.next();
-    ASSERT_TRUE(internal::wait_for(-1, 0, -1, later));
+    ASSERT_TRUE(wait_for(-1, 0, -1, later));
     sent = sink->send(numbered(i, 1));
   }
   EXPECT_EQ(sent.error().code, Code::Closed);
@@ -294,22 +294,21 @@ TEST(Tcp, AnotherUserIsRefusedWhereOnlyTheSameIsLetIn) {
 
 TEST(Tcp, AListenerOfAnotherUserIsRefused) {
   Foreign foreign;
-  auto listening = foreign.make([] { return *internal::listen_on(loopback_address(0), "any"); });
+  auto listening = foreign.make([] { return *listen_on(loopback_address(0), "any"); });
   const std::string place = place_of(listening);
   EXPECT_EQ(refused(open_source(*parse_uri("tcp:" + place + "?same_user=1"))).detail,
             "connect(" + place + "): the listener is a process of " + foreign.name());
   auto peer = connect(place);
-  EXPECT_TRUE(internal::tcp_peer_user(peer.get(), internal::Connected::Dialed));
-  EXPECT_FALSE(internal::tcp_peer_user(peer.get(), internal::Connected::Accepted));
+  EXPECT_TRUE(tcp_peer_user(peer.get(), Connected::Dialed));
+  EXPECT_FALSE(tcp_peer_user(peer.get(), Connected::Accepted));
 }
 
 TEST(Tcp, APeerThatHasLeftIsOfNoUser) {
   auto [peer, accepted] = make_connection();
   ASSERT_TRUE(accepted);
-  EXPECT_TRUE(internal::tcp_peer_user(accepted.get(), internal::Connected::Accepted));
+  EXPECT_TRUE(tcp_peer_user(accepted.get(), Connected::Accepted));
   peer.reset();
-  EXPECT_EQ(internal::tcp_peer_user(accepted.get(), internal::Connected::Accepted).error().code,
-            Code::NotFound);
+  EXPECT_EQ(tcp_peer_user(accepted.get(), Connected::Accepted).error().code, Code::NotFound);
 }
 
 TEST(Tcp, AHostWithoutAnAddressIsNotFound) {

@@ -24,8 +24,8 @@ std::string path() {
   return (fs::temp_directory_path() / abstract_name().substr(1)).string();
 }
 
-internal::Descriptor connect_by_name(const std::string& place) {
-  internal::Descriptor socket(::socket(AF_UNIX, SOCK_STREAM, 0));
+Descriptor connect_by_name(const std::string& place) {
+  Descriptor socket(::socket(AF_UNIX, SOCK_STREAM, 0));
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   std::memcpy(address.sun_path, place.data(), place.size());
@@ -62,7 +62,7 @@ TEST(Unix, LeavesNoFile) {
 TEST(Unix, TakesTheFileOverThatADeadProcessLeft) {
   std::string file = path();
   {
-    internal::Descriptor socket(::socket(AF_UNIX, SOCK_STREAM, 0));
+    Descriptor socket(::socket(AF_UNIX, SOCK_STREAM, 0));
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     std::memcpy(address.sun_path, file.data(), file.size());

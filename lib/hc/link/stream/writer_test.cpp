@@ -14,7 +14,6 @@
 namespace hc::testing {
 namespace {
 
-using internal::Descriptor;
 using internal::Parcel;
 using internal::StreamWriter;
 
