@@ -92,14 +92,15 @@ std::int64_t Writer::now() {
 }
 
 Result<std::size_t> Writer::add_stream(std::string_view name) {
-  names_.emplace_back(name);
-  if (mcap_ != nullptr) mcap_->add_stream(names_.back());
+  const std::string wanted(name);
+  if (mcap_ != nullptr) mcap_->add_stream(wanted);
   if (is_folder_) {
     if (name.empty() || name.find('/') != std::string::npos)
-      return Error{Code::Invalid, "streams: \"" + names_.back() + "\" cannot be a file name"};
-    const auto path = stream_file(written_.place, take_name(file_names_, names_.back()));
+      return Error{Code::Invalid, "streams: \"" + wanted + "\" cannot be a file name"};
+    const auto path = stream_file(written_.place, take_name(file_names_, wanted));
     if (auto begun = end_if_failed(begin_file(path)); !begun) return begun.error();
   }
+  names_.push_back(wanted);
   return names_.size() - 1;
 }
 

@@ -339,7 +339,7 @@ void Page::give(const std::vector<Order>& orders) const {
 void Page::tick() {
   robot_.served = clock_.monotonic();
   if (driver_socket_) give(driver_.tick(clock_.wall(), clock_.monotonic()));
-  if (recorder_ && !recorder_->poll()) recorder_.reset();
+  if (recorder_ && !recorder_->goes_on()) recorder_.reset();
   for (auto& [number, session] : sessions_) send_session(session);
   std::erase_if(streams_, [&](const auto& each) { return !each.second->is_viewed(); });
 }

@@ -51,15 +51,15 @@ class Recorder {
   [[nodiscard]] const std::vector<std::string>& ports() const { return ports_; }
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   [[nodiscard]] double seconds() const;
-  /// To be called a few times a second; does not wait. False: the file could not be written, and
-  /// the recording is to be ended.
-  bool poll();
+  /// False: the file could not be written, and the recording is to be ended.
+  [[nodiscard]] bool goes_on() const { return !has_failed_; }
 
  private:
   Recorder(std::unique_ptr<hc::record::Writer> writer, hc::LogSink log, std::string name,
            std::vector<std::string> ports);
   // On the threads of taps.
   void write(std::size_t stream, const hc::Message& message);
+  hc::Tap::Clock::time_point flush_if_due();
   void fail(const hc::Error& error);
 
   const hc::LogSink log_;
