@@ -54,7 +54,7 @@ void check_needs_no_control(Problems& problems, const GraphModule& module,
                  module.name);
 }
 
-/// Plans a module, but for what others have a part in: addresses, modes, links.
+/// Plans a module without its addresses, modes and links, which depend on other modules.
 void plan_module(Planning& planning, const Describe& describe, const GraphModule& module) {
   auto& problems = planning.problems;
   planning.names.insert(module.name);

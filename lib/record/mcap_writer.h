@@ -46,14 +46,14 @@ class McapWriter {
   /// would show a text for each module of a graph.
   void add_stream(const std::string& name);
 
-  // Errors of all below: System (the disk), from then on always the same.
+  // Errors of all below: System (the disk); every later call returns the same error.
 
   /// Blocks while too much is waiting to be written.
   /// Errors: TooLarge (the file has no room for another channel; other streams can go on).
   Status write(std::size_t stream, const Message& message, std::int64_t log_time);
   /// Copies a message of another file. `from` identifies the file. Errors: as write().
   Status copy(const mcap::StoredMessage& message, const void* from);
-  /// As ros::Encoder::encode_log() takes it, on the topic /rosout.
+  /// Writes a line of the log on the topic /rosout, by ros::Encoder::encode_log().
   Status log(std::int64_t time, const LogLine& line);
   Status metadata(const std::string& name, const mcap::Words& words);
   /// Writes the chunk that is being collected, if it is old enough.

@@ -55,7 +55,7 @@ class WavReader {
 /// program dies.
 class WavWriter {
  public:
-  /// Begins a file, as begin_file() does: beside one that has contents. Errors: as that.
+  /// Begins a file as begin_file() does: never over an existing one. Errors: of begin_file().
   static Result<WavWriter> create(const std::string& path, const Format& format);
 
   /// Errors: TooLarge (4 GiB are full), System.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Keys by which the two ends of a TLS link know each other: P-256, in a file with a certificate
-// that nobody but its owner has signed, whose dates are those of all times, and whose names, which
-// only browsers look at, are those of this host.
+// that is self-signed, valid from 2000 to 9999, and has the names of this host, which only browsers
+// check.
 
 #include <string>
 

@@ -109,7 +109,7 @@ struct Shared {
   }
 };
 
-/// Who is at the other end of a connection.
+/// The other end of a connection.
 struct Peer {
   std::string name;              ///< the user, on this host; else the host, of IPv6 its network
   bool is_another_user = false;  ///< of this host, but root

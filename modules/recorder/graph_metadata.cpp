@@ -6,7 +6,7 @@
 
 GraphMetadata::GraphMetadata(hc::GraphClient& graph, hc::record::Writer& writer)
     : graph_(graph), writer_(writer) {
-  // Where nobody publishes its state, there is none to be recorded.
+  // A graph that publishes no state has no metadata.
   static_cast<void>(graph_.watch(
       {.state = [this](const auto& state, auto) { record_state(state); },
        .log = [this](const auto& line, auto) { static_cast<void>(writer_.log(line)); }}));

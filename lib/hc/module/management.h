@@ -28,7 +28,7 @@ class Management {
   /// The commands that have come, a line each. Never waits.
   std::vector<std::string> take_commands();
 
-  /// Sends a report; dropped where nobody takes it in time. From any thread. False: no reader.
+  /// Sends a report, which is dropped if the reader is too slow. From any thread. False: no reader.
   bool send(Report report, Message message, std::int64_t time);
 
  private:

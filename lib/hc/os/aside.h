@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Work that takes its time, on a thread beside a loop's. Internal.
+// Work that takes its time, on a thread beside a loop's.
 
 #include <functional>
 #include <memory>

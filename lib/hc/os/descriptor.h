@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// File descriptors that close themselves, and system calls that say what failed. Internal.
+// File descriptors that close themselves, and system calls that say what failed.
 
 #include <poll.h>
 #include <unistd.h>

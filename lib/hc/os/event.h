@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A flag that threads can poll. Internal.
+// A flag that threads can poll.
 
 #include <sys/eventfd.h>
 

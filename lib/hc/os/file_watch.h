@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Notices that files are edited. Internal.
+// Notices that files are edited.
 
 #include <sys/types.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 // The event loop: waits for descriptors and times, and calls back. Loop::post() is the way to its
 // thread from any other, run_aside() (aside.h) from it to one for work that takes its time.
-// Internal. The rest is used from one thread; reactor.h runs a loop on a thread of its own. The
+// The rest is used from one thread; reactor.h runs a loop on a thread of its own. The
 // cost of an event does not grow with what else is watched.
 
 #include <sys/epoll.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Which user is at the other end of a connection within this host. Internal.
+// Which user is at the other end of a connection within this host.
 
 #include <sys/types.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the kernel says of a process and all that descends from it (/proc). Internal.
+// What the kernel says of a process and all that descends from it (/proc).
 
 #include <sys/types.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // The one background thread of a process: it turns an event loop that serves links while the
-// program's own threads do other things. Internal.
+// program's own threads do other things.
 // It starts with the first Watch and never ends; every signal is blocked in it.
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Random secrets. Internal.
+// Random secrets.
 
 #include <string>
 

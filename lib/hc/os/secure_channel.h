@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What may stand between a connected socket and the bytes that it carries: encryption. Internal.
+// What may stand between a connected socket and the bytes that it carries: encryption.
 
 #include <sys/types.h>
 #include <sys/uio.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Anonymous memory that processes share: it has no name, cannot change its size, and ends with
-// the last process that maps it. Internal.
+// the last process that maps it.
 
 #include <atomic>
 #include <chrono>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Stream sockets, TCP and Unix alike: connected, listening, and their peers. Internal.
+// Stream sockets, TCP and Unix alike: connected, listening, and their peers.
 
 #include <sys/epoll.h>
 #include <sys/socket.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How threads are started. Internal.
+// How threads are started.
 
 #include <csignal>
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Which user of this host sent a UDP packet. Internal.
+// Which user of this host sent a UDP packet.
 
 #include <sys/socket.h>
 #include <sys/types.h>

@@ -38,7 +38,7 @@ Status File::write(std::span<const std::byte> bytes) {
   return {};
 }
 
-/// Reserves so many bytes behind what is there, where the file system can do that.
+/// Reserves so many bytes behind the end of the file, if the file system can do that.
 Status File::reserve(std::uint64_t bytes) const {
   rlimit limit{};
   if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && size_ + bytes > limit.rlim_cur)

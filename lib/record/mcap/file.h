@@ -18,7 +18,7 @@ namespace hc::mcap {
 
 class File {
  public:
-  /// Begins a file, as begin_file() does: beside one that has contents. Errors: as that.
+  /// Begins a file as begin_file() does: never over an existing one. Errors: of begin_file().
   static Result<File> create(const std::string& path);
 
   // Errors of all: System. The file is as it was before, and can be closed.

@@ -85,7 +85,7 @@ class RecordWriter {
   void append(std::span<const std::byte> more) {
     bytes.insert(bytes.end(), more.begin(), more.end());
   }
-  /// Writes a number over what is there.
+  /// Overwrites a number.
   void set(std::size_t at, auto number) { std::memcpy(&bytes[at], &number, sizeof number); }
 
  private:
