@@ -151,7 +151,9 @@ class CameraDevices(Pipes):
     def test_a_camera_that_comes_later(self):
         self.camera("aravis:127.0.0.1")
         wait_until(self.said)
-        self.assertRegex(self.said()[0], "^camera: warning: aravis:127.0.0.1: cannot connect: .*; retrying$")
+        self.assertRegex(
+            self.said()[0], "^camera: warning: aravis:127.0.0.1: cannot connect: .*; retrying$"
+        )
         self.fake(1)
         wait_until(lambda: self.seen() > 0)
         self.assertEqual(self.said()[1], "camera: aravis:127.0.0.1: reconnected")

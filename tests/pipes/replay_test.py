@@ -194,6 +194,5 @@ class Replay(Pipes):
         self.assertEqual(self.read("again/second.out.mtp"), self.read("kept/second.out.mtp"))
 
 
-
 if __name__ == "__main__":
     unittest.main()
