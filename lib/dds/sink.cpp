@@ -37,12 +37,12 @@ constexpr std::chrono::microseconds kGather{20};
 /// comes while the thread pauses goes together in the next sample.
 class DdsSink final : public Sink {
  public:
-  DdsSink(const Policy& policy, const Audience& audience, LinkOptions options)
+  DdsSink(const Policy& policy, Audience audience, LinkOptions options)
       : waits_(policy.writer_waits()),
         is_paced_(policy.is_paced()),
         options_(std::move(options)),
         patience_(policy.timeout, options_.awaits_reader, options_.log),
-        audience_(audience),
+        audience_(std::move(audience)),
         queue_(policy) {}
 
   ~DdsSink() override { end(); }

@@ -16,7 +16,6 @@ namespace hc {
 namespace {
 
 using internal::Node;
-using internal::quoted_name;
 
 constexpr std::size_t kMaxIncludedDepth = 16;                  // of files that include files
 constexpr std::size_t kMaxIncludedBytes = 4 * kMaxGraphBytes;  // of all that is included

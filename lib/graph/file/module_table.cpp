@@ -63,7 +63,7 @@ class ModuleReader {
     else if (text != nullptr && !text->empty())
       module_.to[value.key] = {{*text, 0}, value.place};
     else
-      fields_.add(value, "\"{}\" must be an address, an input or \"all\"", value.key);
+      fields_.add(value, R"("{}" must be an address, an input or "all")", value.key);
   }
 
   /// The links of an input, or of an output to the outside, in the place of those that it had.
