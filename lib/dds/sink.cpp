@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include <dds/participant.h>
 #include <hc/link/audience.h>

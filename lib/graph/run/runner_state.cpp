@@ -65,6 +65,7 @@ std::string Runner::waited_for(const std::string& name) const {
     return reader != nullptr && reader->status() != ModuleStatus::Running;
   });
   std::vector<std::string> inputs;
+  inputs.reserve(links.size());
   for (const auto* link : links) inputs.push_back(link->to);
   return joined(inputs, " or ");
 }
