@@ -25,7 +25,7 @@ from graphs import Messages  # noqa: E402
 from harness import BUILD, end_when_hung, wait_until  # noqa: E402
 from page_test import Page, message as message_of, number  # noqa: E402
 from rows import Row, rows  # noqa: E402
-from streams import Focus, Line, Motion, run_delay, rotation, stick  # noqa: E402
+from streams import Focus, Line, Motion, Stream, run_delay, rotation, stick  # noqa: E402
 from web_socket import BINARY, CLOSE, WebSocket, get  # noqa: E402
 
 IS_FULL = os.environ.get("HC_FULL") == "1"
@@ -142,6 +142,7 @@ class Head(Page):
         self.motion = self.stream(Motion, "head_unit.motion", "1024")
         self.line = self.stream(Line, "head_unit.received", "4096")
         self.focused = self.stream(Focus, "workspace.focus", "4096")
+        self.guard = self.stream(Stream, "web.stop", "64")
         wait_until(lambda: self.motion.messages)
         if is_calibrated:
             wait_until(lambda: "calibrate: cameras" in self.said())
@@ -369,6 +370,16 @@ class Head(Page):
         self.page.order("estop")
         return moment
 
+    def wait_guarded(self):
+        """Waits until the workspace knows of the page: from then on its silence halts the head."""
+        begin = time.time_ns()
+
+        def words():  # which the workspace gets at the same time, and two are enough for it
+            return [at for at, word in list(self.guard.messages) if at >= begin and int(word) == 0]
+
+        self.wait(lambda: len(words()) > 3, "the page guards the robot")
+        self.focused.wait_until(words()[3])
+
     def clear_stop(self):
         if self.page is None:
             self.open_page()
@@ -428,6 +439,7 @@ class Head(Page):
         self.wait(lambda: self.page.session["stopped"] is not None, "the workspace is heard")
         if self.page.session["stopped"]:
             self.clear_stop()
+        self.wait_guarded()
 
 
 class Waits:
