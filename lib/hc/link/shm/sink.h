@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include <hc/link/audience.h>
 #include <hc/link/link.h>
@@ -19,12 +20,12 @@ namespace hc::internal {
 
 class ShmSink final : public Sink {
  public:
-  ShmSink(SharedMemory memory, const Audience& audience, const Policy& policy, LinkOptions options)
+  ShmSink(SharedMemory memory, Audience audience, const Policy& policy, LinkOptions options)
       : memory_(std::make_shared<SharedMemory>(std::move(memory))),
         head_(*reinterpret_cast<Head*>(memory_->data())),
         cells_(reinterpret_cast<Cell*>(memory_->data() + kRingBegin)),
         slots_(std::make_shared<SlotPool>(kSlotsBegin, memory_->size())),
-        audience_(audience),
+        audience_(std::move(audience)),
         keep_(policy.writer_waits() ? 0 : policy.keep),
         timeout_(policy.timeout),
         options_(std::move(options)) {}
