@@ -71,11 +71,12 @@ Result<std::unique_ptr<FileWatch>> FileWatch::make(Loop& loop,
   shared->changed = HC_TRY(Event::make());
   for (const auto& file : files) shared->known[file] = stamp_of(file);
   std::unique_ptr<FileWatch> made(new FileWatch(shared));
-  made->changed_ = HC_TRY(
-      loop.watch(shared->changed.descriptor(), EPOLLIN, [event = &shared->changed, changed](auto) {
-        event->clear();
-        changed();
-      }));
+  made->changed_ =
+      HC_TRY(loop.watch(shared->changed.descriptor(), EPOLLIN,
+                        [event = &shared->changed, changed = std::move(changed)](auto) {
+                          event->clear();
+                          changed();
+                        }));
   auto thread = HC_TRY(start_thread([shared] { shared->look_until_over(); }));
   thread.detach();
   return made;
