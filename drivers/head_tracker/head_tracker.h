@@ -10,11 +10,11 @@
 #include <string_view>
 #include <utility>
 
-#include <drivers/descriptor.h>
 #include <drivers/head_tracker/pose.h>
 #include <drivers/head_tracker/senders.h>
 #include <hc/base/clock.h>
 #include <hc/base/result.h>
+#include <hc/os/descriptor.h>
 
 namespace hc {
 

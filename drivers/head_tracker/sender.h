@@ -5,9 +5,9 @@
 #include <string>
 #include <utility>
 
-#include <drivers/descriptor.h>
 #include <drivers/head_tracker/pose.h>
 #include <hc/base/result.h>
+#include <hc/os/descriptor.h>
 
 namespace hc {
 

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <string>
 
-#include <drivers/descriptor.h>
+#include <hc/os/descriptor.h>
 
 namespace hc {
 

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <utility>
 
-#include <drivers/descriptor.h>
 #include <hc/base/result.h>
+#include <hc/os/descriptor.h>
 
 namespace hc::pan_tilt {
 

@@ -20,8 +20,8 @@ namespace {
 class TapSource final : public Source {
  public:
   static Result<std::unique_ptr<Source>> make(std::unique_ptr<Source> source, Descriptor graph) {
-    Descriptor both(
-        HC_TRY(system_call("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); })));
+    auto both =
+        HC_TRY(open_descriptor("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); }));
     for (const auto& [number, events] :
          {std::pair(source->descriptor(), EPOLLIN), {graph.get(), EPOLLRDHUP}}) {
       epoll_event event{static_cast<std::uint32_t>(events), {}};

@@ -24,6 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::chrono::seconds kMorePatience{1};  // with the others, when a host has failed
+
 Result<std::string> read_text(const std::string& name) {
   std::error_code missing;
   if (fs::is_directory(name, missing))
@@ -52,8 +54,7 @@ Result<std::string> read_file(const std::string& name) {
 /// @param path  what `program` stands for, where it has a slash.
 std::string why_no_program(const std::string& program, const std::string& path) {
   std::error_code missing;
-  if (path.find('/') == std::string::npos)
-    return "no program \"" + program + "\"" + suggestion(program, module_names());
+  if (path.find('/') == std::string::npos) return no_program(program);
   if (fs::is_directory(path, missing)) return path + " is a folder, not a program";
   if (fs::exists(path, missing)) return path + " is not executable";
   return "no program \"" + program + "\"";
@@ -138,11 +139,16 @@ class FileLoader : public GraphLoader {
 
   Result<LoadedGraph> read_and_plan(const Plan* running, int stop) {
     // A graph that runs is read from files again: nobody writes into a pipe once more.
-    auto text = running == nullptr ? read_text(options_.file) : read_file(options_.file);
-    if (!text) return text.error();
+    const auto text = HC_TRY(unless_stopped(
+        stop, [file = options_.file, read = running == nullptr ? read_text : read_file] {
+          return read(file);
+        }));
+    auto read_included = [stop](const std::string& name) {
+      return unless_stopped(stop, [name] { return read_file(name); });
+    };
     Problems problems(options_.file);
     auto environment = [](const char* name) -> const char* { return std::getenv(name); };
-    Graph graph = parse_graph(*text, environment, problems, read_file);
+    Graph graph = parse_graph(text, environment, problems, read_included);
     if (options_.page) add_page(graph, options_.listen, problems);
     for (const auto& setting : options_.settings)
       if (const auto assignment = parse_assignment(setting))
@@ -159,7 +165,7 @@ class FileLoader : public GraphLoader {
     HostPlaces places;
     if (options_.hosts != nullptr) places[""].fingerprint = options_.hosts->fingerprint();
     for (const auto& [name, there] : elsewhere) places[name] = there.connected->place;
-    find_programs(graph, elsewhere, problems);
+    find_programs(graph, elsewhere, problems, stop);
     Answers described;  // here; a failure is not tried twice
     LoadedGraph loaded{graph, {}, {}, {}};
     const bool has_recorder = !options_.recorder.empty();
@@ -193,7 +199,8 @@ class FileLoader : public GraphLoader {
 
   /// Replaces names of programs by paths; one with a slash is relative to the file that names it.
   /// Modules on a host that cannot be reached cause no further problems.
-  static void find_programs(Graph& graph, const HostAnswers& elsewhere, Problems& problems) {
+  static void find_programs(Graph& graph, const HostAnswers& elsewhere, Problems& problems,
+                            int stop) {
     for (auto& module : graph.modules) {
       auto& [program, place] = module.program;
       const std::string given = std::exchange(program, {}), &host = module.host.value;
@@ -206,8 +213,13 @@ class FileLoader : public GraphLoader {
         std::string name = given;
         if (name.find('/') != std::string::npos && !name.starts_with('/'))
           name = (fs::path(problems.file(place.file)).parent_path() / name).string();
-        program = find_program(name);
-        if (program.empty()) problems.add(place, why_no_program(given, name));
+        const auto path = unless_stopped(stop, [=]() -> Result<std::string> {
+          auto found = find_program(name);
+          if (found.empty()) return Error{Code::NotFound, why_no_program(given, name)};
+          return found;
+        });
+        if (!path) problems.add(place, path.error().detail);
+        program = path.value_or("");
       }
     }
   }
@@ -226,13 +238,18 @@ class FileLoader : public GraphLoader {
   }
 
   /// Connects to the hosts that modules run on, and asks each where its programs are and for their
-  /// descriptions: all at the same time. Problems: one that cannot be reached.
+  /// descriptions: all at the same time. Problems: one that cannot be reached; the others are not
+  /// waited for then, but for a moment.
   ///
-  /// Errors: System.
+  /// Errors: Stopped, System.
   Status ask_hosts(const Graph& graph, Problems& problems, int stop, HostAnswers& elsewhere) {
     const auto loop = HC_TRY(Loop::make());
     std::vector<Aside> asked;
     std::size_t answers = 0;
+    Loop::Handle patience;
+    auto give_up = [&asked] {
+      for (auto& each : asked) each.stop();
+    };
     for (const auto& declared : graph.hosts) {
       std::set<std::string> programs;
       for (const auto& module : graph.modules)
@@ -243,41 +260,49 @@ class FileLoader : public GraphLoader {
         break;
       }
       programs.erase("");  // what is wrong has been reported
-      auto answered = [&, &declared = declared](Elsewhere there) {
+      auto answered = [&, &declared = declared, number = asked.size()](Elsewhere there) {
         ++answers;
-        if (there.connected)
+        if (asked[number].is_stopped()) return;
+        if (there.connected) {
           elsewhere.emplace(declared.name, std::move(there));
-        else
-          problems.add(declared.place, "host {}: {}", declared.name,
-                       there.connected.error().detail);
+          return;
+        }
+        problems.add(declared.place, "host {}: {}", declared.name, there.connected.error().detail);
+        if (patience) return;
+        patience = loop->call_at(std::chrono::steady_clock::now() + kMorePatience, give_up);
       };
       asked.push_back(HC_TRY(run_aside(
           *loop,
-          [=, &declared = declared, this](int) {
-            return ask_host(*options_.hosts, declared, programs, stop);
+          [=, &declared = declared, this](int given_up) {
+            return ask_host(*options_.hosts, declared, programs, given_up);
           },
           answered)));
     }
+    bool is_stopped = false;
+    const auto stopped = HC_TRY(loop->watch(stop, stop < 0 ? 0U : EPOLLIN | EPOLLET, [&](auto) {
+      is_stopped = true;
+      give_up();
+    }));
     while (answers < asked.size()) HC_TRY(loop->turn());
+    if (is_stopped) return Error{Code::Stopped, "asked to stop"};
     return {};
   }
 
   Result<std::string> describe_once(const std::string& program, int stop) {
-    std::error_code missing;
-    const auto time = fs::last_write_time(program, missing);
-    const auto size = fs::file_size(program, missing);
+    const auto stamp = HC_TRY(unless_stopped(stop, [program]() -> Result<Stamp> {
+      std::error_code missing;
+      return Stamp(fs::last_write_time(program, missing), fs::file_size(program, missing));
+    }));
     auto known = described_.find(program);
-    if (!missing && known != described_.end() && known->second.time == time &&
-        known->second.size == size)
-      return known->second.description;
+    if (known != described_.end() && known->second.stamp == stamp) return known->second.description;
     auto description = describe_program(program, stop);
-    if (!missing && description) described_[program] = {time, size, *description};
+    if (description) described_[program] = {stamp, *description};
     return description;
   }
 
+  using Stamp = std::pair<fs::file_time_type, std::uintmax_t>;  // when it was written, its size
   struct Described {
-    fs::file_time_type time;
-    std::uintmax_t size;
+    Stamp stamp;
     std::string description;
   };
 

@@ -68,16 +68,17 @@ program = "seer"
 )" + link("a.in") + link("b.in", "keep = \"all\"") +
                            link("a.more", "keep = 3\nrate = 10\nmemory = \"8M\"") +
                            link("any.in")));
-  using Words = std::vector<std::string>;
+  using Strings = std::vector<std::string>;
   EXPECT_EQ(values_of(planned.modules[0], "--out"),
-            (Words{"image=shm:t.eye.image?readers=2&stay=1",
-                   "image=shm:t.eye.image.a.more?readers=1&stay=1&keep=3&memory=8M",
-                   "image=unix-listen:@t.eye.image.any.in?readers=1&stay=1&keep=latest"}));
+            (Strings{"image=shm:t.eye.image?readers=2&stay=1",
+                     "image=shm:t.eye.image.a.more?readers=1&stay=1&keep=3&memory=8M",
+                     "image=unix-listen:@t.eye.image.any.in?readers=1&stay=1&keep=latest"}));
   EXPECT_EQ(values_of(planned.modules[1], "--in"),
-            (Words{"in=shm:t.eye.image?wait=60&keep=latest",
-                   "more=shm:t.eye.image.a.more?wait=60&keep=3&rate=10"}));
-  EXPECT_EQ(values_of(planned.modules[2], "--in"), (Words{"in=shm:t.eye.image?wait=60"}));
-  EXPECT_EQ(values_of(planned.modules[3], "--in"), (Words{"in=unix:@t.eye.image.any.in?wait=60"}));
+            (Strings{"in=shm:t.eye.image?wait=60&keep=latest",
+                     "more=shm:t.eye.image.a.more?wait=60&keep=3&rate=10"}));
+  EXPECT_EQ(values_of(planned.modules[2], "--in"), (Strings{"in=shm:t.eye.image?wait=60"}));
+  EXPECT_EQ(values_of(planned.modules[3], "--in"),
+            (Strings{"in=unix:@t.eye.image.any.in?wait=60"}));
   EXPECT_EQ(planned.links[0].sender_uri, planned.links[2].sender_uri);
   EXPECT_EQ(planned.links[1].keep, "3");
   EXPECT_EQ(planned.links[1].policy,

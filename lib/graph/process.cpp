@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <string_view>
 
@@ -18,6 +19,8 @@
 namespace hc {
 
 namespace {
+
+constexpr std::chrono::seconds kExecTime{1};  // that we wait to hear that a program cannot be run
 
 /// What a guard and its program get from us. Between fork and exec, and in a guard all its life,
 /// nothing may allocate: another thread of ours may have held a lock when we forked.
@@ -142,6 +145,13 @@ std::vector<std::string> environment_with(const std::vector<int>& listeners) {
   return words;
 }
 
+/// Why a program was not started, by the call that failed, and what to do.
+Error start_error(std::string_view call, const std::string& program, int number) {
+  if (number != EAGAIN) return system_error(call, program, number);
+  return {Code::System, program + " cannot be started: there are as many processes as this user, " +
+                            "or its control group, may have (ulimit -u, pids.max)"};
+}
+
 Result<std::array<Descriptor, 2>> make_pipe() {
   int ends[2];
   HC_TRY(system_call("pipe2", "", [&] { return ::pipe2(ends, O_CLOEXEC); }));
@@ -174,7 +184,7 @@ Result<Process> Process::start(const std::vector<std::string>& command, Capture 
                     &given,
                     environment.data()};
   pid_t child = ::fork();
-  if (child < 0) return system_error("fork", command[0]);
+  if (child < 0) return start_error("fork", command[0], errno);
   if (child == 0) guard(start);
 
   Process process;
@@ -186,12 +196,16 @@ Result<Process> Process::start(const std::vector<std::string>& command, Capture 
   process.life_ = std::move(life[1]);
   for (const auto* ours : {&process.output_, &process.errors_, &process.input_})
     if (*ours) ::fcntl(ours->get(), F_SETFL, O_NONBLOCK);
-  // The pipe closes when exec succeeds.
+  // The pipe closes when exec succeeds. On a disk that hangs that may be late or never: we go on,
+  // and one that fails then has status kCannotExecute.
   failure[1].reset();
-  int number = 0;
-  auto size =
-      system_call("read", "", [&] { return ::read(failure[0].get(), &number, sizeof number); });
-  if (size && *size == sizeof number) return system_error("exec", command[0], number);
+  const auto deadline = std::chrono::steady_clock::now() + kExecTime;
+  if (HC_TRY(wait_for(failure[0].get(), POLLIN, -1, deadline))) {
+    int number = 0;
+    auto size =
+        system_call("read", "", [&] { return ::read(failure[0].get(), &number, sizeof number); });
+    if (size && *size == sizeof number) return start_error("exec", command[0], number);
+  }
   if (!process.handle_) return system_error("pidfd_open", command[0]);
   return process;
 }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <graph/process.h>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -9,6 +12,7 @@
 #include <fstream>
 
 #include <hc/link/link.h>
+#include <hc/os/procfs.h>
 #include <hc/os/wait_readable.h>
 #include <hc/testing/must.h>
 
@@ -147,6 +151,49 @@ TEST(Process, NothingIsLeftBehindWhenWeAreKilled) {
   // What is left gives no notice of its end, but for the watchdog of the test.
   while (runs(std::stoi(left))) ::sched_yield();
   ::close(ends[0]);
+}
+
+/// The name of a process: its program's once that has been executed.
+std::string name_of(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/comm");
+  std::string name;
+  std::getline(file, name);
+  return name;
+}
+
+TEST(Process, AProgramOnADiskThatHangsIsNotWaitedFor) {
+  const std::string program = ::testing::TempDir() + "hung_" + std::to_string(::getpid());
+  std::ofstream(program) << "#!/bin/sh\necho said\n";
+  ::chmod(program.c_str(), S_IRWXU);
+  // Who opens a file that is leased waits until the lease is given back, as on a disk that hangs.
+  std::signal(SIGIO, SIG_IGN);
+  const Descriptor lease(::open(program.c_str(), O_RDONLY | O_CLOEXEC));
+  ASSERT_EQ(::fcntl(lease.get(), F_SETLEASE, F_WRLCK), 0);
+  auto process = Process::start({program}, Capture::Output);
+  ASSERT_TRUE(process);
+  pid_t child = 0;
+  while ((child = first_child(process->guard_number())) == 0) ::sched_yield();
+  EXPECT_EQ(name_of(child), "guard");
+  ::fcntl(lease.get(), F_SETLEASE, F_UNLCK);
+  EXPECT_EQ(listen(*process), "said\n");
+  EXPECT_EQ(status_of(*process), 0);
+  ::unlink(program.c_str());
+}
+
+TEST(Process, TooManyProcessesAreSaidInWords) {
+  const pid_t limited = ::fork();
+  if (limited == 0) {
+    const rlimit none{0, 0};
+    ::setrlimit(RLIMIT_NPROC, &none);
+    constexpr uid_t kAnybody = 54321;  // root has no limit
+    if (::geteuid() == 0 && ::setuid(kAnybody) != 0) ::_exit(2);
+    const auto process = Process::start({"/bin/true"}, Capture::Output);
+    ::_exit(!process && process.error().detail.starts_with("/bin/true cannot be started: ") ? 0
+                                                                                            : 1);
+  }
+  int status = -1;
+  ASSERT_EQ(::waitpid(limited, &status, 0), limited);
+  EXPECT_EQ(status, 0);
 }
 
 }  // namespace

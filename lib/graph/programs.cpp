@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include <graph/process.h>
+#include <hc/base/suggestion.h>
 #include <hc/os/wait_readable.h>
 
 namespace hc {
@@ -97,6 +98,17 @@ std::string find_program(const std::string& name) {
     path.remove_prefix(std::min(colon + 1, path.size()));
   }
   return "";
+}
+
+std::string no_program(const std::string& name) {
+  const std::string text = "no program \"" + name + "\"";
+  // Where this program was built, not all others need have been.
+  const auto build = module_folder().parent_path().parent_path();
+  std::error_code missing;
+  if (fs::exists(build / "CMakeCache.txt", missing) &&
+      fs::is_directory(build.parent_path() / "modules" / name, missing))
+    return text + ": it is not built; ./dev build builds all modules";
+  return text + suggestion(name, module_names());
 }
 
 Result<std::string> describe_program(const std::string& program, int stop) {

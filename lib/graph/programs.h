@@ -22,6 +22,9 @@ std::filesystem::path graph_folder();
 /// A program by its path, or by its name in module_folder() or PATH; empty when there is none.
 std::string find_program(const std::string& name);
 
+/// Why find_program() finds no program of this name, and what to do.
+std::string no_program(const std::string& name);
+
 /// What `program --describe` prints, at most 1 MiB, within 10 s.
 ///
 /// Errors: NotFound (no such program), System (it failed), Stopped (`stop` is readable).

@@ -15,7 +15,6 @@
 #include <graph/module_process.h>
 #include <graph/process.h>
 #include <graph/programs.h>
-#include <hc/base/suggestion.h>
 #include <hc/os/aside.h>
 #include <hosts/conversation.h>
 #include <hosts/key_file.h>
@@ -263,13 +262,17 @@ class Agent {
 
   [[nodiscard]] Result<Json> answer_to(const Json& question, int stop) const {
     const std::string what = question.at("what"), subject = question.value("subject", "");
-    if (what == "describe") return Json(HC_TRY(describe_program(subject, stop)));
+    if (what == "describe") {
+      auto description = HC_TRY(describe_program(subject, stop));
+      return Json(std::move(description));
+    }
     if (what == "examine" && options_.examine) return Json(options_.examine(subject));
     if (what != "find") return Error{Code::Invalid, "no such question: " + what};
-    const auto program = find_program(subject);
-    if (!program.empty()) return Json(program);
-    return Error{Code::NotFound,
-                 "no program \"" + subject + "\"" + suggestion(subject, module_names())};
+    return unless_stopped(stop, [subject]() -> Result<Json> {
+      const auto program = find_program(subject);
+      if (!program.empty()) return Json(program);
+      return Error{Code::NotFound, no_program(subject)};
+    });
   }
 
   const AgentOptions& options_;

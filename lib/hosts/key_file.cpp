@@ -10,9 +10,9 @@
 namespace hc::hosts {
 
 Result<Descriptor> make_key_file(std::string_view key) {
-  Descriptor file(HC_TRY(system_call("memfd_create", "key", [] {
+  auto file = HC_TRY(open_descriptor("memfd_create", "key", [] {
     return ::memfd_create("hypercolumn key", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  })));
+  }));
   constexpr mode_t kOwnerOnly = 0600;
   HC_TRY(system_call("fchmod", "key", [&] { return ::fchmod(file.get(), kOwnerOnly); }));
   HC_TRY(write_all(file.get(), key));

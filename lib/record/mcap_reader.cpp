@@ -85,7 +85,7 @@ class McapReader final : public Reader {
   }
   Status resume() override { return {}; }
   Result<std::vector<StreamInfo>> streams(bool) override { return streams_of(reader_.summary()); }
-  Result<std::map<std::string, mcap::Words>> metadata() override { return reader_.metadata(); }
+  Result<std::map<std::string, mcap::StringMap>> metadata() override { return reader_.metadata(); }
 
  private:
   /// Keeps a message that may have the elements of the next one on the topic of MTP. Both are in

@@ -16,7 +16,7 @@ using mcap::kMagic;
 using mcap::kRecordHead;
 using mcap::Opcode;
 using mcap::RecordWriter;
-using mcap::Words;
+using mcap::StringMap;
 
 namespace fs = std::filesystem;
 
@@ -239,7 +239,8 @@ class ForeignFile {
     out.add(Opcode::Header, "", "others");
   }
   static void add_channel(RecordWriter& to, std::uint16_t id) {
-    to.add(Opcode::Channel, id, std::uint16_t{0}, "/topic" + std::to_string(id), "json", Words());
+    to.add(Opcode::Channel, id, std::uint16_t{0}, "/topic" + std::to_string(id), "json",
+           StringMap());
   }
   static void add_message(RecordWriter& to, std::uint16_t channel, std::uint64_t time) {
     to.begin(Opcode::Message, channel, std::uint32_t{0}, time, time);
@@ -504,7 +505,7 @@ TEST_F(Mcap, TheLastMetadataOfANameIsFound) {
   ASSERT_TRUE(writer->metadata("a", {{"x", "3"}}));
   ASSERT_TRUE(writer->close().status);
   EXPECT_EQ(*mcap::Reader::open(in("x.mcap"))->metadata(),
-            (std::map<std::string, Words>{{"a", {{"x", "3"}}}, {"b", {{"x", "2"}}}}));
+            (std::map<std::string, StringMap>{{"a", {{"x", "3"}}}, {"b", {{"x", "2"}}}}));
 }
 
 TEST_F(Mcap, NumberedFilesOfBeforeStay) {

@@ -9,7 +9,7 @@
 namespace hc::record {
 namespace {
 
-using mcap::Words;
+using mcap::StringMap;
 
 /// Channels have 16-bit numbers. A message may need three new ones, for the two topics of its
 /// stream and /tf; two are for /tf_static and /rosout.
@@ -114,7 +114,8 @@ std::uint16_t McapWriter::add_channel(mcap::ChannelRecord channel, mcap::SchemaR
   return last_channel_;
 }
 
-std::uint16_t McapWriter::add_channel(const std::string& topic, ros::Type type, Words metadata) {
+std::uint16_t McapWriter::add_channel(const std::string& topic, ros::Type type,
+                                      StringMap metadata) {
   const auto& schema = ros::schema(type);
   metadata["offered_qos_profiles"] = quality_of_service(topic == kStaticFrames);
   return add_channel({0, 0, topic, "cdr", std::move(metadata)},
@@ -257,7 +258,7 @@ void McapWriter::record_fixed_frames(std::int64_t time) {
                                          joined(encoder_.encode(fixed))}));
 }
 
-Status McapWriter::metadata(const std::string& name, const Words& words) {
+Status McapWriter::metadata(const std::string& name, const StringMap& words) {
   return repeat(mcap::MetadataRecord{name, words});
 }
 

@@ -55,7 +55,7 @@ class McapWriter {
   Status copy(const mcap::StoredMessage& message, const void* from);
   /// Writes a line of the log on the topic /rosout, by ros::Encoder::encode_log().
   Status log(std::int64_t time, const LogLine& line);
-  Status metadata(const std::string& name, const mcap::Words& words);
+  Status metadata(const std::string& name, const mcap::StringMap& words);
   /// Writes the chunk that is being collected, if it is old enough.
   Status poll();
   /// As Storage::save().
@@ -88,7 +88,7 @@ class McapWriter {
   McapWriter(mcap::Storage storage, ros::GraphJoints joints, std::size_t chunk_bytes);
   void record_fixed_frames(std::int64_t time);
   std::uint16_t add_channel(mcap::ChannelRecord channel, mcap::SchemaRecord schema);
-  std::uint16_t add_channel(const std::string& topic, ros::Type type, mcap::Words metadata);
+  std::uint16_t add_channel(const std::string& topic, ros::Type type, mcap::StringMap metadata);
   /// The channel of a stream for messages of a type.
   std::uint16_t channel(Stream& stream, ros::Type type);
   /// The channel of a topic that belongs to no stream, such as the log.

@@ -83,8 +83,8 @@ class MergedReader final : public Reader {
     }
     return all;
   }
-  Result<std::map<std::string, mcap::Words>> metadata() override {
-    std::map<std::string, mcap::Words> all;
+  Result<std::map<std::string, mcap::StringMap>> metadata() override {
+    std::map<std::string, mcap::StringMap> all;
     for (auto& file : files_) {
       auto metadata = file.reader->metadata();
       if (!metadata) return metadata.error();

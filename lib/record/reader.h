@@ -66,8 +66,8 @@ class Reader : public Source {
   /// @param counted  with counts and times, for which files of messages are read to their end.
   virtual Result<std::vector<StreamInfo>> streams(bool counted = false) = 0;
   /// The newest metadata of each name, of MCAP.
-  virtual Result<std::map<std::string, mcap::Words>> metadata() {
-    return std::map<std::string, mcap::Words>();
+  virtual Result<std::map<std::string, mcap::StringMap>> metadata() {
+    return std::map<std::string, mcap::StringMap>();
   }
 
   // For Writer::copy().

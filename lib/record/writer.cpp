@@ -186,7 +186,7 @@ Status Writer::log(const LogLine& line) {
   return to_mcap([&] { return mcap_->log(now(), line); });
 }
 
-Status Writer::metadata(const std::string& name, const mcap::Words& words) {
+Status Writer::metadata(const std::string& name, const mcap::StringMap& words) {
   return to_mcap([&] { return mcap_->metadata(name, words); });
 }
 

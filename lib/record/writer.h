@@ -81,7 +81,7 @@ class Writer {
 
   /// A line of the graph's log, and metadata; ignored other than in MCAP.
   Status log(const LogLine& line);
-  Status metadata(const std::string& name, const mcap::Words& words);
+  Status metadata(const std::string& name, const mcap::StringMap& words);
 
   /// Writes messages that have been buffered for long enough; to be called a few times a second.
   Status poll();

@@ -41,7 +41,7 @@ void keep_inner_outlines(Parameters& parameters) {
 
 }  // namespace
 
-struct ArucoFinder::Words {
+struct ArucoFinder::Detector {
   cv::Ptr<aruco::Dictionary> dictionary;
   cv::Ptr<aruco::DetectorParameters> parameters = cv::makePtr<aruco::DetectorParameters>();
 };
@@ -50,17 +50,17 @@ Result<ArucoFinder> ArucoFinder::make(const std::string& dictionary) {
   const auto* named = std::ranges::find(kDictionaries, dictionary);
   if (named == std::end(kDictionaries))
     return Error{Code::NotFound, "there is no ArUco dictionary \"" + dictionary + "\""};
-  auto words = std::make_shared<Words>();
-  keep_inner_outlines(*words->parameters);
-  words->dictionary = pointer_to(aruco::getPredefinedDictionary(
+  auto detector = std::make_shared<Detector>();
+  keep_inner_outlines(*detector->parameters);
+  detector->dictionary = pointer_to(aruco::getPredefinedDictionary(
       static_cast<DictionaryName>(named - std::begin(kDictionaries))));
-  return ArucoFinder(std::move(words));
+  return ArucoFinder(std::move(detector));
 }
 
 std::vector<Marker> ArucoFinder::find(const cv::Mat& grey) const {
   std::vector<std::vector<cv::Point2f>> corners;
   std::vector<int> ids;
-  aruco::detectMarkers(grey, words_->dictionary, corners, ids, words_->parameters);
+  aruco::detectMarkers(grey, detector_->dictionary, corners, ids, detector_->parameters);
   std::vector<Marker> markers;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     Marker marker{MarkerKind::Aruco, ids[i], {}};

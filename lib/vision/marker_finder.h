@@ -25,9 +25,9 @@ class ArucoFinder {
   [[nodiscard]] std::vector<Marker> find(const cv::Mat& grey) const;
 
  private:
-  struct Words;
-  explicit ArucoFinder(std::shared_ptr<const Words> words) : words_(std::move(words)) {}
-  std::shared_ptr<const Words> words_;
+  struct Detector;
+  explicit ArucoFinder(std::shared_ptr<const Detector> detector) : detector_(std::move(detector)) {}
+  std::shared_ptr<const Detector> detector_;
 };
 
 /// AprilTags of the family tag36h11.

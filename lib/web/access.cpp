@@ -33,10 +33,6 @@ std::pair<std::string_view, std::string_view> split(std::string_view host) {
   return {host.substr(0, colon), host.substr(colon + 1)};
 }
 
-bool is_loopback(std::string_view name) {
-  return name == "localhost" || name == "127.0.0.1" || name == "[::1]" || name == "::1";
-}
-
 bool is_address(std::string_view name) {
   if (name.starts_with('[') && name.ends_with(']')) name = name.substr(1, name.size() - 2);
   std::array<unsigned char, sizeof(in6_addr)> bytes;
@@ -89,12 +85,16 @@ std::string own_address() {
   return found;
 }
 
+bool is_local(std::string_view name) {
+  return name == "localhost" || name == "127.0.0.1" || name == "[::1]" || name == "::1";
+}
+
 bool Access::is_host(std::string_view host) const {
   const auto [name, port] = split(host);
   if (!port.empty() && port != std::to_string(place_.port)) return false;
   if (std::ranges::find(place_.hosts, name) != place_.hosts.end()) return true;
-  if (is_loopback(name)) return true;
-  return !is_loopback(place_.address) && is_address(name);
+  if (is_local(name)) return true;
+  return !is_local(place_.address) && is_address(name);
 }
 
 bool Access::is_origin(std::string_view origin, std::string_view host) const {

@@ -87,6 +87,9 @@ class Access {
   std::deque<std::pair<std::string, Right>> tokens_;  // the newest last
 };
 
+/// Whether an address or name, as URLs have it, is reached from this machine alone.
+bool is_local(std::string_view name);
+
 /// The first address by which other machines reach this one, IPv4; 127.0.0.1 where there is none.
 std::string own_address();
 

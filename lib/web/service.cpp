@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <web/service.h>
 
-#include <algorithm>
-#include <iterator>
-#include <sstream>
-
+#include <hc/base/words.h>
 #include <web/identity.h>
 
 namespace hc::web {
-
-bool is_local(const std::string& address) {
-  return address == "127.0.0.1" || address == "::1" || address == "localhost";
-}
 
 Result<std::unique_ptr<Service>> Service::open(const Listening& listening, Loop& loop,
                                                std::function<void(std::string_view)> log) {
@@ -29,11 +22,9 @@ Result<std::unique_ptr<Service>> Service::open(const Listening& listening, Loop&
                        loop.post([log, kept = std::string(line)] { log(kept); });
                      });
   if (!server) return server.error();
-  std::string names = listening.hosts;
-  std::ranges::replace(names, ',', ' ');
-  std::istringstream words(names);
-  using Words = std::istream_iterator<std::string>;
-  Place place{listening.address, (*server)->port(), !identity.empty(), {Words(words), Words()}};
+  const auto hosts = words_of(listening.hosts, ", \t\n");
+  Place place{
+      listening.address, (*server)->port(), !identity.empty(), {hosts.begin(), hosts.end()}};
   return std::unique_ptr<Service>(
       new Service(std::move(*server), std::move(place), web::fingerprint(identity)));
 }

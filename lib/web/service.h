@@ -23,9 +23,6 @@ struct Listening {
   std::string hosts;                  ///< further names of this machine, between commas or blanks
 };
 
-/// Whether an address is reached from this machine alone.
-bool is_local(const std::string& address);
-
 /// Listens for HTTP and WebSockets, and serves a site on a thread of its own. For the module's
 /// thread; server().post() from any.
 class Service {

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include <drivers/descriptor.h>
 #include <hc/base/result.h>
+#include <hc/os/descriptor.h>
 
 class Terminal {
  public:

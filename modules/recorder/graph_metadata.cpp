@@ -12,7 +12,7 @@ GraphMetadata::GraphMetadata(hc::GraphClient& graph, hc::record::Writer& writer)
        .log = [this](const auto& line, auto) { static_cast<void>(writer_.log(line)); }}));
 }
 
-void GraphMetadata::record(const std::string& name, const hc::mcap::Words& words) {
+void GraphMetadata::record(const std::string& name, const hc::mcap::StringMap& words) {
   if (words == recorded_[name]) return;
   recorded_[name] = words;
   static_cast<void>(writer_.metadata(name, words));
@@ -27,7 +27,7 @@ void GraphMetadata::record_state(const hc::GraphState& state) {
                                  {"text", {std::istreambuf_iterator<char>(file), {}}}});
   }
   for (const auto& module : state.modules) {
-    hc::mcap::Words words = {{"program", module.program}};
+    hc::mcap::StringMap words = {{"program", module.program}};
     for (const auto& [name, value] : module.parameters) words["parameter." + name] = value;
     record("hypercolumn.module." + module.name, words);
     if (is_first) undescribed_.push_back(module.name);

@@ -17,11 +17,11 @@ class GraphMetadata {
 
  private:
   void record_state(const hc::GraphState& state);
-  void record(const std::string& name, const hc::mcap::Words& words);
+  void record(const std::string& name, const hc::mcap::StringMap& words);
   void describe_next();
 
   hc::GraphClient& graph_;
   hc::record::Writer& writer_;
-  std::map<std::string, hc::mcap::Words> recorded_;  // the newest metadata, by name
-  std::deque<std::string> undescribed_;              // modules
+  std::map<std::string, hc::mcap::StringMap> recorded_;  // the newest metadata, by name
+  std::deque<std::string> undescribed_;                  // modules
 };

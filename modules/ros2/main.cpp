@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Talks to ROS 2: outputs of the graph as topics, topics as outputs here; without ROS installed.
 #include <atomic>
-#include <charconv>
 #include <cstdlib>
 #include <functional>
 #include <list>
@@ -10,6 +9,7 @@
 
 #include <client/running.h>
 #include <frames/default_head.h>
+#include <hc/base/text.h>
 #include <hc/compress/compress.h>
 #include <hc/module/module.h>
 #include <hc/os/event.h>
@@ -35,8 +35,7 @@ std::uint32_t domain_of(std::int64_t parameter) {
   if (parameter >= 0) return static_cast<std::uint32_t>(parameter);
   const std::string text = environment("ROS_DOMAIN_ID", "0");
   std::uint32_t domain = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), domain);
-  if (error != std::errc() || end != text.data() + text.size())
+  if (!hc::read_number(text, domain))
     throw hc::ModuleError(
         hc::Error{hc::Code::Invalid, "ROS_DOMAIN_ID is \"" + text + "\", not a number"});
   return domain;

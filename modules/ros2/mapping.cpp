@@ -2,11 +2,12 @@
 #include "mapping.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <set>
 #include <span>
 #include <utility>
+
+#include <hc/base/text.h>
 
 #include "names.h"
 
@@ -37,12 +38,6 @@ std::pair<std::string_view, std::string_view> pair_of(std::string_view word) {
   return {word.substr(0, at), word.substr(std::min(at + 1, word.size()))};
 }
 
-template <typename T>
-bool read(std::string_view text, T& number) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
 /// "/topic:TYPE" in two; the type is none where it is not said.
 hc::Status read_topic(std::string_view text, Mapping& each) {
   const auto colon = std::min(text.find(':'), text.size());
@@ -68,7 +63,7 @@ hc::Status read_options(std::span<const std::string_view> words, bool is_subscri
   for (const auto word : words) {
     const auto [key, value] = pair_of(word);
     if (key == "rate") {
-      if (!read(value, each.rate) || !(each.rate > 0) || !std::isfinite(each.rate))
+      if (!hc::read_number(value, each.rate) || !(each.rate > 0) || !std::isfinite(each.rate))
         return wrong(word, "is no rate above 0 [Hz]");
     } else if (key == "qos") {
       if (value != "reliable" && value != "best_effort")
@@ -77,7 +72,7 @@ hc::Status read_options(std::span<const std::string_view> words, bool is_subscri
     } else if (key == "joints") {
       for (const auto joint : split(value, "+")) each.choice.joints.emplace_back(joint);
     } else if (key == "coord" && is_subscribed) {
-      if (!read(value, each.coord) || each.coord < 0) return wrong(word, "is no coord");
+      if (!hc::read_number(value, each.coord) || each.coord < 0) return wrong(word, "is no coord");
     } else if (key == "child" && is_subscribed) {
       each.choice.child = value;
     } else {

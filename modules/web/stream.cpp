@@ -2,9 +2,9 @@
 #include "stream.h"
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
+#include <hc/base/text.h>
 #include <hc/compress/compress.h>
 #include <hc/mtp/codec.h>
 
@@ -18,9 +18,7 @@ constexpr int kNoStream = 4404;                         // as kEnd
 template <typename Number>
 bool read_number(std::string_view text, Number max, Number& number) {
   Number read{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
-  if (error != std::errc() || end != text.data() + text.size() || !(read >= 0) || read > max)
-    return false;
+  if (!hc::read_number(text, read) || !(read >= 0) || read > max) return false;
   number = read;
   return true;
 }
@@ -75,70 +73,70 @@ Stream::Stream(hc::RunningGraph graph, std::string port, web::Post post)
             .idle = [this] { return serve(); },
             .end = [this](const std::string& why, bool is_error) { end(why, is_error); }}) {}
 
-void Stream::post(const std::shared_ptr<Seat>& seat,
-                  std::function<void(const std::shared_ptr<Seat>&)> call) const {
-  post_([weak = std::weak_ptr(seat), call = std::move(call)] {
+void Stream::post(const std::shared_ptr<Viewer>& viewer,
+                  std::function<void(const std::shared_ptr<Viewer>&)> call) const {
+  post_([weak = std::weak_ptr(viewer), call = std::move(call)] {
     if (const auto still = weak.lock()) call(still);
   });
 }
 
 void Stream::view(const Wanted& wanted, std::shared_ptr<web::WebSocket> socket) {
   auto& events = *socket;
-  const auto seat = std::make_shared<Seat>(Seat{std::move(socket), wanted});
-  events.on_close = [this, weak = std::weak_ptr(seat)] {
+  const auto viewer = std::make_shared<Viewer>(Viewer{std::move(socket), wanted});
+  events.on_close = [this, weak = std::weak_ptr(viewer)] {
     if (const auto still = weak.lock()) remove(still);
   };
-  events.on_text = [this, weak = std::weak_ptr(seat)](std::string_view said) {
+  events.on_text = [this, weak = std::weak_ptr(viewer)](std::string_view said) {
     if (const auto still = weak.lock()) hear(still, said);
   };
   const std::lock_guard lock(mutex_);
-  seats_.push_back(seat);
-  if (!ended_.empty()) close_soon(seat, ended_as_, ended_);
+  viewers_.push_back(viewer);
+  if (!ended_.empty()) close_soon(viewer, ended_as_, ended_);
   tap_.wake();
 }
 
-void Stream::hear(const std::shared_ptr<Seat>& seat, std::string_view said) {
+void Stream::hear(const std::shared_ptr<Viewer>& viewer, std::string_view said) {
   // This thread alone changes what is wanted.
   const auto changed =
-      said == "ok" ? hc::Result<Wanted>(seat->wanted) : parse_wanted(said, seat->wanted);
-  if (!changed) return close(seat, kPolicy, changed.error().detail);
+      said == "ok" ? hc::Result<Wanted>(viewer->wanted) : parse_wanted(said, viewer->wanted);
+  if (!changed) return close(viewer, kPolicy, changed.error().detail);
   const std::lock_guard lock(mutex_);
-  if (said == "ok" && seat->under_way > 0) --seat->under_way;
-  if (changed->form != seat->wanted.form || changed->width != seat->wanted.width)
-    seat->has_changed = true;
-  seat->wanted = *changed;
+  if (said == "ok" && viewer->under_way > 0) --viewer->under_way;
+  if (changed->form != viewer->wanted.form || changed->width != viewer->wanted.width)
+    viewer->has_changed = true;
+  viewer->wanted = *changed;
   tap_.wake();
 }
 
-void Stream::remove(const std::shared_ptr<Seat>& seat) {
+void Stream::remove(const std::shared_ptr<Viewer>& viewer) {
   const std::lock_guard lock(mutex_);
-  std::erase(seats_, seat);
+  std::erase(viewers_, viewer);
 }
 
-void Stream::close(const std::shared_ptr<Seat>& seat, int code, const std::string& why) {
-  seat->socket->close(code, why);
-  remove(seat);
+void Stream::close(const std::shared_ptr<Viewer>& viewer, int code, const std::string& why) {
+  viewer->socket->close(code, why);
+  remove(viewer);
 }
 
-void Stream::close_soon(const std::shared_ptr<Seat>& seat, int code, const std::string& why) {
-  post(seat, [this, code, why](const auto& still) { close(still, code, why); });
+void Stream::close_soon(const std::shared_ptr<Viewer>& viewer, int code, const std::string& why) {
+  post(viewer, [this, code, why](const auto& still) { close(still, code, why); });
 }
 
 void Stream::close(const std::string& why) {
   const std::lock_guard lock(mutex_);
-  for (const auto& seat : std::exchange(seats_, {})) seat->socket->close(kEnd, why);
+  for (const auto& viewer : std::exchange(viewers_, {})) viewer->socket->close(kEnd, why);
 }
 
 bool Stream::is_viewed() {
   const std::lock_guard lock(mutex_);
-  return !seats_.empty();
+  return !viewers_.empty();
 }
 
 void Stream::end(const std::string& why, bool is_error) {
   const std::lock_guard lock(mutex_);
   ended_ = why;
   ended_as_ = is_error ? kNoStream : kEnd;
-  for (const auto& seat : seats_) close_soon(seat, ended_as_, why);
+  for (const auto& viewer : viewers_) close_soon(viewer, ended_as_, why);
 }
 
 Stream::Clock::time_point Stream::serve() {
@@ -147,41 +145,42 @@ Stream::Clock::time_point Stream::serve() {
   if (number_ == 0) return next;
   struct Alike {
     Wanted wanted;
-    Seats seats;
+    Viewers viewers;
   };
   std::map<std::pair<Form, int>, Alike> all;
   {
     const std::lock_guard lock(mutex_);
     std::erase_if(videos_, [&](const auto& video) {
-      return std::ranges::none_of(seats_, [&](const auto& seat) {
-        return seat->wanted.form == Form::Vp8 && seat->wanted.width == video.first;
+      return std::ranges::none_of(viewers_, [&](const auto& viewer) {
+        return viewer->wanted.form == Form::Vp8 && viewer->wanted.width == video.first;
       });
     });
-    for (const auto& seat : seats_) {
-      if (std::exchange(seat->has_changed, false)) seat->frame = 0;
-      if (seat->seen == number_ || seat->under_way >= kMaxUnderWay) continue;
-      if (now < seat->due) {
-        next = std::min(next, seat->due);
+    for (const auto& viewer : viewers_) {
+      if (std::exchange(viewer->has_changed, false)) viewer->frame = 0;
+      if (viewer->seen == number_ || viewer->under_way >= kMaxUnderWay) continue;
+      if (now < viewer->due) {
+        next = std::min(next, viewer->due);
         continue;
       }
-      if (seat->wanted.rate > 0)
-        seat->due = std::max(seat->due + std::chrono::duration_cast<Clock::duration>(
-                                             std::chrono::duration<double>(1 / seat->wanted.rate)),
-                             now);
-      auto& [wanted, seats] = all[{seat->wanted.form, seat->wanted.width}];
-      wanted = seat->wanted;
-      seats.push_back(seat);
-      ++seat->under_way;
+      if (viewer->wanted.rate > 0)
+        viewer->due =
+            std::max(viewer->due + std::chrono::duration_cast<Clock::duration>(
+                                       std::chrono::duration<double>(1 / viewer->wanted.rate)),
+                     now);
+      auto& [wanted, viewers] = all[{viewer->wanted.form, viewer->wanted.width}];
+      wanted = viewer->wanted;
+      viewers.push_back(viewer);
+      ++viewer->under_way;
     }
   }
   for (const auto& [what, alike] : all) {
-    for (const auto& seat : alike.seats) seat->seen = number_;
-    serve_alike(alike.wanted, alike.seats);
+    for (const auto& viewer : alike.viewers) viewer->seen = number_;
+    serve_alike(alike.wanted, alike.viewers);
   }
   return next;
 }
 
-void Stream::serve_alike(const Wanted& wanted, const Seats& seats) {
+void Stream::serve_alike(const Wanted& wanted, const Viewers& viewers) {
   const auto now = Clock::now();
   auto made = hc::expand(newest_);
   if (made) made = scaled(*made, wanted.width);
@@ -192,31 +191,31 @@ void Stream::serve_alike(const Wanted& wanted, const Seats& seats) {
   bool is_key = true;
   if (is_image && wanted.form == Form::Vp8) {
     video = &videos_[wanted.width];
-    const bool needs_key =
-        std::ranges::any_of(seats, [&](const auto& seat) { return seat->frame != video->frames; });
+    const bool needs_key = std::ranges::any_of(
+        viewers, [&](const auto& viewer) { return viewer->frame != video->frames; });
     made = video->encoder.encode(*made, needs_key && now >= video->key_due);
     ++video->frames;
     is_key = made && is_key_frame(*made);
     if (is_key) video->key_due = now + kBetweenKeys;
   }
   if (!made) {
-    for (const auto& seat : seats) close_soon(seat, kNoStream, made.error().detail);
+    for (const auto& viewer : viewers) close_soon(viewer, kNoStream, made.error().detail);
     return;
   }
   const web::Bytes bytes = bytes_of(*made);
   const std::string header = hc::text(newest_.header);
-  for (const auto& seat : seats) {
+  for (const auto& viewer : viewers) {
     if (video != nullptr) {
-      if (!is_key && seat->frame + 1 != video->frames) {  // it could not show this one
+      if (!is_key && viewer->frame + 1 != video->frames) {  // it could not show this one
         const std::lock_guard lock(mutex_);
-        --seat->under_way;
+        --viewer->under_way;
         continue;
       }
-      seat->frame = video->frames;
+      viewer->frame = video->frames;
     }
-    const bool has_header = now >= seat->header_due;
-    if (has_header) seat->header_due = now + kHeader;
-    post(seat, [bytes, text = has_header ? header : std::string()](const auto& still) {
+    const bool has_header = now >= viewer->header_due;
+    if (has_header) viewer->header_due = now + kHeader;
+    post(viewer, [bytes, text = has_header ? header : std::string()](const auto& still) {
       if (!text.empty()) still->socket->send_text(text);
       still->socket->send(bytes);
     });

@@ -50,7 +50,7 @@ class Stream {
   static constexpr int kMaxUnderWay = 2;  // messages that a page is not done with
 
   /// A page, as the stream sees it.
-  struct Seat {
+  struct Viewer {
     const std::shared_ptr<web::WebSocket> socket;  // of the server's thread
     // Guarded by the mutex.
     Wanted wanted;
@@ -61,7 +61,7 @@ class Stream {
     Clock::time_point due{}, header_due{};
     std::uint64_t frame = 0;  // number of the last frame of VP8 it was given, 0: none
   };
-  using Seats = std::vector<std::shared_ptr<Seat>>;
+  using Viewers = std::vector<std::shared_ptr<Viewer>>;
   struct Video {
     Vp8Encoder encoder;
     std::uint64_t frames = 0;     // encoded
@@ -71,21 +71,21 @@ class Stream {
   // On the tap's thread.
   /// Gives the newest message to those who are ready for it. @returns  when the next one is.
   Clock::time_point serve();
-  void serve_alike(const Wanted& wanted, const Seats& seats);
+  void serve_alike(const Wanted& wanted, const Viewers& viewers);
   void end(const std::string& why, bool is_error);
   /// Calls on the server's thread, if the page is still there then.
-  void post(const std::shared_ptr<Seat>& seat,
-            std::function<void(const std::shared_ptr<Seat>&)> call) const;
-  void close_soon(const std::shared_ptr<Seat>& seat, int code, const std::string& why);
+  void post(const std::shared_ptr<Viewer>& viewer,
+            std::function<void(const std::shared_ptr<Viewer>&)> call) const;
+  void close_soon(const std::shared_ptr<Viewer>& viewer, int code, const std::string& why);
 
   // On the server's thread.
-  void hear(const std::shared_ptr<Seat>& seat, std::string_view said);
-  void close(const std::shared_ptr<Seat>& seat, int code, const std::string& why);
-  void remove(const std::shared_ptr<Seat>& seat);
+  void hear(const std::shared_ptr<Viewer>& viewer, std::string_view said);
+  void close(const std::shared_ptr<Viewer>& viewer, int code, const std::string& why);
+  void remove(const std::shared_ptr<Viewer>& viewer);
 
   const web::Post post_;
   std::mutex mutex_;
-  Seats seats_;
+  Viewers viewers_;
   std::string ended_;  // why; empty: it has not
   int ended_as_ = 0;   // the code that says so
   // Of the tap's thread.

@@ -12,7 +12,7 @@ import time
 import unittest
 
 from graphs import GRAPH, Graphs
-from harness import WATCHDOG, wait_until
+from harness import BUILD, WATCHDOG, wait_until
 
 
 def report(row):
@@ -54,6 +54,14 @@ class Running(Graphs):
         _, err = process.communicate(timeout=WATCHDOG)
         self.assertEqual(process.returncode, 0, err)
         self.assertIn(b"graph: stopping", err)
+
+    def test_a_module_that_is_not_built_is_said_to_be(self):
+        self.shell("mkdir -p tree/build/bin tree/modules/unbuilt; touch tree/build/CMakeCache.txt")
+        self.shell("cp %s/bin/hc tree/build/bin" % BUILD)
+        self.write("g.toml", "version = 1\n[modules.a]\nprogram = 'unbuilt'\n")
+        self.shell("tree/build/bin/hc check g.toml", 2)
+        why = 'no program "unbuilt": it is not built; ./dev build builds all modules'
+        self.assertEqual(self.err, "hc check: error: g.toml:3: %s\n" % why)
 
     def test_an_edited_file_changes_the_graph(self):
         process = self.running_graph()

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc play: plays a recording back at its own speed.
 
-#include <charconv>
 #include <chrono>
 #include <limits>
 #include <utility>
 
 #include <hc/base/clock.h>
 #include <hc/base/format.h>
+#include <hc/base/text.h>
 #include <hc/os/program.h>
 #include <hc/os/wait_readable.h>
 
@@ -62,9 +62,7 @@ class Pace {
 double parse_speed(const std::string& text) {
   if (text == "max") return std::numeric_limits<double>::infinity();
   double speed = 0;
-  const char* end = text.data() + text.size();
-  auto [stop, status] = std::from_chars(text.data(), end, speed);
-  if (status != std::errc() || stop != end || !(speed >= 1e-6 && speed <= 1e6))
+  if (!hc::read_number(text, speed) || !(speed >= 1e-6 && speed <= 1e6))
     throw Failure(hc::Code::Invalid, "--speed is a number from 1e-6 to 1e6, or max");
   return speed;
 }

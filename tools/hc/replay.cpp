@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -20,6 +19,7 @@
 #include <hc/base/clock.h>
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
+#include <hc/base/text.h>
 #include <hc/compress/compress.h>
 #include <hc/contract/trace.h>
 #include <hc/os/program.h>
@@ -78,9 +78,7 @@ class Settings {
       const auto equals = word.find('=');
       const auto number = equals == std::string::npos ? word : word.substr(equals + 1);
       double value = 0;
-      const char* end = number.data() + number.size();
-      const auto [stop, status] = std::from_chars(number.data(), end, value);
-      if (status != std::errc() || stop != end || !(value >= 0))
+      if (!hc::read_number(number, value) || !(value >= 0))
         throw Failure(hc::Code::Invalid, option + " is [MODULE[.PORT]=]NUMBER, not " + word);
       values_[equals == std::string::npos ? "" : word.substr(0, equals)] = value;
     }

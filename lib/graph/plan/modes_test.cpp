@@ -7,7 +7,7 @@
 namespace hc {
 namespace {
 
-using Words = std::vector<std::string>;
+using Strings = std::vector<std::string>;
 
 const std::string kModes = R"([modules.track]
 program = "task"
@@ -33,13 +33,13 @@ TEST(Modes, ModulesGetTheirModes) {
   auto planned = must(plan(kModes + kBid));
   EXPECT_EQ(planned.modes, (std::map<std::string, std::int64_t>{{"read", 3}, {"track", 1}}));
   EXPECT_EQ(planned.workspaces, std::set<std::string>{"workspace"});
-  EXPECT_EQ(values_of(planned.modules[0], "--mode"), (Words{"1"}));
-  EXPECT_EQ(values_of(planned.modules[1], "--modes"), (Words{"3"}));
-  EXPECT_EQ(values_of(planned.modules[2], "--exclusive"), (Words{"command"}));
+  EXPECT_EQ(values_of(planned.modules[0], "--mode"), (Strings{"1"}));
+  EXPECT_EQ(values_of(planned.modules[1], "--modes"), (Strings{"3"}));
+  EXPECT_EQ(values_of(planned.modules[2], "--exclusive"), (Strings{"command"}));
   EXPECT_EQ(planned.modules[3].parameters.at("mode_names"), "read=3,track=1");
   EXPECT_EQ(planned.modules[3].parameters.at("source_names"), "read.bid=4,track.bid=2");
   EXPECT_EQ(planned.modules[0].mode, "track");
-  EXPECT_EQ(planned.modules[1].modes, (Words{"read"}));
+  EXPECT_EQ(planned.modules[1].modes, (Strings{"read"}));
   EXPECT_EQ(planned.modules[2].exclusive, (std::set<std::string>{"command"}));
 }
 
@@ -60,10 +60,10 @@ TEST(Modes, TheFocusIsLinkedToWhoFollowsIt) {
   auto planned = must(plan(kModes + kBid));
   EXPECT_EQ(
       values_of(planned.modules[3], "--out"),
-      (Words{"focus=unix-listen:@t.workspace.focus.read.focus?readers=1&stay=1&keep=latest",
-             "focus=unix-listen:@t.workspace.focus.actor.focus?readers=1&stay=1&keep=latest"}));
+      (Strings{"focus=unix-listen:@t.workspace.focus.read.focus?readers=1&stay=1&keep=latest",
+               "focus=unix-listen:@t.workspace.focus.actor.focus?readers=1&stay=1&keep=latest"}));
   EXPECT_EQ(values_of(planned.modules[1], "--in"),
-            (Words{"focus=unix:@t.workspace.focus.read.focus?reconnect=86400"}));
+            (Strings{"focus=unix:@t.workspace.focus.read.focus?reconnect=86400"}));
   ASSERT_EQ(planned.links.size(), 6U);
   EXPECT_EQ(planned.links[5].from, "workspace.focus");
   EXPECT_EQ(planned.links[5].to, "actor.focus");

@@ -7,7 +7,7 @@
 namespace hc {
 namespace {
 
-using Words = std::vector<std::string>;
+using Strings = std::vector<std::string>;
 
 const std::string kRouted = R"([modules.task]
 to = { command = "actor.command", bid = "all" }
@@ -25,12 +25,13 @@ TEST(Numbering, InputsGroupsAndRoutesReachTheModules) {
   // Outputs come first: task has 1 and 2, router 3 and 4, actor 5, other 6.
   EXPECT_EQ(planned.addresses,
             (std::map<std::string, std::int64_t>{{"actor.command", 7}, {"other.command", 22}}));
-  EXPECT_EQ(values_of(planned.modules[0], "--to"), (Words{"bid=-1", "command=7"}));
+  EXPECT_EQ(values_of(planned.modules[0], "--to"), (Strings{"bid=-1", "command=7"}));
   EXPECT_EQ(
       values_of(planned.modules[1], "--route"),
-      (Words{"in=unix:@t.task.command.router.in?reconnect=86400 peer=task",
-             "out=unix-listen:@t.router.out.actor.command?readers=1&stay=1 to=-1,7 peer=actor",
-             "out=unix-listen:@t.router.out.other.command?readers=1&stay=1 to=-1,22 peer=other"}));
+      (Strings{
+          "in=unix:@t.task.command.router.in?reconnect=86400 peer=task",
+          "out=unix-listen:@t.router.out.actor.command?readers=1&stay=1 to=-1,7 peer=actor",
+          "out=unix-listen:@t.router.out.other.command?readers=1&stay=1 to=-1,22 peer=other"}));
   EXPECT_TRUE(values_of(planned.modules[2], "--route").empty());
 }
 
@@ -67,7 +68,7 @@ TEST(Numbering, TheFileMaySayTheRoute) {
                 link_text("router.out", "tcp:7001", "route = [21, 0, -5]\n") +
                 link_text("router.out", "tcp:7002")));
   EXPECT_EQ(values_of(planned.modules[0], "--route"),
-            (Words{"out=tcp:7000 to=*", "out=tcp:7001 to=21,0,-5", "out=tcp:7002 to=-1"}));
+            (Strings{"out=tcp:7000 to=*", "out=tcp:7001 to=21,0,-5", "out=tcp:7002 to=-1"}));
   EXPECT_EQ(
       wrong("[modules.filter]\n" + link_text("filter.out", "tcp:1", "route = [1]\n")),
       "g.toml:5: module filter cannot have \"route\": its program does not support --control; "

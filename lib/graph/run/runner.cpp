@@ -53,8 +53,7 @@ Status Runner::begin() {
         loop_->watch(options_.hosts->descriptor(), EPOLLIN, [this](auto) { look_at_hosts(); }));
   }
   if (options_.loader != nullptr && !graph_.files.empty()) {
-    files_ = std::make_unique<FileWatch>(*loop_, [this] { reload(); });
-    files_->set_files(graph_.files);
+    files_ = HC_TRY(FileWatch::make(*loop_, graph_.files, [this] { reload(); }));
   }
   // All listen before one starts: who comes early finds its peers.
   for (const auto& planned : plan_.modules) {

@@ -6,12 +6,9 @@
 #include <hc/contract/trace.h>
 
 #include <algorithm>
-#include <filesystem>
 
 namespace hc::internal {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kIsStopping = "the graph is stopping";
 
@@ -37,8 +34,7 @@ bool only_set(const Commands& commands) {
 void Runner::reload() {
   if (is_stopping_) return;
   const auto& file = graph_.files.front();
-  std::error_code failed;
-  const bool is_gone = fs::status(file, failed).type() == fs::file_type::not_found;
+  const bool is_gone = !files_->was_there(file);
   if (is_gone && !is_file_gone_)
     log(file + " has been removed; keeping the running version", Level::Warning);
   is_file_gone_ = is_gone;

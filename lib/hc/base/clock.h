@@ -45,8 +45,8 @@ namespace internal {
 /// the wall clock of this host is set. Set by one thread, read by any.
 class DistantWall {
  public:
-  /// From the first call on the wall clock is the monotonic clock plus `to_wall` [ns]. What it is
-  /// off by then it makes up for at 1 ms per second, or at once where that is more than 0.1 s.
+  /// Has wall() give the monotonic clock plus `to_wall` [ns]. Where an earlier call has it give
+  /// something else, it nears that by 1 ms per second, or jumps where it is more than 0.1 s off.
   void set(std::int64_t to_wall, MonotonicTime now);
   [[nodiscard]] bool is_set() const { return is_set_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::int64_t wall(MonotonicTime now) const;

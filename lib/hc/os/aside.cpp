@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/os/aside.h>
 
-#include <hc/os/thread.h>
-
 namespace hc {
 
 Result<Aside> Aside::begin(Loop& loop, std::function<void(int stop)> work,

@@ -9,8 +9,10 @@
 #include <type_traits>
 #include <utility>
 
+#include <hc/os/descriptor.h>
 #include <hc/os/event.h>
 #include <hc/os/loop.h>
+#include <hc/os/thread.h>
 
 namespace hc {
 
@@ -63,6 +65,31 @@ template <typename Work, typename Done>
   return Aside::begin(
       loop, [result, work = std::move(work)](int stop) mutable { result->emplace(work(stop)); },
       [result, done = std::move(done)]() mutable { done(std::move(**result)); });
+}
+
+/// What `work()` returns, a Result, where the system may hold it up for ever: a look at a file, on
+/// a network disk that hangs. It is called on a thread of its own, which is left behind once `stop`
+/// is readable; so it owns all that it uses.
+///
+///     auto text = unless_stopped(stop, [name] { return read_text(name); });
+///
+/// Errors: Stopped; System (no descriptor or thread to be had); those of `work`.
+template <typename Work>
+[[nodiscard]] std::invoke_result_t<Work&> unless_stopped(int stop, Work work) {
+  struct Shared {
+    Event done;
+    std::optional<std::invoke_result_t<Work&>> result;
+  };
+  const auto shared = std::make_shared<Shared>();
+  shared->done = HC_TRY(Event::make());
+  auto thread = HC_TRY(start_thread([shared, work = std::move(work)]() mutable {
+    shared->result.emplace(work());
+    shared->done.raise();
+  }));
+  thread.detach();
+  HC_TRY(wait_for(shared->done.descriptor(), POLLIN, stop));
+  shared->done.clear();
+  return std::move(*shared->result);
 }
 
 }  // namespace hc

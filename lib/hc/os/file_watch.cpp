@@ -2,33 +2,106 @@
 #include <hc/os/file_watch.h>
 
 #include <sys/stat.h>
+#include <sys/types.h>
+
+#include <condition_variable>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <optional>
+
+#include <hc/os/event.h>
+#include <hc/os/thread.h>
 
 namespace hc {
+namespace {
 
-FileWatch::Stamp FileWatch::stamp_of(const std::string& file) {
+/// What tells one state of a file from another; all 0: there is none.
+struct Stamp {
+  dev_t device = 0;
+  ino_t number = 0;
+  off_t size = 0;
+  std::int64_t written = 0, written_ns = 0;
+  bool operator==(const Stamp&) const = default;
+};
+
+Stamp stamp_of(const std::string& file) {
   struct stat about {};
   if (::stat(file.c_str(), &about) != 0) return {};
   return {about.st_dev, about.st_ino, about.st_size, about.st_mtim.tv_sec, about.st_mtim.tv_nsec};
 }
 
-void FileWatch::set_files(const std::vector<std::string>& files) {
-  const auto before = std::exchange(known_, {});
-  for (const auto& file : files) {
-    const auto found = before.find(file);
-    known_[file] = found == before.end() ? stamp_of(file) : found->second;
+}  // namespace
+
+/// What the thread has too, and alone once it is left behind.
+struct FileWatch::Shared {
+  Event changed;
+  std::mutex mutex;  // of what follows
+  std::condition_variable over;
+  bool is_over = false;
+  int sets = 0;                                       // how often files were set
+  std::map<std::string, std::optional<Stamp>> known;  // at the last call; none: not looked at yet
+
+  void look_until_over() {
+    std::unique_lock lock(mutex);
+    auto seen = known;
+    auto pause = kPeriod;
+    while (!over.wait_for(lock, pause, [this] { return is_over; })) {
+      auto now = known;
+      const int sets_before = sets;
+      lock.unlock();
+      for (auto& [file, stamp] : now) stamp = stamp_of(file);
+      lock.lock();
+      if (sets != sets_before) continue;
+      for (auto& [file, stamp] : known)
+        if (!stamp) stamp = now[file];
+      const bool is_quiet = std::exchange(seen, now) == now;
+      pause = is_quiet ? kPeriod : kQuiet;
+      if (!is_quiet || now == known) continue;
+      known = std::move(now);
+      changed.raise();
+    }
   }
-  look();
+};
+
+Result<std::unique_ptr<FileWatch>> FileWatch::make(Loop& loop,
+                                                   const std::vector<std::string>& files,
+                                                   std::function<void()> changed) {
+  auto shared = std::make_shared<Shared>();
+  shared->changed = HC_TRY(Event::make());
+  for (const auto& file : files) shared->known[file] = stamp_of(file);
+  std::unique_ptr<FileWatch> made(new FileWatch(shared));
+  made->changed_ =
+      HC_TRY(loop.watch(shared->changed.descriptor(), EPOLLIN,
+                        [event = &shared->changed, changed = std::move(changed)](auto) {
+                          event->clear();
+                          changed();
+                        }));
+  auto thread = HC_TRY(start_thread([shared] { shared->look_until_over(); }));
+  thread.detach();
+  return made;
 }
 
-void FileWatch::look() {
-  Stamps now;
-  for (const auto& [file, stamp] : known_) now[file] = stamp_of(file);
-  const bool is_quiet = std::exchange(seen_, now) == now;
-  timer_ = loop_.call_at(std::chrono::steady_clock::now() + (is_quiet ? kPeriod : kQuiet),
-                         [this] { look(); });
-  if (!is_quiet || now == known_) return;
-  known_ = std::move(now);
-  changed_();
+FileWatch::~FileWatch() {
+  const std::lock_guard lock(shared_->mutex);
+  shared_->is_over = true;
+  shared_->over.notify_all();
+}
+
+void FileWatch::set_files(const std::vector<std::string>& files) {
+  const std::lock_guard lock(shared_->mutex);
+  const auto before = std::exchange(shared_->known, {});
+  for (const auto& file : files) {
+    const auto found = before.find(file);
+    shared_->known[file] = found == before.end() ? std::nullopt : found->second;
+  }
+  ++shared_->sets;
+}
+
+bool FileWatch::was_there(const std::string& file) const {
+  const std::lock_guard lock(shared_->mutex);
+  const auto known = shared_->known.find(file);
+  return known == shared_->known.end() || known->second != Stamp{};
 }
 
 }  // namespace hc

@@ -36,8 +36,9 @@ bool is_loopback(const sockaddr_storage& address) {
     return ntohl(reinterpret_cast<const sockaddr_in&>(address).sin_addr.s_addr) >>
                IN_CLASSA_NSHIFT ==
            IN_LOOPBACKNET;
-  return address.ss_family == AF_INET6 &&
-         IN6_IS_ADDR_LOOPBACK(&reinterpret_cast<const sockaddr_in6&>(address).sin6_addr);
+  const auto& six = reinterpret_cast<const sockaddr_in6&>(address).sin6_addr;
+  return address.ss_family == AF_INET6 &&  // or ::ffff:127.0.0.1, a peer by IPv4
+         (IN6_IS_ADDR_LOOPBACK(&six) || (IN6_IS_ADDR_V4MAPPED(&six) && six.s6_addr[12] == 127));
 }
 
 /// Writes an address into a question; gives its port, in the order of the network.

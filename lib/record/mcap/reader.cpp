@@ -251,8 +251,8 @@ void Reader::count_contents() {
   }
 }
 
-Result<std::map<std::string, Words>> Reader::metadata() {
-  std::map<std::string, Words> all;
+Result<std::map<std::string, StringMap>> Reader::metadata() {
+  std::map<std::string, StringMap> all;
   std::uint64_t kept = 0;
   for (const auto& place : metadata_) {
     auto content = read(place.content(), place.length, limits_.summary_bytes - kept);
@@ -260,7 +260,7 @@ Result<std::map<std::string, Words>> Reader::metadata() {
     kept += content->size();
     RecordReader reader(*content);
     std::string name;
-    Words words;
+    StringMap words;
     reader.get(name, words);
     all[name] = std::move(words);
     if (!reader.is_good()) return damaged(kTooShort, place.at);

@@ -61,7 +61,7 @@ class Reader {
   /// Grows as chunks are read, by schemas and channels that only they declare.
   [[nodiscard]] const Summary& summary() const { return summary_; }
   /// The newest metadata of each name. Errors: Malformed, TooLarge, System.
-  Result<std::map<std::string, Words>> metadata();
+  Result<std::map<std::string, StringMap>> metadata();
 
   /// Reads only these channels; chunks without them are skipped if their index is complete.
   void select(std::set<std::uint16_t> channels) { selected_ = std::move(channels); }

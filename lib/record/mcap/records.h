@@ -39,7 +39,7 @@ enum class Opcode : std::uint8_t {
   DataEnd,
 };
 
-using Words = std::map<std::string, std::string>;
+using StringMap = std::map<std::string, std::string>;
 
 struct SchemaRecord {
   std::uint16_t id = 0;  ///< 0: no schema
@@ -49,7 +49,7 @@ struct SchemaRecord {
 struct ChannelRecord {
   std::uint16_t id = 0, schema = 0;
   std::string topic, encoding;
-  Words metadata;
+  StringMap metadata;
 };
 
 /// What the data of a message follow.
@@ -61,7 +61,7 @@ struct MessageRecord {
 
 struct MetadataRecord {
   std::string name;
-  Words words;
+  StringMap words;
 };
 
 /// Writes records, one after the other.

@@ -4,12 +4,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <limits>
 #include <type_traits>
 
 #include <hc/base/format.h>
+#include <hc/base/text.h>
 #include <hc/base/uri.h>
 
 namespace hc::mcap {
@@ -36,9 +36,8 @@ std::uint64_t highest_number(const std::string& file) {
     const std::string stem = each->path().stem().string();
     if (!stem.starts_with(begin) || each->path().extension() != path.extension()) continue;
     std::uint32_t number = 0;
-    const char* end = stem.data() + stem.size();
-    const auto read = std::from_chars(stem.data() + begin.size(), end, number);
-    if (read.ec == std::errc() && read.ptr == end) highest = std::max(highest, number);
+    if (read_number(std::string_view(stem).substr(begin.size()), number))
+      highest = std::max(highest, number);
   }
   return highest;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { elementsOf, headerLine, infoOf, scalarBytes, scalarCount, type Message } from "../mtp";
-import { Listeners, Signal, type Unsubscribe } from "../server";
+import { Emitter, Signal, type Unsubscribe } from "../server";
 import type { Source } from "../views";
 import type { Track } from "./track";
 import { expandZstd } from "./zstd";
@@ -10,7 +10,7 @@ const pastOfPlots = 30; // [s] that are read again after a jump
 const smallMessage = 4096; // [byte]
 
 /** A stream of a recording, at the time of its player. */
-export class ReplaySource extends Listeners implements Source {
+export class ReplaySource extends Emitter implements Source {
   readonly isReplay = true;
   private shown = -1;
   private kind = "";

@@ -2,11 +2,11 @@
 // Plays a stream of sound as it comes.
 import { numbersOf, sampleRate } from "../mtp";
 import type { Server, Stream } from "../server";
-import { Listener } from "../views/listener";
+import { SoundPlayer } from "../views/sound_player";
 import { channelsOf } from "../views/spectrum";
 
 export class Ears {
-  private readonly listener = new Listener();
+  private readonly player = new SoundPlayer();
   private readonly stream: Stream;
 
   constructor(server: Server, port: string) {
@@ -15,12 +15,12 @@ export class Ears {
       const { type, scalar, components, coord } = message.header;
       if (type !== "sound") return;
       const channels = channelsOf(numbersOf(message), scalar, components).slice(0, 2);
-      this.listener.play(channels, sampleRate(coord));
+      this.player.play(channels, sampleRate(coord));
     });
   }
 
   close(): void {
     this.stream.close();
-    this.listener.close();
+    this.player.close();
   }
 }

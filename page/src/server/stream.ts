@@ -19,8 +19,8 @@ export interface Arrival {
   readonly bytes: number;
 }
 
-/** Those who listen to the messages of an output. */
-export class Listeners {
+/** Has the messages of an output heard by who listens to them. */
+export class Emitter {
   protected readonly headers = new Signal<string>();
   protected readonly problems = new Signal<string>();
   private readonly consumers = new Set<(arrival: Arrival) => void | Promise<void>>();
@@ -55,7 +55,7 @@ export class Listeners {
  * The messages of an output. The newest only: a listener that returns a promise holds the stream
  * up until it is settled.
  */
-export class Stream extends Listeners {
+export class Stream extends Emitter {
   private readonly socket: Socket;
   private askedWidth?: number; // with the path
 

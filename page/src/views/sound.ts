@@ -3,7 +3,7 @@
 import { numbersOf, sampleRate, type Header } from "../mtp";
 import type { Arrival } from "../server";
 import { h, setText } from "../shell/h";
-import { Listener } from "./listener";
+import { SoundPlayer } from "./sound_player";
 import { Sight } from "./room";
 import { channelsOf, level, spectrum } from "./spectrum";
 import { turbo } from "./turbo";
@@ -29,12 +29,12 @@ export class SoundView implements View {
   private readonly sight: Sight;
   private readonly samples = new Float32Array(frames);
   private fresh = 0;
-  private listener?: Listener;
+  private player?: SoundPlayer;
   private meters: { meter: HTMLMeterElement; words: HTMLElement }[] = [];
   private metered = 0;
 
   constructor() {
-    this.listen.onclick = () => this.setListening(!this.listener);
+    this.listen.onclick = () => this.setListening(!this.player);
     this.tools = [this.listen];
     this.element = h("div.sound-view.stack", [
       this.levels,
@@ -52,7 +52,7 @@ export class SoundView implements View {
     const { components, scalar, coord } = message.header;
     const rate = sampleRate(coord || sent.coord);
     const channels = channelsOf(numbersOf(message), scalar, components);
-    this.listener?.play(channels, rate);
+    this.player?.play(channels, rate);
     if (!this.sight.isSeen) return;
     this.showLevels(channels);
     const words = `${rate / 2} Hz`;
@@ -66,8 +66,8 @@ export class SoundView implements View {
   }
 
   private setListening(on: boolean): void {
-    this.listener?.close();
-    this.listener = on ? new Listener() : undefined;
+    this.player?.close();
+    this.player = on ? new SoundPlayer() : undefined;
     this.listen.setAttribute("aria-pressed", String(on));
   }
 

@@ -2,17 +2,16 @@
 #include "bidder.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string>
+
+#include <hc/base/text.h>
 
 namespace {
 
 std::optional<double> parse_number(std::string_view text) {
   double number = 0;
-  auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
+  return hc::read_number(text, number) ? std::optional(number) : std::nullopt;
 }
 
 }  // namespace

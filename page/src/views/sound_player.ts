@@ -2,7 +2,7 @@
 const ahead = 0.08; // [s] of sound that are waiting to be heard, against gaps
 
 /** Plays pieces of sound one after the other. */
-export class Listener {
+export class SoundPlayer {
   private readonly context = new AudioContext();
   private next = 0;
 
