@@ -66,25 +66,27 @@ hc::Result<Wanted> parse_wanted(std::string_view options, Wanted wanted) {
 
 Stream::Stream(hc::RunningGraph graph, std::string port, web::Post post)
     : post_(std::move(post)),
-      tap_(std::move(graph), std::move(port),
-           {.message =
-                [this](const hc::Message& message) {
-                  newest_ = message.keep();
-                  ++number_;
-                },
-            .idle = [this] { return serve(); },
-            .end = [this](const std::string& why, bool is_error) { end(why, is_error); }}) {}
+      tap_(std::in_place, std::move(graph), std::move(port),
+           hc::Tap::Callbacks{
+               .message =
+                   [this](const hc::Message& message) {
+                     newest_ = message.keep();
+                     ++number_;
+                   },
+               .idle = [this] { return serve(); },
+               .end = [this](const std::string& why, bool is_error) { end(why, is_error); }}) {}
 
 void Stream::post(const std::shared_ptr<Seat>& seat,
-                  std::function<void(const std::shared_ptr<Seat>&)> call) const {
-  post_([weak = std::weak_ptr(seat), call = std::move(call)] {
-    if (const auto still = weak.lock()) call(still);
+                  std::function<void(const std::shared_ptr<Seat>&)> call) {
+  post_([this, weak = std::weak_ptr(seat), call = std::move(call)] {
+    if (const auto still = weak.lock(); still && sockets_.contains(still)) call(still);
   });
 }
 
 void Stream::view(const Wanted& wanted, std::shared_ptr<web::WebSocket> socket) {
   auto& events = *socket;
-  const auto seat = std::make_shared<Seat>(Seat{std::move(socket), wanted});
+  const auto seat = std::make_shared<Seat>(Seat{wanted});
+  sockets_.emplace(seat, std::move(socket));
   events.on_close = [this, weak = std::weak_ptr(seat)] {
     if (const auto still = weak.lock()) remove(still);
   };
@@ -94,7 +96,7 @@ void Stream::view(const Wanted& wanted, std::shared_ptr<web::WebSocket> socket) 
   const std::lock_guard lock(mutex_);
   seats_.push_back(seat);
   if (!ended_.empty()) close_soon(seat, ended_as_, ended_);
-  tap_.wake();
+  tap_->wake();
 }
 
 void Stream::hear(const std::shared_ptr<Seat>& seat, std::string_view said) {
@@ -107,16 +109,17 @@ void Stream::hear(const std::shared_ptr<Seat>& seat, std::string_view said) {
   if (changed->form != seat->wanted.form || changed->width != seat->wanted.width)
     seat->has_changed = true;
   seat->wanted = *changed;
-  tap_.wake();
+  tap_->wake();
 }
 
 void Stream::remove(const std::shared_ptr<Seat>& seat) {
+  sockets_.erase(seat);
   const std::lock_guard lock(mutex_);
   std::erase(seats_, seat);
 }
 
 void Stream::close(const std::shared_ptr<Seat>& seat, int code, const std::string& why) {
-  seat->socket->close(code, why);
+  sockets_.at(seat)->close(code, why);
   remove(seat);
 }
 
@@ -125,13 +128,7 @@ void Stream::close_soon(const std::shared_ptr<Seat>& seat, int code, const std::
 }
 
 void Stream::close(const std::string& why) {
-  const std::lock_guard lock(mutex_);
-  for (const auto& seat : std::exchange(seats_, {})) seat->socket->close(kEnd, why);
-}
-
-bool Stream::is_viewed() {
-  const std::lock_guard lock(mutex_);
-  return !seats_.empty();
+  for (const auto& [seat, socket] : std::map(sockets_)) close(seat, kEnd, why);
 }
 
 void Stream::end(const std::string& why, bool is_error) {
@@ -216,9 +213,10 @@ void Stream::serve_alike(const Wanted& wanted, const Seats& seats) {
     }
     const bool has_header = now >= seat->header_due;
     if (has_header) seat->header_due = now + kHeader;
-    post(seat, [bytes, text = has_header ? header : std::string()](const auto& still) {
-      if (!text.empty()) still->socket->send_text(text);
-      still->socket->send(bytes);
+    post(seat, [this, bytes, text = has_header ? header : std::string()](const auto& still) {
+      const auto& socket = sockets_.at(still);
+      if (!text.empty()) socket->send_text(text);
+      socket->send(bytes);
     });
   }
 }
