@@ -4,12 +4,15 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cstdlib>
+
 #include <openssl/err.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
 #include <openssl/x509v3.h>
 
 #include <hc/os/descriptor.h>
+#include <hc/os/program.h>
 #include <tls/context.h>
 
 namespace hc::tls {
@@ -56,21 +59,17 @@ Result<std::string> make_key_text() {
 }
 
 Status make_key(const std::string& path) {
+  if (::access(path.c_str(), F_OK) == 0) return {};
   const auto text = HC_TRY(make_key_text());
-  constexpr mode_t kOwnerOnly = 0600;
-  const auto file = HC_TRY(open_descriptor("open", path, [&] {
-    return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerOnly);
-  }));
-  for (std::string_view rest = text; !rest.empty();) {
-    auto written =
-        system_call("write", path, [&] { return ::write(file.get(), rest.data(), rest.size()); });
-    if (!written) {
-      ::unlink(path.c_str());
-      return written.error();
-    }
-    rest.remove_prefix(static_cast<std::size_t>(*written));
-  }
-  return {};
+  std::string unfinished = path + ".XXXXXX";
+  const auto file = HC_TRY(open_descriptor(
+      "mkostemp", unfinished, [&] { return ::mkostemp(unfinished.data(), O_CLOEXEC); }));
+  Status made = write_all(file.get(), text);
+  if (made && ::link(unfinished.c_str(), path.c_str()) != 0 && errno != EEXIST)
+    made = system_error("link", "");
+  ::unlink(unfinished.c_str());
+  if (made) return {};
+  return Error{made.error().code, path + ": " + made.error().detail};
 }
 
 Result<std::string> fingerprint_of(const std::string& path) {

@@ -13,9 +13,11 @@ namespace hc::tls {
 /// A new key and its certificate, in PEM. Errors: System, Unsupported (built without OpenSSL).
 Result<std::string> make_key_text();
 
-/// Writes a new key and its certificate, in PEM, to a file that only its owner can read.
+/// Writes a new key and its certificate, in PEM, to a file that only its owner can read, unless it
+/// is there. Of several that do so at once all find the same key, and never a part of it.
 ///
-/// Errors: System (the file exists; it cannot be written), Unsupported (built without OpenSSL).
+/// Errors: System (it cannot be written), NotFound (no such folder), Unsupported (built without
+/// OpenSSL).
 Status make_key(const std::string& path);
 
 /// The fingerprint of a key: SHA-256 of its public half (SubjectPublicKeyInfo, DER), in 64 digits

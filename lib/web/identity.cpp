@@ -28,6 +28,11 @@ std::unique_ptr<Object, Free> read_pem(Object* read(BIO*, Object**, pem_password
   return {read(bio.get(), nullptr, nullptr, nullptr), free};
 }
 
+std::string contents(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 auto certificate_of(const std::string& text) {
   return read_pem(PEM_read_bio_X509, X509_free, text);
 }
@@ -37,15 +42,13 @@ auto certificate_of(const std::string& text) {
 Result<std::string> load_identity(const std::string& folder) {
   const std::string path = folder + "/page_key.pem";
   std::error_code error;
-  if (!fs::exists(path, error)) {
-    fs::create_directories(folder, error);
-    if (error)
-      return Error{Code::System, "certificate: cannot make " + folder + ": " + error.message()};
-    const auto made = tls::make_key(path);
-    if (!made && !fs::exists(path, error)) return made.error();  // else another has made it
-  }
-  std::ifstream file(path);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
+  fs::create_directories(folder, error);
+  if (error)
+    return Error{Code::System, "certificate: cannot make " + folder + ": " + error.message()};
+  if (auto made = tls::make_key(path); !made) return made.error();
+  auto text = contents(path);
+  // Each had a file of its own, and browsers have accepted that certificate.
+  if (!certificate_of(text)) text += contents(folder + "/page_certificate.pem");
   const auto certificate = certificate_of(text);
   const auto key = read_pem(PEM_read_bio_PrivateKey, EVP_PKEY_free, text);
   if (!certificate || !key || X509_check_private_key(certificate.get(), key.get()) != 1)

@@ -10,7 +10,7 @@
 namespace hc::web {
 
 /// The certificate and its key in a folder, PEM, from page_key.pem, which is made where it is not
-/// there (tls/key.h). It can be read by its user alone.
+/// there (tls::make_key()). The certificate may be beside it, in page_certificate.pem.
 ///
 /// Errors: System (the folder cannot be written), Malformed (the file holds something else).
 Result<std::string> load_identity(const std::string& folder);

@@ -5,6 +5,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <future>
+#include <iterator>
+#include <set>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -23,6 +27,36 @@ TEST(Identity, is_made_once_and_kept_for_its_user_alone) {
   struct stat status {};
   ASSERT_EQ(::stat((folder / "deeper/page_key.pem").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777U, 0600U);
+  fs::remove_all(folder);
+}
+
+TEST(Identity, is_the_same_for_all_that_start_at_once) {
+  const fs::path folder = fs::path(testing::TempDir()) / ("at_once_" + std::to_string(::getpid()));
+  for (int round = 0; round < 10; ++round) {
+    fs::remove_all(folder);
+    std::vector<std::future<Result<std::string>>> all;
+    while (all.size() < 8)
+      all.push_back(std::async(std::launch::async, [&] { return load_identity(folder); }));
+    std::set<std::string> found;
+    for (auto& each : all) {
+      auto loaded = each.get();
+      ASSERT_TRUE(loaded) << loaded.error().text();
+      found.insert(*loaded);
+    }
+    EXPECT_EQ(found.size(), 1U);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "nothing else is left";
+  }
+  fs::remove_all(folder);
+}
+
+TEST(Identity, may_have_its_certificate_in_a_file_beside) {
+  const fs::path folder = fs::path(testing::TempDir()) / ("beside_" + std::to_string(::getpid()));
+  const auto made = load_identity(folder);
+  ASSERT_TRUE(made) << made.error().text();
+  const auto end = made->find("-----BEGIN CE");
+  std::ofstream(folder / "page_key.pem") << made->substr(0, end);
+  std::ofstream(folder / "page_certificate.pem") << made->substr(end);
+  EXPECT_EQ(*load_identity(folder), *made);
   fs::remove_all(folder);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <web/server.h>
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,13 +8,14 @@
 #include <charconv>
 #include <deque>
 #include <exception>
+#include <future>
 #include <list>
 #include <map>
 #include <optional>
 #include <sstream>
 #include <type_traits>
 
-#include <hc/os/descriptor.h>
+#include <hc/os/aside.h>
 #include <hc/os/peer_user.h>
 
 #include <boost/asio/io_context.hpp>
@@ -43,7 +43,7 @@ using Secure = beast::ssl_stream<beast::tcp_stream>;
 
 constexpr std::size_t kMaxHead = 8192, kMaxMessage = 65536;  // [byte]
 constexpr std::size_t kMaxStrangers = 128, kMaxKnown = 768;
-constexpr std::size_t kPiece = 65536;  // of a file, that is read at a time [byte]
+constexpr std::size_t kPiece = 262144;  // of a file, that is read at a time [byte]
 constexpr std::chrono::seconds kHeadTime{5}, kIdleTime{30};
 constexpr std::chrono::seconds kPongTime{10};  // of a WebSocket from which nothing comes
 
@@ -92,9 +92,11 @@ class Visitor;
 /// What connections share.
 struct Shared {
   Site* site = nullptr;
+  Loop* loop = nullptr;
   LogSink log;
   std::list<Visitor*> strangers;  // who have shown no session, the oldest first
   std::size_t known = 0;
+  std::list<Aside> asides;  // that are busy
 
   /// Calls what belongs to a site. @returns  whether it threw nothing; else it is logged.
   template <typename Call>
@@ -106,6 +108,28 @@ struct Shared {
       log(Level::Error, std::string("server: ") + error.what());
       return false;
     }
+  }
+
+  /// As Server::aside().
+  void aside(Work work) {
+    using Then = std::function<void()>;
+    const auto place = asides.emplace(asides.end());
+    const auto kept = std::make_shared<Work>(std::move(work));
+    auto begun = run_aside(
+        *loop,
+        [kept](int) {
+          std::packaged_task<Then()> task(std::ref(*kept));
+          auto then = task.get_future();
+          task();
+          return then;
+        },
+        [this, place, kept](std::future<Then> then) {
+          asides.erase(place);
+          guard([&] { then.get()(); });
+        });
+    if (begun) return std::swap(*place, *begun);
+    asides.erase(place);  // no thread is to be had
+    guard([&] { (*kept)()(); });
   }
 };
 
@@ -139,7 +163,7 @@ class Visitor {
     ++shared_->known;
     return is_known_ = true;
   }
-  [[nodiscard]] const Shared& shared() const { return *shared_; }
+  [[nodiscard]] Shared& shared() const { return *shared_; }
   [[nodiscard]] const Peer& peer() const { return peer_; }
   [[nodiscard]] Site& site() const { return *shared_->site; }
 
@@ -348,6 +372,12 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     if (!visitor_->shared().guard([&] { reply = visitor_->site().reply(*request); })) return;
     if (reply.status < 400 && !visitor_->know())
       return write(refusal(503, "too many connections are open"), false);
+    if (reply.aside)
+      return visitor_->shared().aside(
+          [self = this->shared_from_this(), keeps, make = std::move(reply.aside)] {
+            const auto made = std::make_shared<Reply>(make());
+            return [self, keeps, made] { self->write(std::move(*made), keeps); };
+          });
     if (reply.status != 101) return write(std::move(reply), keeps);
     visitor_->close = nullptr;
     std::make_shared<Socket<Stream>>(std::move(stream_), visitor_)
@@ -371,9 +401,6 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     std::ostringstream head;
     head << response.base();
     piece_ = head.str();
-    // Never waits for the other end of a FIFO.
-    file_ = Descriptor(
-        reply_.size == 0 ? -1 : ::open(reply_.file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
     // The body is shared by all pages, and not copied.
     left_ = Left(Buffers{asio::buffer(piece_), asio::buffer(body)});
     write_on(keeps);
@@ -384,11 +411,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   void write_on(bool keeps) {
     if (beast::buffer_bytes(left_) == 0) {
       if (reply_.size == 0) return keeps ? read() : end();
-      piece_.resize(std::min<std::uint64_t>(kPiece, reply_.size));
-      const auto got = ::read(file_.get(), piece_.data(), piece_.size());
-      if (got <= 0) return beast::get_lowest_layer(stream_).close();
-      reply_.size -= static_cast<std::uint64_t>(got);
-      left_ = Left(Buffers{asio::buffer(piece_.data(), static_cast<std::size_t>(got))});
+      return read_piece(keeps);
     }
     beast::get_lowest_layer(stream_).expires_after(kIdleTime);
     stream_.async_write_some(left_, [self = this->shared_from_this(), keeps](
@@ -396,6 +419,20 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
       if (error) return;
       self->left_.consume(written);
       self->write_on(keeps);
+    });
+  }
+
+  /// Nothing else is done with this connection meanwhile.
+  void read_piece(bool keeps) {
+    visitor_->shared().aside([self = this->shared_from_this(), keeps] {
+      self->piece_.resize(std::min<std::uint64_t>(kPiece, self->reply_.size));
+      const auto got = ::read(self->reply_.file.get(), self->piece_.data(), self->piece_.size());
+      return [self, keeps, got] {
+        if (got <= 0) return beast::get_lowest_layer(self->stream_).close();
+        self->reply_.size -= static_cast<std::uint64_t>(got);
+        self->left_ = Left(Buffers{asio::buffer(self->piece_, static_cast<std::size_t>(got))});
+        self->write_on(keeps);
+      };
     });
   }
 
@@ -410,7 +447,6 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   std::optional<http::request_parser<http::empty_body>> parser_;
   // What is being written.
   Reply reply_;
-  Descriptor file_;    // of the reply
   std::string piece_;  // its head, or a piece of the file
   using Buffers = std::array<asio::const_buffer, 2>;
   using Left = beast::buffers_suffix<Buffers>;
@@ -421,6 +457,7 @@ class BeastServer final : public Server {
  public:
   BeastServer(LogSink log, std::unique_ptr<Loop> loop) : loop_(std::move(loop)) {
     shared_->log = std::move(log);
+    shared_->loop = loop_.get();
   }
   ~BeastServer() override { loop_ready_.release(); }  // its descriptor is the loop's
 
@@ -469,6 +506,7 @@ class BeastServer final : public Server {
     // What is posted may throw; the others are served on.
     while (!shared_->guard([&] { context_.run(); })) {
     }
+    shared_->asides.clear();
   }
   void stop() override {
     loop_->post([this] {
@@ -481,6 +519,7 @@ class BeastServer final : public Server {
   void post(std::function<void()> call) override {
     loop_->post([shared = shared_, call = std::move(call)] { shared->guard(call); });
   }
+  void aside(Work work) override { shared_->aside(std::move(work)); }
 
   void every(std::chrono::milliseconds period, std::function<void()> call) override {
     auto& timer = timers_.emplace_back();

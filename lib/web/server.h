@@ -15,12 +15,16 @@
 
 #include <hc/base/log.h>
 #include <hc/base/result.h>
+#include <hc/os/descriptor.h>
 #include <hc/os/loop.h>
 
 namespace hc::web {
 
 /// Has a function called on the server's thread, soon. From any thread.
 using Post = std::function<void(std::function<void()>)>;
+
+/// What is done on another thread than the server's; it gives what is to be called on that.
+using Work = std::function<std::function<void()>()>;
 
 /// Bytes that several are sent.
 using Bytes = std::shared_ptr<const std::string>;
@@ -42,8 +46,10 @@ struct Reply {
   std::string type = "text/plain; charset=utf-8";
   Bytes body;                                               ///< null: none
   std::vector<std::pair<std::string, std::string>> fields;  ///< of the head, beside the usual ones
-  std::string file;                                         ///< whose first bytes follow the body
+  Descriptor file;                                          ///< its next bytes follow the body
   std::uint64_t size = 0;  ///< of these [byte]; a file that is shorter breaks the connection
+  /// Makes what is answered in place of this, as Server::aside() calls it: it waits for a disk.
+  std::function<Reply()> aside;
 };
 
 /// A line of words that says why a request is refused.
@@ -107,6 +113,9 @@ class Server {
   [[nodiscard]] virtual Loop& loop() = 0;
   /// As Loop::post(); what the function throws is logged.
   virtual void post(std::function<void()> call) = 0;
+  /// Has work done that may wait, on a thread of its own (run_aside()). What it holds ends here,
+  /// and it is done before run() ends; what it throws is logged.
+  virtual void aside(Work work) = 0;
   /// Calls a function periodically, until it ends. To be called before run().
   virtual void every(std::chrono::milliseconds period, std::function<void()> call) = 0;
 };

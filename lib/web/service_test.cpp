@@ -2,12 +2,15 @@
 #include <web/service.h>
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <future>
+#include <latch>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -27,10 +30,21 @@ class Hello final : public Site {
     if (request.path == "/fail") throw std::runtime_error("it fails");
     Reply reply;
     reply.body = std::make_shared<const std::string>("hello");
+    if (request.path == "/aside")
+      reply.aside = [this] {
+        waiting.wait();
+        return refusal(200, "at last");
+      };
+    if (request.path == "/aside/fail")
+      reply.aside = []() -> Reply { throw std::runtime_error("it fails aside"); };
+    if (request.path == "/file") std::swap(reply.file, file), reply.size = 5;
     return reply;
   }
   void open(std::shared_ptr<WebSocket> /*socket*/, const Request& /*request*/) override {}
-  void close() override { ++closed_; }
+  void close() override { closed_ += 1, closed_.notify_all(); }
+
+  std::latch waiting{1};  ///< what /aside waits for
+  Descriptor file;        ///< of /file
 
  private:
   std::atomic<int>& closed_;
@@ -136,6 +150,73 @@ TEST(Service, a_call_that_throws_is_logged_and_made_again) {
   }
   EXPECT_EQ(logged[1], "server: it fails");
   EXPECT_TRUE(answer(ask((*service)->server().port(), "/").get()).ends_with("\r\n\r\nhello"));
+}
+
+TEST(Service, what_waits_for_a_disk_holds_nobody_up) {
+  const auto loop = *Loop::make();
+  std::atomic<int> closed = 0;
+  auto service = Service::open({}, *loop, [](std::string_view) {});
+  ASSERT_TRUE(service) << service.error().text();
+  std::array<int, 2> ends;  // of a pipe, in the place of a slow disk
+  ASSERT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
+  const Descriptor disk(ends[1]);
+  auto site = std::make_unique<Hello>(closed);
+  site->file = Descriptor(ends[0]);
+  Hello& hello = (*service)->serve(std::move(site));
+  const auto port = (*service)->server().port();
+  const auto slow = ask(port, "/aside"), file = ask(port, "/file");
+  EXPECT_TRUE(answer(ask(port, "/").get()).ends_with("\r\n\r\nhello"));
+  hello.waiting.count_down();
+  EXPECT_TRUE(answer(slow.get()).ends_with("\r\n\r\nat last\n"));
+  EXPECT_EQ(::write(disk.get(), "12345", 5), 5);
+  EXPECT_TRUE(answer(file.get()).ends_with("\r\n\r\nhello12345"));
+}
+
+TEST(Service, work_aside_goes_on_in_the_servers_thread_and_is_logged_where_it_throws) {
+  const auto loop = *Loop::make();
+  std::atomic<int> closed = 0;
+  std::string logged;
+  auto service = Service::open({}, *loop, [&](std::string_view line) { logged = line; });
+  ASSERT_TRUE(service) << service.error().text();
+  auto& server = (*service)->server();
+  std::promise<std::array<std::thread::id, 3>> threads;
+  server.post([&] {
+    server.aside([&, here = std::this_thread::get_id()] {
+      return [&, here, beside = std::this_thread::get_id()] {
+        threads.set_value({here, beside, std::this_thread::get_id()});
+      };
+    });
+  });
+  (*service)->serve(std::make_unique<Hello>(closed));
+  const auto [before, beside, after] = threads.get_future().get();
+  EXPECT_EQ(before, after);
+  EXPECT_NE(before, beside);
+  EXPECT_EQ(answer(ask(server.port(), "/aside/fail").get()), "");
+  ASSERT_TRUE(is_readable(loop->descriptor()));
+  ASSERT_TRUE(loop->turn(std::chrono::milliseconds(0)));
+  EXPECT_EQ(logged, "server: it fails aside");
+}
+
+TEST(Service, ends_after_the_work_aside) {
+  const auto loop = *Loop::make();
+  std::atomic<int> closed = 0;
+  bool is_done = false;
+  auto service = Service::open({}, *loop, [](std::string_view) {});
+  ASSERT_TRUE(service) << service.error().text();
+  auto& server = (*service)->server();
+  std::latch begun(1);
+  server.post([&] {
+    server.aside([&] {
+      begun.count_down();
+      closed.wait(0);
+      is_done = true;
+      return [] {};
+    });
+  });
+  (*service)->serve(std::make_unique<Hello>(closed));
+  begun.wait();
+  service->reset();
+  EXPECT_TRUE(is_done);
 }
 
 TEST(Service, ends_though_it_served_nothing) {

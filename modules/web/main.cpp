@@ -154,7 +154,7 @@ int main(int argc, char** argv) {
     wanted->hear(message.numbers()[0] != 0, module.monotonic());
     robot.stopped = wanted->is_stopped(module.monotonic());
   });
-  // Nothing while the server hangs, which may wait for a disk: a stop could not arrive.
+  // Nothing while the server hangs: a stop could not arrive.
   auto is_guarded = [&]() -> std::optional<bool> {
     if (module.monotonic() - robot.served.load() > Stop::kHung) return std::nullopt;
     return robot.sessions > 0;

@@ -57,6 +57,20 @@ std::string dump(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+/// One of the recordings in a folder, or a list of them.
+web::Reply reply_with_recording(const std::string& folder, const std::string& path) {
+  web::Reply reply;
+  reply.aside = [folder, path] {
+    if (path != "/recordings")
+      return recorded_file(folder, path.substr(std::string_view("/recordings/").size()));
+    auto list = nlohmann::json::array();
+    for (const auto& [name, bytes, streams] : list_recordings(folder))
+      list.push_back({{"name", name}, {"bytes", bytes}, {"streams", streams}});
+    return made_of(200, {{"Cache-Control", "no-store"}}, "application/json", text(dump(list)));
+  };
+  return reply;
+}
+
 /// The one message in a frame. Errors: Malformed.
 hc::Result<hc::Message> read_frame(std::string_view bytes) {
   hc::StreamReader reader;
@@ -126,7 +140,7 @@ web::Reply Page::reply(const web::Request& request) {
     return is_known ? made_of(101, {}) : refusal(404, "there is no such socket");
   }
   if (request.path == "/recordings" || request.path.starts_with("/recordings/"))
-    return reply_with_recording(request);
+    return reply_with_recording(options_.recordings, request.path);
   return reply_with_file(request);
 }
 
@@ -163,16 +177,6 @@ web::Reply Page::reply_with_file(const web::Request& request) const {
                  std::string(found->type), text(std::string(found->bytes)));
 }
 
-web::Reply Page::reply_with_recording(const web::Request& request) const {
-  if (request.path != "/recordings")
-    return recorded_file(options_.recordings,
-                         request.path.substr(std::string_view("/recordings/").size()));
-  auto list = nlohmann::json::array();
-  for (const auto& [name, bytes, streams] : list_recordings(options_.recordings))
-    list.push_back({{"name", name}, {"bytes", bytes}, {"streams", streams}});
-  return made_of(200, {{"Cache-Control", "no-store"}}, "application/json", text(dump(list)));
-}
-
 // Sockets.
 
 void Page::open(std::shared_ptr<web::WebSocket> socket, const web::Request& request) {
@@ -205,7 +209,7 @@ void Page::open_stream(const std::shared_ptr<web::WebSocket>& socket, const web:
   const std::string port = request.path.substr(std::string_view("/streams/").size());
   auto& stream = streams_[port];
   if (!stream)
-    stream = std::make_unique<Stream>(options_.graph, port, [this](std::function<void()> call) {
+    stream = std::make_shared<Stream>(options_.graph, port, [this](std::function<void()> call) {
       server_.post(std::move(call));
     });
   stream->view(*wanted, socket);
@@ -284,11 +288,15 @@ void Page::take_command(std::uint64_t number, const std::string& command) {
     if (const auto problem = stop(asked, words)) answer(asked, *problem);
     return;
   }
-  if (auto done = command_here(session, words)) return answer(asked, *done);
   if (words[0] == "observe" || words[0] == "reply")
     return answer(asked, {"no command \"" + words[0] + "\"; streams are at /streams"});
   if (session.right < web::Right::Operate && words[0] != "describe")
     return answer(asked, {lacks(session.right, web::Right::Operate)});
+  if (words[0] == "invite") return answer(asked, invite(words));
+  if (words[0] == "record") {
+    if (const auto problem = record(asked, words)) answer(asked, *problem);
+    return;
+  }
   graph_.command({command}, [this, asked](const hc::Result<hc::GraphAnswer>& answered) {
     Rows rows = answered ? answered->rows : Rows{answered.error().detail};
     if (answered && answered->is_ok) rows.insert(rows.begin(), "ok");
@@ -307,29 +315,51 @@ std::optional<Rows> Page::stop(const Asked& asked, const Rows& words) {
   return std::nullopt;
 }
 
-std::optional<Rows> Page::command_here(const Session& session, const Rows& words) {
-  if (words[0] != "record" && words[0] != "invite") return std::nullopt;
-  if (session.right < web::Right::Operate) return Rows{lacks(session.right, web::Right::Operate)};
-  if (words[0] == "record") return record(words);
+Rows Page::invite(const Rows& words) {
   const auto right = words.size() == 2 ? web::right_named(words[1]) : std::nullopt;
-  if (!right) return Rows{"invite is followed by view, drive or operate"};
-  return Rows{"ok", access_.invite(*right)};
+  if (!right) return {"invite is followed by view, drive or operate"};
+  return {"ok", access_.invite(*right)};
 }
 
-Rows Page::record(const Rows& words) {
+std::optional<Rows> Page::record(const Asked& asked, const Rows& words) {
+  if (!recording_job_.expired())
+    return Rows{"a recording is just beginning or ending; try again in a moment"};
   if (words.size() == 2 && words[1] == "end") {
-    if (!recorder_) return {"nothing is being recorded"};
-    recorder_.reset();
-    return {"ok"};
+    if (!recorder_) return Rows{"nothing is being recorded"};
+    end_recording([this, asked] { answer(asked, {"ok"}); });
+    return std::nullopt;
   }
-  if (recorder_) return {"there is a recording already: " + recorder_->name()};
-  if (words.size() < 3) return {"record is followed by a name and outputs, MODULE.PORT, or by end"};
-  auto begun =
-      Recorder::begin(options_.graph, {options_.recordings, options_.frames, callbacks_.log},
-                      words[1], {words.begin() + 2, words.end()});
-  if (!begun) return {begun.error().detail};
-  recorder_ = std::move(*begun);
-  return {"ok"};
+  if (recorder_) return Rows{"there is a recording already: " + recorder_->name()};
+  if (words.size() < 3)
+    return Rows{"record is followed by a name and outputs, MODULE.PORT, or by end"};
+  record_aside([this, asked, words] {
+    auto begun =
+        Recorder::begin(options_.graph, {options_.recordings, options_.frames, callbacks_.log},
+                        words[1], {words.begin() + 2, words.end()});
+    const Rows said = {begun ? "ok" : begun.error().detail};
+    std::shared_ptr<Recorder> recorder = begun ? std::move(*begun) : nullptr;
+    return [this, asked, said, recorder] {
+      recorder_ = recorder;
+      answer(asked, said);
+    };
+  });
+  return std::nullopt;
+}
+
+void Page::end_recording(const std::function<void()>& ended) {
+  record_aside([this, recorder = recorder_, ended] {
+    recorder->end();
+    return [this, ended] {
+      recorder_.reset();
+      ended();
+    };
+  });
+}
+
+void Page::record_aside(web::Work work) {
+  const auto job = std::make_shared<web::Work>(std::move(work));
+  recording_job_ = job;
+  server_.aside([job] { return [job, then = (*job)()] { then(); }; });
 }
 
 void Page::give(const std::vector<Order>& orders) const {
@@ -339,9 +369,16 @@ void Page::give(const std::vector<Order>& orders) const {
 void Page::tick() {
   robot_.served = clock_.monotonic();
   if (driver_socket_) give(driver_.tick(clock_.wall(), clock_.monotonic()));
-  if (recorder_ && !recorder_->goes_on()) recorder_.reset();
+  if (recorder_ && !recorder_->goes_on() && recording_job_.expired()) end_recording([] {});
   for (auto& [number, session] : sessions_) send_session(session);
-  std::erase_if(streams_, [&](const auto& each) { return !each.second->is_viewed(); });
+  std::erase_if(streams_, [&](const auto& each) {
+    if (each.second->is_viewed()) return false;
+    server_.aside([stream = each.second] {
+      stream->stop();
+      return [] {};
+    });
+    return true;
+  });
 }
 
 std::string Page::session_text(const Session& session) const {

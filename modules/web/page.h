@@ -72,7 +72,6 @@ class Page final : public web::Site {
 
   web::Reply reply_to_token(const web::Request& request);
   web::Reply reply_with_file(const web::Request& request) const;
-  web::Reply reply_with_recording(const web::Request& request) const;
   void open_graph(const std::shared_ptr<web::WebSocket>& socket, web::Right right);
   void open_stream(const std::shared_ptr<web::WebSocket>& socket, const web::Request& request);
   void open_drive(const std::shared_ptr<web::WebSocket>& socket, const web::Request& request);
@@ -82,13 +81,18 @@ class Page final : public web::Site {
   [[nodiscard]] web::Bytes rows_message(const std::vector<std::string>& rows, std::int32_t src,
                                         std::int64_t seq) const;
   void take_command(std::uint64_t session, const std::string& command);
-  /// Does a command that is none of the graph; gives its answer, nothing where it is one of it.
-  std::optional<std::vector<std::string>> command_here(const Session& session,
-                                                       const std::vector<std::string>& words);
-  /// Stops the robot, or clears that. @returns  what is wrong; nothing: it is answered later.
+  // These give what is wrong, or nothing: it is answered later.
+  /// Stops the robot, or clears that.
   std::optional<std::vector<std::string>> stop(const Asked& asked,
                                                const std::vector<std::string>& words);
-  std::vector<std::string> record(const std::vector<std::string>& words);
+  /// Begins a recording, or ends it.
+  std::optional<std::vector<std::string>> record(const Asked& asked,
+                                                 const std::vector<std::string>& words);
+  std::vector<std::string> invite(const std::vector<std::string>& words);
+  /// Ends the recording, and then calls back.
+  void end_recording(const std::function<void()>& ended);
+  /// As Server::aside(), for what begins or ends a recording.
+  void record_aside(web::Work work);
   void answer(const Asked& asked, const std::vector<std::string>& rows);
   void tick();
   void give(const std::vector<Order>& orders) const;
@@ -103,13 +107,14 @@ class Page final : public web::Site {
   const hc::SystemClock clock_;
   std::uint64_t next_ = 1;  // number of a session
   Sessions sessions_;
-  std::map<std::string, std::unique_ptr<Stream>> streams_;  // by port
+  std::map<std::string, std::shared_ptr<Stream>> streams_;  // by port
   std::shared_ptr<web::WebSocket> driver_socket_;
   Driver driver_;
-  std::unique_ptr<Recorder> recorder_;
-  web::Bytes state_;                     // the last
-  std::set<std::int32_t> modes_;         // numbers of those that the graph has
-  std::deque<web::Bytes> log_;           // the last lines
-  std::int64_t states_ = 0, lines_ = 0;  // sent
+  std::shared_ptr<Recorder> recorder_;
+  std::weak_ptr<web::Work> recording_job_;  // that begins or ends it
+  web::Bytes state_;                        // the last
+  std::set<std::int32_t> modes_;            // numbers of those that the graph has
+  std::deque<web::Bytes> log_;              // the last lines
+  std::int64_t states_ = 0, lines_ = 0;     // sent
   hc::GraphClient graph_;
 };

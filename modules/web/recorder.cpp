@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recorder.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <set>
-#include <thread>
 #include <utility>
 
 #include <hc/compress/compress.h>
@@ -45,15 +47,15 @@ std::vector<Recorded> list_recordings(const std::string& folder) {
 }
 
 web::Reply recorded_file(const std::string& folder, const std::string& file) {
-  const fs::path path = fs::path(folder) / file;
-  std::error_code failed;
-  const bool is_recording = file.ends_with(kEnding) &&
-                            is_recording_name(file.substr(0, file.size() - kEnding.size())) &&
-                            fs::is_regular_file(path, failed);
   web::Reply reply;
-  if (is_recording) reply.size = fs::file_size(path, failed);
-  if (!is_recording || failed) return web::refusal(404, "there is no such recording");
-  reply.file = path;
+  struct stat about {};
+  // Never waits for the other end of a FIFO.
+  if (file.ends_with(kEnding) && is_recording_name(file.substr(0, file.size() - kEnding.size())))
+    reply.file =
+        hc::Descriptor(::open((folder + "/" + file).c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  if (!reply.file || ::fstat(reply.file.get(), &about) != 0 || !S_ISREG(about.st_mode))
+    return web::refusal(404, "there is no such recording");
+  reply.size = static_cast<std::uint64_t>(about.st_size);
   reply.type = "application/octet-stream";
   reply.fields = {{"Content-Disposition", "attachment; filename=\"" + file + "\""}};
   return reply;
@@ -105,11 +107,8 @@ Recorder::Recorder(std::unique_ptr<hc::record::Writer> writer, hc::LogSink log, 
       ports_(std::move(ports)),
       writer_(std::move(writer)) {}
 
-/// All at once: each may have an image to compress, and the pages are not served meanwhile.
-Recorder::~Recorder() {
-  std::vector<std::thread> ends;
-  for (auto& tap : taps_) ends.emplace_back([&tap] { tap.reset(); });
-  for (auto& end : ends) end.join();
+void Recorder::end() {
+  taps_.clear();
   if (const auto& written = writer_->close(); !written.status) fail(written.status.error());
 }
 

@@ -23,14 +23,16 @@ struct Recorded {
   std::vector<std::string> streams;  ///< MODULE.PORT
 };
 
+// All that waits for the disk is for a thread beside the server's, which takes stops.
+
 /// The recordings in a folder, by name.
 std::vector<Recorded> list_recordings(const std::string& folder);
 
 /// The recording in a file NAME.mcap, as long as it is now; 404: there is none.
 web::Reply recorded_file(const std::string& folder, const std::string& file);
 
-/// A recording that is being made, until it is destroyed. What cannot be written, on a full disk,
-/// ends it: what was written before is kept.
+/// A recording that is being made, until end(). What cannot be written, on a full disk, ends it:
+/// what was written before is kept. Its destructor may wait for the disk, unless it has ended.
 class Recorder {
  public:
   struct Options {
@@ -43,9 +45,12 @@ class Recorder {
                                                      const Options& options,
                                                      const std::string& name,
                                                      const std::vector<std::string>& ports);
-  ~Recorder();
+  ~Recorder() { end(); }
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
+
+  /// Waits until all is written.
+  void end();
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const std::vector<std::string>& ports() const { return ports_; }

@@ -64,25 +64,27 @@ hc::Result<Wanted> parse_wanted(std::string_view options, Wanted wanted) {
 
 Stream::Stream(hc::RunningGraph graph, std::string port, web::Post post)
     : post_(std::move(post)),
-      tap_(std::move(graph), std::move(port),
-           {.message =
-                [this](const hc::Message& message) {
-                  newest_ = message.keep();
-                  ++number_;
-                },
-            .idle = [this] { return serve(); },
-            .end = [this](const std::string& why, bool is_error) { end(why, is_error); }}) {}
+      tap_(std::in_place, std::move(graph), std::move(port),
+           hc::Tap::Callbacks{
+               .message =
+                   [this](const hc::Message& message) {
+                     newest_ = message.keep();
+                     ++number_;
+                   },
+               .idle = [this] { return serve(); },
+               .end = [this](const std::string& why, bool is_error) { end(why, is_error); }}) {}
 
 void Stream::post(const std::shared_ptr<Viewer>& viewer,
-                  std::function<void(const std::shared_ptr<Viewer>&)> call) const {
-  post_([weak = std::weak_ptr(viewer), call = std::move(call)] {
-    if (const auto still = weak.lock()) call(still);
+                  std::function<void(const std::shared_ptr<Viewer>&)> call) {
+  post_([this, weak = std::weak_ptr(viewer), call = std::move(call)] {
+    if (const auto still = weak.lock(); still && sockets_.contains(still)) call(still);
   });
 }
 
 void Stream::view(const Wanted& wanted, std::shared_ptr<web::WebSocket> socket) {
   auto& events = *socket;
-  const auto viewer = std::make_shared<Viewer>(Viewer{std::move(socket), wanted});
+  const auto viewer = std::make_shared<Viewer>(Viewer{wanted});
+  sockets_.emplace(viewer, std::move(socket));
   events.on_close = [this, weak = std::weak_ptr(viewer)] {
     if (const auto still = weak.lock()) remove(still);
   };
@@ -92,7 +94,7 @@ void Stream::view(const Wanted& wanted, std::shared_ptr<web::WebSocket> socket) 
   const std::lock_guard lock(mutex_);
   viewers_.push_back(viewer);
   if (!ended_.empty()) close_soon(viewer, ended_as_, ended_);
-  tap_.wake();
+  tap_->wake();
 }
 
 void Stream::hear(const std::shared_ptr<Viewer>& viewer, std::string_view said) {
@@ -105,16 +107,17 @@ void Stream::hear(const std::shared_ptr<Viewer>& viewer, std::string_view said) 
   if (changed->form != viewer->wanted.form || changed->width != viewer->wanted.width)
     viewer->has_changed = true;
   viewer->wanted = *changed;
-  tap_.wake();
+  tap_->wake();
 }
 
 void Stream::remove(const std::shared_ptr<Viewer>& viewer) {
+  sockets_.erase(viewer);
   const std::lock_guard lock(mutex_);
   std::erase(viewers_, viewer);
 }
 
 void Stream::close(const std::shared_ptr<Viewer>& viewer, int code, const std::string& why) {
-  viewer->socket->close(code, why);
+  sockets_.at(viewer)->close(code, why);
   remove(viewer);
 }
 
@@ -123,13 +126,7 @@ void Stream::close_soon(const std::shared_ptr<Viewer>& viewer, int code, const s
 }
 
 void Stream::close(const std::string& why) {
-  const std::lock_guard lock(mutex_);
-  for (const auto& viewer : std::exchange(viewers_, {})) viewer->socket->close(kEnd, why);
-}
-
-bool Stream::is_viewed() {
-  const std::lock_guard lock(mutex_);
-  return !viewers_.empty();
+  for (const auto& [viewer, socket] : std::map(sockets_)) close(viewer, kEnd, why);
 }
 
 void Stream::end(const std::string& why, bool is_error) {
@@ -215,9 +212,10 @@ void Stream::serve_alike(const Wanted& wanted, const Viewers& viewers) {
     }
     const bool has_header = now >= viewer->header_due;
     if (has_header) viewer->header_due = now + kHeader;
-    post(viewer, [bytes, text = has_header ? header : std::string()](const auto& still) {
-      if (!text.empty()) still->socket->send_text(text);
-      still->socket->send(bytes);
+    post(viewer, [this, bytes, text = has_header ? header : std::string()](const auto& still) {
+      const auto& socket = sockets_.at(still);
+      if (!text.empty()) socket->send_text(text);
+      socket->send(bytes);
     });
   }
 }

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,15 +44,17 @@ class Stream {
   void view(const Wanted& wanted, std::shared_ptr<web::WebSocket> socket);
   /// Ends it for all.
   void close(const std::string& why);
-  [[nodiscard]] bool is_viewed();
+  [[nodiscard]] bool is_viewed() const { return !sockets_.empty(); }
+
+  /// Once nobody views it: waits for what its thread is encoding. From any thread.
+  void stop() { tap_.reset(); }
 
  private:
   using Clock = hc::Tap::Clock;
   static constexpr int kMaxUnderWay = 2;  // messages that a page is not done with
 
-  /// A page, as the stream sees it.
+  /// A page, as the stream's thread sees it: without its socket, which has to end on the server's.
   struct Viewer {
-    const std::shared_ptr<web::WebSocket> socket;  // of the server's thread
     // Guarded by the mutex.
     Wanted wanted;
     int under_way = 0;
@@ -75,7 +78,7 @@ class Stream {
   void end(const std::string& why, bool is_error);
   /// Calls on the server's thread, if the page is still there then.
   void post(const std::shared_ptr<Viewer>& viewer,
-            std::function<void(const std::shared_ptr<Viewer>&)> call) const;
+            std::function<void(const std::shared_ptr<Viewer>&)> call);
   void close_soon(const std::shared_ptr<Viewer>& viewer, int code, const std::string& why);
 
   // On the server's thread.
@@ -84,6 +87,8 @@ class Stream {
   void remove(const std::shared_ptr<Viewer>& viewer);
 
   const web::Post post_;
+  // Of the server's thread.
+  std::map<std::shared_ptr<Viewer>, std::shared_ptr<web::WebSocket>> sockets_;
   std::mutex mutex_;
   Viewers viewers_;
   std::string ended_;  // why; empty: it has not
@@ -92,5 +97,5 @@ class Stream {
   hc::Message newest_;
   std::uint64_t number_ = 0;     // of the newest message; 0: there is none
   std::map<int, Video> videos_;  // by width
-  hc::Tap tap_;                  // last: its thread calls the above
+  std::optional<hc::Tap> tap_;   // last: its thread calls the above
 };

@@ -2,6 +2,7 @@
 """The server of the page, as any client sees it: who may do what, streams, the seat, recordings."""
 
 import contextlib
+import ctypes
 import json
 import os
 import pathlib
@@ -61,6 +62,21 @@ def message(data):
     """Header and elements of a message in binary."""
     line, elements = data.split(b"\n", 1)
     return [int(word) for word in line.split()], elements[:-1]
+
+
+@contextlib.contextmanager
+def held(threads):
+    """Holds threads of other processes, as a disk that hangs would."""
+    seize, interrupt, detach, all_children = 0x4206, 0x4207, 17, 0x40000000
+    libc = ctypes.CDLL(None, use_errno=True)
+    with contextlib.ExitStack() as stack:
+        for thread in threads:
+            if libc.ptrace(seize, thread, 0, 0) != 0:
+                raise unittest.SkipTest("ptrace: " + os.strerror(ctypes.get_errno()))
+            stack.callback(libc.ptrace, detach, thread, 0, 0)
+            libc.ptrace(interrupt, thread, 0, 0)
+            os.waitpid(thread, all_children)
+        yield
 
 
 class Page(Graphs):
@@ -587,6 +603,25 @@ class Recordings(Page):
         path = pathlib.Path(self.path("recordings/one.mcap"))
         wait_until(lambda: path.stat().st_size > 20000)
         return path
+
+    def threads(self, graph):
+        state = json.loads(self.hear(graph, 1))
+        pid = next(each["pid"] for each in state["modules"] if each["name"] == "web")
+        return {int(each) for each in os.listdir("/proc/%d/task" % pid)}
+
+    def test_a_disk_that_hangs_holds_no_page_up(self):
+        self.serve()
+        graph = self.socket("/graph", self.session())
+        before = self.threads(graph)
+        self.record(graph)
+        with held(self.threads(graph) - before):
+            graph.send("record end")
+            self.assertGreater(len(self.command(graph, "describe camera")), 1)
+            self.assertIn("ending", self.command(graph, "record end")[0])
+            self.assertIn("ending", self.command(graph, "record two camera.left")[0])
+            self.hear(graph, 3, lambda text: json.loads(text)["recording"]["name"] == "one")
+        self.assertEqual(self.hear(graph, 4), "ok")
+        self.hear(graph, 3, lambda text: json.loads(text)["recording"] is None)
 
     def test_a_full_disk_ends_the_recording_and_keeps_it(self):
         self.serve(before="trap '' XFSZ; ")

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc key: the key of one end of tls: links.
-#include <filesystem>
-
 #include <tls/key.h>
 
 #include "common.h"
@@ -16,9 +14,7 @@ void add_key(CLI::App& app) {
   verb->add_option("file", *path, "the key and its certificate, which its owner alone can read")
       ->required();
   verb->callback([path] {
-    std::error_code none;
-    if (!std::filesystem::exists(*path, none))
-      if (auto made = hc::tls::make_key(*path); !made) throw Failure(made.error());
+    if (auto made = hc::tls::make_key(*path); !made) throw Failure(made.error());
     print(value_or_fail(hc::tls::fingerprint_of(*path), *path) + "\n");
   });
 }

@@ -57,3 +57,83 @@ test("a damaged file ends with a sentence", async () => {
     }
   }
 });
+
+/** A file of MCAP, whose chunks have these messages of a stream `s`, and those beside them. */
+function fileOf(chunks: ("message" | "beside")[][]): Blob {
+  const number = (size: number, value: number) => {
+    const bytes = Buffer.alloc(size);
+    bytes.writeUIntLE(value, 0, Math.min(size, 6));
+    return bytes;
+  };
+  const text = (words: string) => Buffer.concat([number(4, words.length), Buffer.from(words)]);
+  const list = (...parts: Buffer[]) => {
+    const bytes = Buffer.concat(parts);
+    return Buffer.concat([number(4, bytes.length), bytes]);
+  };
+  const record = (opcode: number, ...parts: Buffer[]) => {
+    const content = Buffer.concat(parts);
+    return Buffer.concat([number(1, opcode), number(8, content.length), content]);
+  };
+  const channel = (id: number, topic: string, key: string, value: string) =>
+    record(4, number(2, id), number(2, 0), text(topic), text("cdr"), list(text(key), text(value)));
+  const header = "1 0 0 0 8 0 120190 0 0 2 1";
+  const matrix = Buffer.concat([Buffer.alloc(4), text(header), Buffer.alloc(-header.length & 3)]);
+  const counts = { message: 0, beside: 0 };
+  const magic = Buffer.from(small.subarray(0, 8));
+  const file = [magic];
+  const size = () => file.reduce((sum, part) => sum + part.length, 0);
+  const summary = [channel(1, "/s", "hypercolumn.mtp", "/s/mtp")];
+  summary.push(channel(2, "/s/mtp", "hypercolumn.stream", "s"));
+  for (const kinds of chunks) {
+    const records: Buffer[] = [];
+    const indexes: Buffer[] = [];
+    for (const kind of kinds) {
+      const sequence = counts[kind]++;
+      const elements = Buffer.from(new Float64Array([sequence, 0.5]).buffer);
+      const data =
+        kind === "beside"
+          ? Buffer.concat([Buffer.alloc(8), elements])
+          : Buffer.concat([matrix, number(4, 8), number(4, 16), number(4, 0)]);
+      const id = number(2, kind === "beside" ? 1 : 2);
+      const time = number(8, 1e9 * (1 + sequence));
+      const offset = Buffer.concat(records).length;
+      records.push(record(5, id, number(4, sequence), time, time, data));
+      indexes.push(record(7, id, list(time, number(8, offset))));
+    }
+    const plain = Buffer.concat(records);
+    const index = Buffer.concat(indexes);
+    const stored = number(8, plain.length);
+    const at = size();
+    file.push(record(6, number(28, 0), text(""), stored, plain));
+    const length = number(8, size() - at);
+    file.push(index);
+    const place = [number(16, 0), number(8, at), length, list(), number(8, index.length)];
+    summary.push(record(8, ...place, text(""), stored, stored));
+  }
+  const begin = number(8, size());
+  return new Blob([...file, ...summary, record(2, begin, number(12, 0)), magic] as BlobPart[]);
+}
+
+test("a chunk may end between a message and the one beside it", async () => {
+  for (const chunks of [
+    [["beside", "message", "beside", "message"]],
+    [["beside"], ["message", "beside"], ["message"]],
+    [["message"], ["beside", "message"], ["beside"]],
+  ] as ("message" | "beside")[][][]) {
+    const [track] = await openMcap(fileOf(chunks));
+    const messages = await Promise.all([0, 1].map((index) => track!.message(index)));
+    assert.deepEqual(
+      messages.map(({ elements }) => [...elements]),
+      [
+        [0, 0.5],
+        [1, 0.5],
+      ],
+    );
+  }
+});
+
+test("a message whose elements are missing says so, and those after it are found", async () => {
+  const [track] = await openMcap(fileOf([["message"], ["message", "beside", "beside"]]));
+  await assert.rejects(track!.message(0), /lacks its elements/);
+  assert.deepEqual([...(await track!.message(1)).elements], [1, 0.5]);
+});

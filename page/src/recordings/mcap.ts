@@ -77,21 +77,32 @@ interface Channel {
   readonly beside?: string;
 }
 
-/** A stream, and where its messages and those beside them are in their chunks. */
+/** A stream, and where its messages are. */
 interface Stream {
   readonly track: Track;
   readonly places: Place[];
 }
 
+/** Where a message is. */
 interface Place {
   readonly chunk: Chunk;
-  readonly offset: number;
-  readonly beside: number | undefined;
+  readonly offset: number; // in its chunk
+  /** Of a message of MTP: the one beside it, which may be in another chunk. */
+  beside?: Place | undefined;
+}
+
+/** A message in the index of a chunk. */
+interface Found extends Place {
+  readonly time: number; // [s since 1970]
+  readonly bytes: number;
 }
 
 class McapFile {
   private readonly channels = new Map<number, Channel>();
   private readonly chunks: Chunk[] = [];
+  // The last of each topic of MTP: the one beside a message to come, and a message with none beside it.
+  private readonly besides = new Map<string, Found>();
+  private readonly alone = new Map<string, Found>();
   private newest?: { readonly chunk: Chunk; readonly bytes: Promise<Uint8Array<ArrayBuffer>> };
 
   constructor(private readonly file: Blob) {}
@@ -116,6 +127,7 @@ class McapFile {
       if (opcode === opcodes.channel) this.addChannel(content);
       if (opcode === opcodes.chunkIndex) this.addChunk(content);
     }
+    this.chunks.sort((a, b) => a.end - b.end);
     for (const [i, chunk] of this.chunks.entries()) {
       this.addMessages(chunk, await this.read(chunk.end, chunk.indexBytes));
       progress((i + 1) / this.chunks.length);
@@ -160,15 +172,25 @@ class McapFile {
         entries.push({ time: list.u64() / 1e9, offset: list.u64(), channel });
     }
     entries.sort((a, b) => a.offset - b.offset);
-    const besides = new Map<string, number>(); // the last offset, by topic of MTP
     entries.forEach(({ time, offset, channel }, i) => {
-      if (channel?.beside !== undefined) besides.set(channel.beside, offset);
+      const bytes = (entries[i + 1]?.offset ?? chunk.plain) - offset;
+      const found: Found = { chunk, offset, time, bytes };
+      if (channel?.beside !== undefined) this.addBeside(channel.beside, found);
       if (!channel?.stream) return;
-      const beside = besides.get(channel.topic);
-      const next = entries[i + 1]?.offset ?? offset;
-      channel.stream.places.push({ chunk, offset, beside });
-      channel.stream.track.add(time, next - (beside ?? offset));
+      const beside = this.besides.get(channel.topic);
+      this.besides.delete(channel.topic);
+      this.alone.set(channel.topic, found);
+      found.beside = beside;
+      channel.stream.places.push(found);
+      channel.stream.track.add(time, bytes + (beside?.bytes ?? 0));
     });
+  }
+
+  /** Adds one that comes before its message, or behind it where another program has sorted them. */
+  private addBeside(topic: string, beside: Found): void {
+    const message = this.alone.get(topic);
+    if (message && !message.beside && message.time === beside.time) message.beside = beside;
+    else this.besides.set(topic, beside);
   }
 
   /** The messages of a chunk, plain. */
@@ -185,16 +207,17 @@ class McapFile {
     throw new Error(`This recording is compressed by ${compression}, which is not known here.`);
   }
 
-  private async message(topic: string, { chunk, offset, beside }: Place): Promise<Message> {
+  private async stored({ chunk, offset }: Place) {
     const contents = await this.contents(chunk);
-    const record = (at: number) => {
-      const { content } = new Fields(contents.subarray(at)).record();
-      content.u16();
-      const sequence = content.u32();
-      content.take(16);
-      return { sequence, data: content.take(content.left) };
-    };
-    const { sequence, data } = record(offset);
+    const { content } = new Fields(contents.subarray(offset)).record();
+    content.u16();
+    const sequence = content.u32();
+    content.take(16);
+    return { sequence, data: content.take(content.left) };
+  }
+
+  private async message(topic: string, place: Place): Promise<Message> {
+    const { sequence, data } = await this.stored(place);
     // hypercolumn_msgs/msg/Matrix in CDR.
     const matrix = new Fields(data);
     matrix.take(4);
@@ -203,7 +226,7 @@ class McapFile {
     const [from, size] = [matrix.u32(), matrix.u32()];
     let bytes = matrix.take(matrix.u32());
     if (from > 0) {
-      const other = beside === undefined ? undefined : record(beside);
+      const other = place.beside && (await this.stored(place.beside));
       if (other?.sequence !== sequence || from + size > other.data.length)
         throw new Error(`A message of ${topic} lacks its elements.`);
       bytes = other.data.subarray(from, from + size);
