@@ -35,6 +35,12 @@ struct Child {
   LogLimit log_limit;
 };
 
+/// Of the runner, which an order brought.
+struct Question {
+  std::int64_t id = 0;
+  std::string what, subject;
+};
+
 class Agent {
  public:
   explicit Agent(const AgentOptions& options) : options_(options) {}
@@ -145,7 +151,7 @@ class Agent {
     } else if (what == "hold") {
       hold(order);
     } else {
-      questions_.push_back(order);
+      questions_.push_back({id_of(order), what, order.value("subject", std::string())});
       answer_next();
     }
   } catch (const Json::exception& error) {
@@ -234,12 +240,14 @@ class Agent {
   void hold(const Json& order) {
     auto port = hold_port(order.at("of_all"), order.at("port").get<std::uint16_t>());
     if (port) ports_[(*port)->number] = *port;
-    send(answer_of(order, "port", port ? Result<Json>((*port)->number) : port.error()));
+    send(answer_of(id_of(order), "port", port ? Result<Json>((*port)->number) : port.error()));
   }
 
-  static Json answer_of(const Json& question, const char* key, const Result<Json>& value) {
+  static std::int64_t id_of(const Json& order) { return order.value("id", std::int64_t{0}); }
+
+  static Json answer_of(std::int64_t id, const char* key, const Result<Json>& value) {
     return {{"what", "answer"},
-            {"id", question.value("id", std::int64_t{0})},
+            {"id", id},
             {value ? key : "error", value ? *value : Json(value.error().detail)}};
   }
 
@@ -249,7 +257,7 @@ class Agent {
     auto aside = run_aside(
         *loop_,
         [this, question = questions_.front()](int stop) {
-          return answer_of(question, "text", answer_to(question, stop));
+          return answer_of(question.id, "text", answer_to(question, stop));
         },
         [this](const Json& answer) {
           send(answer);
@@ -260,14 +268,14 @@ class Agent {
     questions_.pop_front();
   }
 
-  [[nodiscard]] Result<Json> answer_to(const Json& question, int stop) const {
-    const std::string what = question.at("what"), subject = question.value("subject", "");
-    if (what == "describe") {
+  [[nodiscard]] Result<Json> answer_to(const Question& question, int stop) const {
+    const std::string& subject = question.subject;
+    if (question.what == "describe") {
       auto description = HC_TRY(describe_program(subject, stop));
       return Json(std::move(description));
     }
-    if (what == "examine" && options_.examine) return Json(options_.examine(subject));
-    if (what != "find") return Error{Code::Invalid, "no such question: " + what};
+    if (question.what == "examine" && options_.examine) return Json(options_.examine(subject));
+    if (question.what != "find") return Error{Code::Invalid, "no such question: " + question.what};
     return unless_stopped(stop, [subject]() -> Result<Json> {
       const auto program = find_program(subject);
       if (!program.empty()) return Json(program);
@@ -283,7 +291,7 @@ class Agent {
   std::map<std::int64_t, Child> children_;
   std::map<std::int64_t, std::shared_ptr<const HeldPort>> ports_;
   std::map<std::int64_t, std::shared_ptr<void>> readers_;  // in the place of modules
-  std::deque<Json> questions_;
+  std::deque<Question> questions_;
   int heartbeats_ = 0, usages_ = 0;
   bool is_over_ = false;
   Status outcome_;

@@ -393,6 +393,17 @@ class Tool(Pipes):
         self.shell("head -c 1000000000 /dev/zero | tr '\\0' 1 | hc cat; exit ${PIPESTATUS[2]}", 1)
         self.assertIn("R3 header", self.err)
 
+    def test_orders_that_are_wrong_end_an_agent_with_one_line(self):
+        for order in (
+            '{"what":"find","subject":5}',
+            '{"what":"find","id":"x","subject":"camera"}',
+            '{"what":"hold"}',
+            '{"what":"start","number":{}}',
+        ):
+            text = "1 1 0 0 8 0 60100 0 0 %d 1\n%s\n" % (len(order), order)
+            self.shell("hc agent >answers", 1, text.encode())
+            self.assertRegex(self.err, r"^hc agent: Malformed: an order: .*\n$")
+
     def test_describe_is_json(self):
         for module in ("camera", "depth", "view", "brightness", "depth_score"):
             got = json.loads(self.shell("hc describe " + module))

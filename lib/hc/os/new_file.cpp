@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -27,6 +28,14 @@ Result<Descriptor> open_file(const std::string& path, int flags) {
 /// nobody can know.
 bool lock(const Descriptor& file) {
   return ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+}
+
+/// Whether an open file still has this name.
+bool is_at(const Descriptor& file, const std::string& path) {
+  struct stat open {
+  }, named{};
+  return ::fstat(file.get(), &open) == 0 && ::stat(path.c_str(), &named) == 0 &&
+         open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
 bool has_contents(const std::string& path) {
@@ -86,8 +95,12 @@ Result<NewFile> continue_file(const std::string& path) {
 Status replace_file(const std::string& path, std::string_view contents) {
   const bool is_direct = is_written_in_place(path);
   const std::string unfinished = is_direct ? path : path + ".unfinished";
-  auto file = HC_TRY(open_file(unfinished, O_WRONLY | (is_direct ? 0 : O_TRUNC)));
-  Status done = write_all(file.get(), contents);
+  auto file = HC_TRY(open_file(unfinished, O_WRONLY));
+  // A process that locks it late may have opened what is in its place by then.
+  if (!is_direct && !(lock(file) && is_at(file, unfinished)))
+    return Error{Code::System, path + ": another process is replacing it"};
+  Status done = is_direct || ::ftruncate(file.get(), 0) == 0 ? write_all(file.get(), contents)
+                                                             : system_error("ftruncate", path);
   if (done && !is_direct && std::rename(unfinished.c_str(), path.c_str()) != 0)
     done = system_error("rename", path);
   if (done) return {};

@@ -41,7 +41,7 @@ Result<NewFile> continue_file(const std::string& path);
 /// find the old or the new contents, also after a crash or on a full disk. What
 /// is_written_in_place() is written to.
 ///
-/// Errors: System; the file is as it was then.
+/// Errors: System, also while another process replaces it; the file is as it was then.
 Status replace_file(const std::string& path, std::string_view contents);
 
 }  // namespace hc

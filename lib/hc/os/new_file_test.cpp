@@ -6,12 +6,16 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include <hc/os/program.h>
 #include <hc/testing/must.h>
@@ -122,6 +126,25 @@ TEST_F(NewFiles, AFileIsReplacedWholeOrNotAtAll) {
   ASSERT_FALSE(replaced);
   EXPECT_NE(replaced.error().detail.find("File too large"), std::string::npos);
   EXPECT_EQ(contents("x"), "first");
+  EXPECT_FALSE(fs::exists(at("x.unfinished")));
+}
+
+TEST_F(NewFiles, ReplacedByManyAtOnceIsTheWholeOfOne) {
+  const std::string texts[] = {std::string(100'000, 'a'), std::string(50'000, 'b')};
+  ASSERT_TRUE(replace_file(at("x"), texts[0]));
+  std::atomic<bool> is_over{false};
+  {
+    std::vector<std::jthread> writers;
+    for (const auto& text : texts)
+      writers.emplace_back([&, path = at("x")] {
+        while (!is_over) static_cast<void>(replace_file(path, text));
+      });
+    for (int i = 0; i < 1000; ++i) {
+      const auto read = contents("x");
+      EXPECT_TRUE(read == texts[0] || read == texts[1]) << read.size();
+    }
+    is_over = true;
+  }
   EXPECT_FALSE(fs::exists(at("x.unfinished")));
 }
 
