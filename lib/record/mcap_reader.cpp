@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Streams of MTP in MCAP files (doc/recordings.md, "In the file").
 #include <algorithm>
+#include <deque>
 #include <limits>
 #include <map>
 #include <utility>
@@ -40,42 +41,38 @@ std::int64_t signed_time(std::uint64_t time) {
 
 class McapReader final : public Reader {
  public:
-  McapReader(mcap::Reader reader, const Limits& limits)
-      : reader_(std::move(reader)), limits_(limits) {}
+  McapReader(mcap::Reader reader, const Limits& limits, Topics topics)
+      : reader_(std::move(reader)), limits_(limits), topics_(topics) {}
 
   Result<Got> take(Message& message) override {
     message = {};
-    while (true) {
-      auto stored = reader_.next();
-      if (!stored) return stored.error();
-      if (!*stored) return Got::End;
-      const auto& channel = *(*stored)->channel;
-      if (!is_mtp(**stored)) {
-        const auto beside = channel.metadata.find(kBesideKey);
-        if (beside != channel.metadata.end()) keep(beside->second, std::move(**stored));
-        continue;
-      }
-      auto made = rebuild(**stored);
-      if (!made) return made.error();
-      message = std::move(*made);
-      stream_ = stream_name(channel);
-      log_time_ = signed_time((*stored)->record.log_time);
-      ++traffic_.messages;
-      return Got::Message;
-    }
+    const auto stored = HC_TRY(take_stored());
+    if (!stored) return Got::End;
+    message = HC_TRY(rebuild(*stored));
+    stream_ = stream_name(*stored->message.channel);
+    log_time_ = signed_time(stored->message.record.log_time);
+    ++traffic_.messages;
+    return Got::Message;
   }
 
-  Result<std::optional<StoredMessage>> take_raw() override { return reader_.next(); }
+  Result<std::optional<StoredPair>> take_stored() override {
+    HC_TRY(next_time());
+    return std::exchange(ahead_, std::nullopt);
+  }
   Result<std::optional<std::int64_t>> next_time() override {
-    auto time = reader_.next_time();
-    if (!time) return time.error();
-    return *time ? std::optional(signed_time(**time)) : std::nullopt;
+    while (!ahead_) {
+      ahead_ = HC_TRY(read_pair());
+      if (!ahead_) return std::optional<std::int64_t>();
+      if (topics_ == Topics::Mtp && !is_mtp(ahead_->message)) ahead_.reset();
+    }
+    return std::optional(signed_time(ahead_->message.record.log_time));
   }
 
   [[nodiscard]] std::int64_t log_time() const override { return log_time_; }
   [[nodiscard]] std::string_view stream() const override { return stream_; }
   void start_at(std::int64_t log_time) override {
     reader_.start_at(static_cast<std::uint64_t>(log_time));
+    if (ahead_ && signed_time(ahead_->message.record.log_time) < log_time) ahead_.reset();
   }
   [[nodiscard]] int descriptor() const override { return reader_.descriptor(); }
   [[nodiscard]] Traffic traffic() const override {
@@ -84,19 +81,56 @@ class McapReader final : public Reader {
     return traffic;
   }
   Status resume() override { return {}; }
-  Result<std::vector<StreamInfo>> streams(bool) override { return streams_of(reader_.summary()); }
+  Result<std::vector<StreamInfo>> streams(StreamDetail) override {
+    return streams_of(reader_.summary());
+  }
   Result<std::map<std::string, mcap::StringMap>> metadata() override { return reader_.metadata(); }
 
  private:
-  /// Keeps a message that may have the elements of the next one on the topic of MTP. Both are in
-  /// the same chunk, so those of other chunks, and their memory, are released.
-  void keep(const std::string& topic, StoredMessage stored) {
-    if (!beside_.empty() && beside_.begin()->second.owner != stored.owner) beside_.clear();
-    beside_[topic] = std::move(stored);
+  /// The next message with its companion, which comes before it; a companion without its message
+  /// comes alone. Nothing at the end.
+  Result<std::optional<StoredPair>> read_pair() {
+    while (alone_.empty()) {
+      auto stored = HC_TRY(reader_.next());
+      if (!stored) {
+        if (companions_.empty()) return std::optional<StoredPair>();
+        release_companions();
+        continue;
+      }
+      const auto& channel = *stored->channel;
+      const auto topic = channel.metadata.find(kCompanionKey);
+      if (!is_mtp(*stored) && topic != channel.metadata.end()) {
+        keep(topic->second, std::move(*stored));
+        continue;
+      }
+      StoredPair pair{std::move(*stored), std::nullopt};
+      const auto kept = companions_.find(channel.topic);
+      if (is_mtp(pair.message) && kept != companions_.end() &&
+          kept->second.record.sequence == pair.message.record.sequence)
+        pair.companion = std::move(companions_.extract(kept).mapped());
+      return std::optional(std::move(pair));
+    }
+    StoredPair pair{std::move(alone_.front()), std::nullopt};
+    alone_.pop_front();
+    return std::optional(std::move(pair));
   }
 
-  /// The message of MTP, with the elements of the one beside it where they are there.
-  Result<Message> rebuild(const StoredMessage& stored) {
+  /// Keeps the companion of the next message of a topic. They are in the same chunk, so those of
+  /// other chunks, and their memory, are released.
+  void keep(const std::string& topic, StoredMessage stored) {
+    if (!companions_.empty() && companions_.begin()->second.owner != stored.owner)
+      release_companions();
+    const auto [kept, is_new] = companions_.try_emplace(topic, stored);
+    if (!is_new) alone_.push_back(std::exchange(kept->second, std::move(stored)));
+  }
+  void release_companions() {
+    for (auto& [topic, companion] : companions_) alone_.push_back(std::move(companion));
+    companions_.clear();
+  }
+
+  /// The message of MTP, with the elements of its companion where they are there.
+  Result<Message> rebuild(const StoredPair& pair) {
+    const auto& stored = pair.message;
     const auto& topic = stored.channel->topic;
     auto wrong = [&](const std::string& what) {
       return Error{Code::Malformed, "MCAP: " + topic + ": " + what};
@@ -108,14 +142,14 @@ class McapReader final : public Reader {
     auto elements = matrix->elements.bytes;
     auto owner = stored.owner;
     if (matrix->offset > 0) {
-      const auto beside = beside_.find(topic);
-      if (beside == beside_.end() || beside->second.record.sequence != stored.record.sequence)
-        return wrong("message " + std::to_string(header->seq) + " lacks the one beside it");
-      const auto data = beside->second.data;
+      if (!pair.companion)
+        return wrong("message " + std::to_string(header->seq) +
+                     " lacks the message for viewers that has its elements");
+      const auto data = pair.companion->data;
       if (matrix->offset > data.size() || matrix->size > data.size() - matrix->offset)
-        return wrong("elements reach over the end of the message beside");
+        return wrong("elements reach over the end of the message for viewers");
       elements = data.subspan(matrix->offset, matrix->size);
-      owner = beside->second.owner;
+      owner = pair.companion->owner;
     }
     Message message{*header, elements, std::move(owner), 0};
     if (message.plain() && elements.size() != header->element_bytes())
@@ -133,10 +167,13 @@ class McapReader final : public Reader {
 
   mcap::Reader reader_;
   const Limits limits_;
+  const Topics topics_;
   Traffic traffic_;
   std::string stream_;  // of the last message
   std::int64_t log_time_ = 0;
-  std::map<std::string, StoredMessage> beside_;  // the last, by the topic of MTP
+  std::optional<StoredPair> ahead_;
+  std::map<std::string, StoredMessage> companions_;  // the last, by the topic of MTP
+  std::deque<StoredMessage> alone_;                  // companions that have lost their message
 };
 
 }  // namespace
@@ -157,9 +194,9 @@ std::vector<StreamInfo> streams_of(const Summary& summary) {
   }
   for (const auto& [id, channel] : summary.channels) {
     const auto* schema = schema_of(summary, channel);
-    const auto beside = channel.metadata.find(kBesideKey);
-    if (beside == channel.metadata.end() || is_matrix(channel, schema)) continue;
-    const auto stream = by_topic.find(beside->second);
+    const auto topic = channel.metadata.find(kCompanionKey);
+    if (topic == channel.metadata.end() || is_matrix(channel, schema)) continue;
+    const auto stream = by_topic.find(topic->second);
     if (stream == by_topic.end()) continue;
     auto& info = all[stream->second];
     info.channels.push_back(id);
@@ -170,7 +207,7 @@ std::vector<StreamInfo> streams_of(const Summary& summary) {
 }
 
 Result<std::unique_ptr<Reader>> read_mcap(const Place& place, const LinkOptions& options,
-                                          bool all) {
+                                          Topics topics) {
   for (const auto& [key, value] : place.uri.options)
     if (key != "stream")
       return Error{Code::Invalid,
@@ -182,6 +219,7 @@ Result<std::unique_ptr<Reader>> read_mcap(const Place& place, const LinkOptions&
   const auto& summary = reader->summary();
   // Of a file without its end, channels that only chunks declare may not be known yet.
   const auto known = streams_of(summary);
+  const bool all = topics == Topics::All;
   if (!all && known.empty() && !summary.channels.empty() && summary.is_whole)
     return Error{Code::Unsupported, place.path + ": a recording of " +
                                         std::to_string(summary.channels.size()) +
@@ -200,7 +238,7 @@ Result<std::unique_ptr<Reader>> read_mcap(const Place& place, const LinkOptions&
         channels.insert(each.channels.begin(), each.channels.end());
     reader->select(std::move(channels));
   }
-  return std::unique_ptr<Reader>(new McapReader(std::move(*reader), options.limits));
+  return std::unique_ptr<Reader>(new McapReader(std::move(*reader), options.limits, topics));
 }
 
 }  // namespace hc::record

@@ -172,6 +172,76 @@ std::size_t offset_of(Opcode opcode, int number, const std::string& file) {
   return at;
 }
 
+/// A file without its end, as a recorder that was killed leaves it: all of its chunks.
+std::string without_end(const std::string& file) {
+  return file.substr(0, offset_of(Opcode::DataEnd, 0, file));
+}
+
+TEST_F(Mcap, FilesThatAreCutOffAreMergedByTimeAndSaidOnce) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  ManualClock clock;
+  for (const char* name : {"a.mcap", "b.mcap"}) {
+    auto options = chunks_of(1 << 20);
+    options.clock = &clock;
+    clock.set_wall(2 * kSecond);
+    auto writer = writer_of(in(name), options);
+    const auto stream = *writer->add_stream(name);
+    ASSERT_TRUE(writer->add(stream, image(1), kSecond));
+    ASSERT_TRUE(writer->log({"a", Level::Info, "a line"}));  // which is not of MTP
+    ASSERT_TRUE(writer->add(stream, image(2), 4 * kSecond));
+    ASSERT_TRUE(writer->close().status);
+    write(name, without_end(bytes_of(in(name))));
+  }
+  auto writer = writer_of(in("c.mcap"));
+  const auto stream = *writer->add_stream("c");
+  for (const auto time : {3 * kSecond, 5 * kSecond})
+    ASSERT_TRUE(writer->add(stream, image(3), time));
+  ASSERT_TRUE(writer->close().status);
+  const auto played = play({in("a.mcap"), in("b.mcap"), in("c.mcap")});
+  EXPECT_EQ(played.times, (std::vector<std::int64_t>{kSecond, kSecond, 3 * kSecond, 4 * kSecond,
+                                                     4 * kSecond, 5 * kSecond}));
+  ASSERT_TRUE(played.error);
+  EXPECT_EQ(played.error->code, Code::Truncated);
+  for (const char* name : {"a.mcap: ", "b.mcap: "})
+    EXPECT_NE(played.error->detail.find(in(name)), std::string::npos) << played.error->detail;
+}
+
+TEST_F(Mcap, AFileThatIsCutOffEndsOnce) {
+  record_images(in("x.mcap"), 3);
+  write("cut.mcap", without_end(bytes_of(in("x.mcap"))));
+  auto source = open_source(in("cut.mcap"), {});
+  ASSERT_TRUE(source);
+  Message message;
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(*(*source)->take(message), Got::Message);
+  EXPECT_EQ((*source)->take(message).error().code, Code::Truncated);
+  ASSERT_TRUE((*source)->resume());
+  EXPECT_EQ(*(*source)->take(message), Got::End);
+}
+
+TEST_F(Mcap, AMessageIsInTheChunkOfItsCompanion) {
+  const auto all = record_images(in("x.mcap"), 20, chunks_of(1 << 20));
+  auto writer = writer_of(in("y.mcap"), chunks_of(1));
+  auto reader = *Reader::open({place_of(in("x.mcap"))}, {}, writer->copied_topics());
+  const auto live = *writer->add_stream("live");
+  for (auto copied = Result<bool>(true); copied && *copied;) {
+    copied = writer->copy(*reader);
+    ASSERT_TRUE(writer->add(live, image(0, 1), 1));  // ends a chunk
+  }
+  ASSERT_TRUE(writer->close().status);
+  EXPECT_EQ(play(in("y.mcap?stream=eye.left")).messages, all);
+  auto stored = mcap::Reader::open(in("y.mcap"));
+  std::map<std::string, std::shared_ptr<const void>> chunks;  // of the last message of a topic
+  int pairs = 0;
+  for (auto next = stored->next(); next && *next; next = stored->next()) {
+    const auto& topic = (*next)->channel->topic;
+    chunks[topic] = (*next)->owner;
+    if (topic != "/eye/left/mtp") continue;
+    EXPECT_EQ(chunks["/eye/left"], chunks[topic]) << ++pairs;
+    ++pairs;
+  }
+  EXPECT_EQ(pairs, 20);
+}
+
 TEST_F(Mcap, DamageIsFoundAndPassedOver) {
   const auto all = record_images(in("x.mcap"), 12);
   const std::string whole = bytes_of(in("x.mcap"));
@@ -305,6 +375,39 @@ TEST_F(Mcap, FilesOfOthersAreReadWholeAndByTime) {
   EXPECT_NE(refused.error->detail.find("2 topics, none of them made here"), std::string::npos);
   // A copy has all of it.
   EXPECT_EQ(topics_of(summary_of(copy({in("x.mcap")}, "y.mcap"))), topics_of(reader->summary()));
+}
+
+TEST_F(Mcap, CompanionsWithoutTheirMessagesAreCopied) {
+  ForeignFile file;
+  file.out.add(Opcode::Channel, std::uint16_t{1}, std::uint16_t{0}, "/a", "json",
+               StringMap{{kCompanionKey, "/a/mtp"}});
+  RecordWriter first, second;
+  for (const std::uint64_t time : {1, 2}) file.add_message(first, 1, time);
+  file.add_chunk(first, 1, 2, "");
+  file.add_message(second, 1, 3);
+  file.add_chunk(second, 3, 3, "");
+  write("x.mcap", file.bytes());
+  EXPECT_EQ(topics_of(summary_of(copy({in("x.mcap")}, "y.mcap"))),
+            (std::map<std::string, std::uint64_t>{{"/a", 3}}));
+}
+
+TEST_F(Mcap, TopicsOfOneNameAndTwoDefinitionsStayTwo) {
+  const auto write_topic = [&](const std::string& name, const std::string& text) {
+    ForeignFile file;
+    file.out.add(Opcode::Schema, std::uint16_t{1}, "robot/msg/Status", "ros2msg", text);
+    file.out.add(Opcode::Channel, std::uint16_t{1}, std::uint16_t{1}, "/status", "cdr",
+                 StringMap());
+    file.add_message(file.out, 1, 1);
+    return write(name, file.bytes());
+  };
+  const auto one = write_topic("a.mcap", "int32 volts"), two = write_topic("b.mcap", "int64 volts"),
+             same = write_topic("c.mcap", "int32 volts");
+  const auto summary = summary_of(copy({one, two, same}, "all.mcap"));
+  EXPECT_EQ(topics_of(summary),
+            (std::map<std::string, std::uint64_t>{{"/status", 2}, {"/status_2", 1}}));
+  for (const auto& [id, channel] : summary.channels)
+    EXPECT_EQ(summary.schemas.at(channel.schema).text,
+              channel.topic == "/status" ? "int32 volts" : "int64 volts");
 }
 
 TEST_F(Mcap, WhatCannotBeReadIsSaid) {
@@ -458,6 +561,25 @@ TEST_F(Mcap, ARecordingIsSplitAndItsOldestFilesAreRemoved) {
   EXPECT_TRUE(std::equal(messages.rbegin(), messages.rend(), all.rbegin()));
 }
 
+TEST_F(Mcap, OfEachStaticFrameTheLatestIsRepeated) {
+  auto options = chunks_of();
+  std::vector<Place> places;
+  for (const char* cup : {"1 2 3", "4 5 6", "7 8 9"}) {
+    options.frames = "head 3 robot 1 2 3 0 0 0 1; cup 200 head " + std::string(cup) + " 0 0 0 1";
+    places.push_back(place_of(in(std::string(1, cup[0]) + ".mcap")));
+    record_images(places.back().path, cup[0] == '7' ? 20 : 1, options);
+  }
+  options = chunks_of();
+  options.split = 20000;
+  auto writer = writer_of(in("all.mcap"), options);
+  auto reader = *Reader::open(places, {}, writer->copied_topics());
+  for (auto copied = Result<bool>(true); copied && *copied;) copied = writer->copy(*reader);
+  const auto& written = writer->close();
+  ASSERT_GT(written.files.size(), 1U);
+  EXPECT_EQ(topics_of(summary_of(written.files.front()))["/tf_static"], 3U);
+  EXPECT_EQ(topics_of(summary_of(written.files.back()))["/tf_static"], 1U);
+}
+
 /// A `transformation` along x, from a neck of address 11.
 Message pose(std::int32_t coord, double x) {
   auto draft = Draft::make({MatrixType::Transformation, 1, Scalar::F64, Encoding::Binary}, 4, 4);
@@ -552,6 +674,17 @@ TEST_F(Mcap, WhatWasLastIsSaved) {
   EXPECT_LE(summary.end - summary.begin, 15 * kSecond);  // what holds for long is as new
   EXPECT_EQ(topics_of(summary)["/tf_static"], 1U);
   EXPECT_EQ(play(in("x_0002.mcap")).messages.back(), encode(image(69)));
+}
+
+TEST_F(Mcap, NothingIsSavedAfterTheEnd) {
+  std::vector<std::string> said;
+  auto options = chunks_of();
+  options.last = std::chrono::seconds(10);
+  options.log = [&](Level, std::string_view line) { said.emplace_back(line); };
+  auto writer = writer_of(in("x.mcap"), options);
+  ASSERT_TRUE(writer->close().status);
+  writer->save();
+  EXPECT_EQ(said, std::vector<std::string>{"not saved: the recording has ended"});
 }
 
 TEST_F(Mcap, Crc32IsThatOfZlib) {

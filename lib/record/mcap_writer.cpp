@@ -5,6 +5,8 @@
 #include <array>
 
 #include <hc/mtp/coords.h>
+#include <ros/cdr.h>
+#include <ros/messages.h>
 
 namespace hc::record {
 namespace {
@@ -49,6 +51,25 @@ std::string topic_of(std::string_view name) {
 Error no_room() {
   return {Code::TooLarge, "MCAP: a file has room for " + std::to_string(kMostChannels) +
                               " topics, two for each stream; record fewer streams in one file"};
+}
+
+std::string key_of(const mcap::SchemaRecord& schema) {
+  return schema.name + '\0' + schema.encoding + '\0' + schema.text;
+}
+
+mcap::SchemaRecord schema_of(ros::Type type) {
+  const auto& schema = ros::schema(type);
+  return {0, schema.name, "ros2msg", schema.text};
+}
+
+/// The child frames that a message of /tf_static is about: as in tf2, a later message replaces what
+/// it says of each.
+std::set<std::string> frames_of(std::span<const std::byte> message) {
+  std::set<std::string> frames;
+  if (const auto tf = ros::CdrReader::read<ros::TfMessage>(message))
+    for (const auto& each : tf->transforms) frames.insert(each.child_frame_id);
+  if (frames.empty()) frames.emplace();  // all that cannot be read are about the same
+  return frames;
 }
 
 std::vector<std::byte> joined(const ros::Pieces& data) {
@@ -102,7 +123,7 @@ void McapWriter::add_stream(const std::string& name) {
 
 std::uint16_t McapWriter::add_channel(mcap::ChannelRecord channel, mcap::SchemaRecord schema) {
   if (!schema.name.empty()) {
-    auto& number = schemas_[schema.name + '\0' + schema.encoding + '\0' + schema.text];
+    auto& number = schemas_[key_of(schema)];
     if (number == 0) {
       number = schema.id = static_cast<std::uint16_t>(schemas_.size());
       static_cast<void>(repeat(std::move(schema)));
@@ -116,10 +137,8 @@ std::uint16_t McapWriter::add_channel(mcap::ChannelRecord channel, mcap::SchemaR
 
 std::uint16_t McapWriter::add_channel(const std::string& topic, ros::Type type,
                                       StringMap metadata) {
-  const auto& schema = ros::schema(type);
   metadata["offered_qos_profiles"] = quality_of_service(topic == kStaticFrames);
-  return add_channel({0, 0, topic, "cdr", std::move(metadata)},
-                     {0, schema.name, "ros2msg", schema.text});
+  return add_channel({0, 0, topic, "cdr", std::move(metadata)}, schema_of(type));
 }
 
 std::uint16_t McapWriter::channel(Stream& stream, ros::Type type) {
@@ -133,11 +152,11 @@ std::uint16_t McapWriter::channel(Stream& stream, ros::Type type) {
     topic = take_name(topics_, topic + (type == ros::Type::CompressedImage
                                             ? "/compressed"
                                             : "/as_" + std::to_string(static_cast<int>(type))));
-  return number = add_channel(topic, type, {{kBesideKey, stream.matrix_topic}});
+  return number = add_channel(topic, type, {{kCompanionKey, stream.matrix_topic}});
 }
 
 std::uint16_t McapWriter::other_channel(std::string_view topic, ros::Type type) {
-  auto& number = other_channels_[{std::string(topic), ros::schema(type).name}];
+  auto& number = other_channels_[{std::string(topic), "cdr" + key_of(schema_of(type))}];
   if (number == 0) number = add_channel(std::string(topic), type, {});
   return number;
 }
@@ -148,15 +167,15 @@ std::uint16_t McapWriter::copied_channel(const mcap::StoredMessage& message, con
   auto copy = *message.channel;
   const auto schema = message.schema != nullptr ? *message.schema : mcap::SchemaRecord();
   const auto stream = copy.metadata.find(kStreamKey);
-  const auto beside = copy.metadata.find(kBesideKey);
+  const auto companion = copy.metadata.find(kCompanionKey);
   auto topic_here = [&](const std::string& topic) {
     auto& here = copied_topics_[{from, topic}];
     if (here.empty()) here = take_name(topics_, topic);
     return here;
   };
-  // Topics of streams stay separate; others of the same name and type become one.
-  if (stream == copy.metadata.end() && beside == copy.metadata.end()) {
-    auto& other = other_channels_[{copy.topic, schema.name}];
+  // Topics of streams stay separate; others of the same name and definition become one.
+  if (stream == copy.metadata.end() && companion == copy.metadata.end()) {
+    auto& other = other_channels_[{copy.topic, copy.encoding + key_of(schema)}];
     if (other == 0) {
       const bool is_common =
           copy.topic == kStaticFrames || copy.topic == kFrames || copy.topic == kLog;
@@ -166,7 +185,7 @@ std::uint16_t McapWriter::copied_channel(const mcap::StoredMessage& message, con
     return number = other;
   }
   copy.topic = topic_here(copy.topic);
-  if (beside != copy.metadata.end()) beside->second = topic_here(beside->second);
+  if (companion != copy.metadata.end()) companion->second = topic_here(companion->second);
   if (stream != copy.metadata.end()) stream->second = take_name(names_, stream->second);
   return number = add_channel(std::move(copy), schema);
 }
@@ -180,22 +199,32 @@ void McapWriter::add(std::uint16_t channel, std::uint32_t sequence, std::int64_t
              pieces);
 }
 
-Status McapWriter::copy(const mcap::StoredMessage& message, const void* from) {
-  if (!copied_.contains(message.channel) && last_channel_ >= kMostChannels) return no_room();
+void McapWriter::add_copy(const mcap::StoredMessage& message, const void* from) {
   const auto& record = message.record;
-  const auto channel = copied_channel(message, from);
-  if (message.channel->topic == kStaticFrames)
-    return repeat(mcap::Lasting{
-        channel, record.sequence, record.log_time, {message.data.begin(), message.data.end()}});
-  add(channel, record.sequence, static_cast<std::int64_t>(record.log_time),
+  add(copied_channel(message, from), record.sequence, static_cast<std::int64_t>(record.log_time),
       static_cast<std::int64_t>(record.publish_time), {{}, message.data, {}});
+}
+
+Status McapWriter::copy(const StoredPair& pair, const void* from) {
+  const std::lock_guard lock(chunk_mutex_);
+  const auto& [message, companion] = pair;
+  const bool is_known =
+      copied_.contains(message.channel) && (!companion || copied_.contains(companion->channel));
+  if (!is_known && last_channel_ >= kMostChannels) return no_room();
+  if (message.channel->topic == kStaticFrames)
+    return repeat(mcap::Lasting{copied_channel(message, from),
+                                message.record.sequence,
+                                message.record.log_time,
+                                {message.data.begin(), message.data.end()},
+                                frames_of(message.data)});
+  if (companion) add_copy(*companion, from);
+  add_copy(message, from);
   if (is_mtp(message)) ++chunk_.messages;
-  // A message of MTP is in the same chunk as the one beside it, which comes first.
-  if (message.channel->metadata.contains(kBesideKey)) return {};
   return flush_if_due();
 }
 
 Status McapWriter::write(std::size_t number, const Message& message, std::int64_t time) {
+  const std::lock_guard lock(chunk_mutex_);
   if (!joints_.root.empty()) record_fixed_frames(time);
   const Header& header = message.header;
   Stream& stream = streams_[number];
@@ -243,6 +272,7 @@ void McapWriter::add_other(std::string_view topic, ros::Type type, std::int64_t 
 }
 
 Status McapWriter::log(std::int64_t time, const LogLine& line) {
+  const std::lock_guard lock(chunk_mutex_);
   add_other(kLog, ros::Type::Log, time, encoder_.encode_log(time, line));
   return flush_if_due();
 }
@@ -254,8 +284,10 @@ void McapWriter::record_fixed_frames(std::int64_t time) {
   joints_.root.clear();
   for (auto& joint : fixed) joint.time = time;
   const auto number = other_channel(kStaticFrames, ros::Type::TfMessage);
+  auto data = joined(encoder_.encode(fixed));
+  auto frames = frames_of(data);
   static_cast<void>(repeat(mcap::Lasting{number, ++others_, static_cast<std::uint64_t>(time),
-                                         joined(encoder_.encode(fixed))}));
+                                         std::move(data), std::move(frames)}));
 }
 
 Status McapWriter::metadata(const std::string& name, const StringMap& words) {
@@ -267,18 +299,15 @@ Status McapWriter::repeat(mcap::Storage::Repeated record) {
 }
 
 Status McapWriter::flush_if_due() {
-  return chunk_.size() >= chunk_bytes_ ? flush() : poll();
-}
-
-Status McapWriter::poll() {
-  if (!chunk_.empty() && std::chrono::steady_clock::now() - chunk_begun_ >= kChunkTime)
-    return flush();
+  const bool is_due = chunk_.size() >= chunk_bytes_ ||
+                      std::chrono::steady_clock::now() - chunk_begun_ >= kChunkTime;
+  if (is_due && !chunk_.empty()) return flush();
   const std::lock_guard lock(mutex_);
   return status_;
 }
 
 Status McapWriter::flush() {
-  if (chunk_.empty()) return poll();
+  if (chunk_.empty()) return {};
   const auto bytes = chunk_.size();
   const auto messages = chunk_.messages;
   auto write = [this, chunk = std::exchange(chunk_, {})] { return storage_.add(chunk.pack()); };
@@ -295,6 +324,8 @@ Status McapWriter::enqueue(Job job) {
 }
 
 Result<std::string> McapWriter::save() {
+  if (is_closed_) return status_ ? Error{Code::Closed, "the recording has ended"} : status_.error();
+  const std::lock_guard chunk(chunk_mutex_);
   static_cast<void>(flush());
   Result<std::string> saved = Error{};
   static_cast<void>(enqueue({[&] {
@@ -308,6 +339,7 @@ Result<std::string> McapWriter::save() {
 
 Status McapWriter::close() {
   if (!std::exchange(is_closed_, true)) {
+    const std::lock_guard chunk(chunk_mutex_);
     static_cast<void>(flush());
     {
       const std::lock_guard lock(mutex_);
@@ -324,7 +356,14 @@ Status McapWriter::close() {
 void McapWriter::work() {
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [&] { return is_ending_ || !jobs_.empty(); });
+    if (!changed_.wait_for(lock, kChunkTime / 2, [&] { return is_ending_ || !jobs_.empty(); })) {
+      lock.unlock();
+      // A call that has the chunk looks for itself at its end.
+      if (const std::unique_lock chunk(chunk_mutex_, std::try_to_lock); chunk)
+        static_cast<void>(flush_if_due());
+      lock.lock();
+      continue;
+    }
     if (jobs_.empty()) return;
     const Job& job = jobs_.front();
     if (status_) {

@@ -2,7 +2,8 @@
 #pragma once
 // Writes streams to MCAP. Each has a topic with messages of ROS 2 for viewers, and a topic `…/mtp`
 // with what those lack, so that its messages can be read back byte for byte (doc/recordings.md).
-// Chunks are compressed and written on a second thread. Internal to record.
+// Chunks are compressed and written on a second thread, full ones at once and others when they are
+// half a second old. Internal to record.
 
 #include <chrono>
 #include <condition_variable>
@@ -52,13 +53,11 @@ class McapWriter {
   /// Errors: TooLarge (the file has no room for another channel; other streams can go on).
   Status write(std::size_t stream, const Message& message, std::int64_t log_time);
   /// Copies a message of another file. `from` identifies the file. Errors: as write().
-  Status copy(const mcap::StoredMessage& message, const void* from);
+  Status copy(const StoredPair& pair, const void* from);
   /// Writes a line of the log on the topic /rosout, by ros::Encoder::encode_log().
   Status log(std::int64_t time, const LogLine& line);
   Status metadata(const std::string& name, const mcap::StringMap& words);
-  /// Writes the chunk that is being collected, if it is old enough.
-  Status poll();
-  /// As Storage::save().
+  /// As Storage::save(). Errors: also Closed.
   Result<std::string> save();
   Status close();
 
@@ -100,9 +99,12 @@ class McapWriter {
   /// Adds a message of no stream.
   void add_other(std::string_view topic, ros::Type type, std::int64_t time,
                  const ros::Pieces& data);
+  /// Adds a message of another file to the chunk.
+  void add_copy(const mcap::StoredMessage& message, const void* from);
   /// Writes what each file contains.
   Status repeat(mcap::Storage::Repeated record);
-  /// Passes the chunk to the thread: if it is full or old, or in any case.
+  /// Passes the chunk to the thread: if it is full or old, or in any case. Never between a message
+  /// and its companion: whoever adds them holds chunk_mutex_.
   Status flush_if_due();
   Status flush();
   Status enqueue(Job job);
@@ -121,6 +123,7 @@ class McapWriter {
   // Of other files: their channels here, and how their topics are called here.
   std::map<const mcap::ChannelRecord*, std::uint16_t> copied_;
   std::map<std::pair<const void*, std::string>, std::string> copied_topics_;
+  std::mutex chunk_mutex_;  // of the next two; locked before mutex_
   mcap::ChunkBuilder chunk_;
   std::chrono::steady_clock::time_point chunk_begun_;
   std::uint32_t others_ = 0;  // messages of log and joints

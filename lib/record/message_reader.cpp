@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of messages as recordings, with log times made from the times of the messages.
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -61,19 +62,19 @@ class MessageReader final : public Reader {
     if (times_.last < start_) ahead_.reset();
   }
 
-  Result<std::vector<StreamInfo>> streams(bool counted) override {
+  Result<std::vector<StreamInfo>> streams(StreamDetail detail) override {
     StreamInfo info{name_, "", 0, 0, 0, {}};
-    if (!counted) return std::vector{std::move(info)};
-    auto all = read_messages(place_, options_);
-    if (!all) return all.error();
+    if (detail == StreamDetail::Names) return std::vector{std::move(info)};
+    auto all = HC_TRY(read_messages(place_, options_));
     Message message;
-    for (auto got = (*all)->take(message); got && *got == Got::Message;
-         got = (*all)->take(message)) {
-      info.end = (*all)->log_time();
+    auto got = all->take(message);
+    for (; got && *got == Got::Message; got = all->take(message)) {
+      info.end = all->log_time();
       if (info.messages++ > 0) continue;
       info.begin = info.end;
       info.type = name(message.header.info.type);
     }
+    if (!got) info.status = got.error();
     return std::vector{std::move(info)};
   }
 
@@ -91,10 +92,14 @@ class MessageReader final : public Reader {
     return Got::Message;
   }
 
-  /// The time of the first message with a time near the begin of the file, or 0.
+  /// The time of the first message with a time near the begin of the file, or 0. What is read from
+  /// a FIFO or device is gone, so only a file is read twice.
   std::int64_t first_time() {
     constexpr std::uint64_t kNear = std::uint64_t{64} << 20;  // [byte]
-    if (std::exchange(has_looked_, true) || place_.kind == Place::Kind::Link) return 0;
+    std::error_code unknown;
+    if (std::exchange(has_looked_, true) || place_.kind == Place::Kind::Link ||
+        !std::filesystem::is_regular_file(place_.path, unknown))
+      return 0;
     auto source = hc::open_source(place_.uri, options_);
     Message message;
     while (source && (*source)->traffic().bytes < kNear) {

@@ -26,16 +26,12 @@ class MergedReader final : public Reader {
 
   Result<Got> take(Message& message) override {
     message = {};
-    while (true) {
-      auto next = next_time();
-      if (!next) return next.error();
-      if (!*next) return Got::End;
-      auto got = last_->reader->take(message);
-      if (got && *got == Got::End) continue;  // of MCAP, it had other messages
-      if (!got) return named(got.error());
-      if (last_->reader->log_time() != 0) time_ = last_->reader->log_time();
-      return got;
-    }
+    auto next = HC_TRY(next_time());
+    if (!next) return Got::End;
+    auto got = last_->reader->take(message);
+    if (!got) return failed(got.error());
+    if (last_->reader->log_time() != 0) time_ = last_->reader->log_time();
+    return got;
   }
 
   Result<std::optional<std::int64_t>> next_time() override {
@@ -45,8 +41,8 @@ class MergedReader final : public Reader {
       if (file.has_ended) continue;
       last_ = &file;
       auto next = file.reader->next_time();
-      if (!next && next.error().code != Code::Truncated) return named(next.error());
-      if (!next) truncated_ = named(next.error());
+      if (!next && next.error().code != Code::Truncated) return failed(next.error());
+      if (!next) add_truncated(next.error());
       file.has_ended = !next || !*next;
       if (file.has_ended) continue;
       if (!least || **next < *least) {
@@ -56,7 +52,7 @@ class MergedReader final : public Reader {
       if (**next != 0 && (!least_known || **next < *least_known)) least_known = *next;
     }
     if (first != nullptr) last_ = first;
-    if (!least && truncated_) return *truncated_;
+    if (!least && truncated_) return *std::exchange(truncated_, std::nullopt);
     if (time_ == 0) time_ = least_known.value_or(0);
     return least;
   }
@@ -64,7 +60,10 @@ class MergedReader final : public Reader {
   [[nodiscard]] std::int64_t log_time() const override { return time_; }
   [[nodiscard]] std::string_view stream() const override { return last_->reader->stream(); }
   [[nodiscard]] int descriptor() const override { return last_->reader->descriptor(); }
-  Status resume() override { return last_->reader->resume(); }
+  Status resume() override {
+    Reader* reader = std::exchange(failed_, nullptr);
+    return reader != nullptr ? reader->resume() : Status();  // of Truncated: the others are read
+  }
   Reader& front() override { return *last_->reader; }
   void start_at(std::int64_t log_time) override {
     for (auto& file : files_) file.reader->start_at(log_time);
@@ -74,10 +73,10 @@ class MergedReader final : public Reader {
     for (const auto& file : files_) all += file.reader->traffic();
     return all;
   }
-  Result<std::vector<StreamInfo>> streams(bool counted) override {
+  Result<std::vector<StreamInfo>> streams(StreamDetail detail) override {
     std::vector<StreamInfo> all;
     for (auto& file : files_) {
-      auto streams = file.reader->streams(counted);
+      auto streams = file.reader->streams(detail);
       if (!streams) return streams.error();
       std::ranges::move(*streams, std::back_inserter(all));
     }
@@ -97,10 +96,22 @@ class MergedReader final : public Reader {
   [[nodiscard]] Error named(const Error& error) const {
     return {error.code, last_->place + ": " + error.detail};
   }
+  Error failed(const Error& error) {
+    failed_ = last_->reader.get();
+    return named(error);
+  }
+  /// Keeps what is to be said at the end of all files.
+  void add_truncated(const Error& error) {
+    if (truncated_)
+      truncated_->detail += "; " + named(error).detail;
+    else
+      truncated_ = named(error);
+  }
 
   std::vector<File> files_;
   File* last_ = files_.data();      // that had the last message, or has the next
-  std::optional<Error> truncated_;  // of one that has no end
+  Reader* failed_ = nullptr;        // that is to be resumed
+  std::optional<Error> truncated_;  // of those that have no end
   std::int64_t time_ = 0;
 };
 
@@ -133,13 +144,13 @@ Result<std::vector<Place>> files_of(const Place& folder) {
 }  // namespace
 
 Result<std::unique_ptr<Reader>> Reader::open(const std::vector<Place>& places,
-                                             const LinkOptions& options, bool all) {
+                                             const LinkOptions& options, Topics topics) {
   std::vector<MergedReader::File> opened;
   for (const auto& place : places) {
     auto files = place.kind == Place::Kind::Folder ? files_of(place) : std::vector{place};
     if (!files) return files.error();
     for (const auto& file : *files) {
-      auto reader = file.kind == Place::Kind::Mcap ? read_mcap(file, options, all)
+      auto reader = file.kind == Place::Kind::Mcap ? read_mcap(file, options, topics)
                                                    : read_messages(file, options);
       if (!reader) return reader.error();
       opened.push_back({std::move(*reader), file.text()});

@@ -17,9 +17,9 @@
 
 namespace hc::record {
 
-/// Keys of the metadata of channels in MCAP: the stream that a channel of MTP is; on a channel for
-/// viewers, the topic of the channel of MTP with the same messages.
-inline constexpr const char *kStreamKey = "hypercolumn.stream", *kBesideKey = "hypercolumn.mtp";
+/// Keys of the metadata of channels in MCAP: the stream that a channel of MTP is; on its companion,
+/// the channel for viewers, the topic of the channel of MTP with the same messages.
+inline constexpr const char *kStreamKey = "hypercolumn.stream", *kCompanionKey = "hypercolumn.mtp";
 
 /// A stream of a recording.
 struct StreamInfo {
@@ -28,6 +28,25 @@ struct StreamInfo {
   std::uint64_t messages = 0;
   std::int64_t begin = 0, end = 0;      ///< first and last log time, not in MCAP [ns]
   std::vector<std::uint16_t> channels;  ///< in MCAP
+  Status status = {};                   ///< why it could not be counted to its end
+};
+
+/// A message as MCAP stores it, and its companion: the message for viewers with the same sequence,
+/// which may have its elements. Both have to be in the same chunk.
+struct StoredPair {
+  mcap::StoredMessage message;
+  std::optional<mcap::StoredMessage> companion;
+};
+
+/// What is read of MCAP files.
+enum class Topics {
+  Mtp,  ///< messages of MTP
+  All,  ///< all messages, by take_stored() alone
+};
+
+enum class StreamDetail {
+  Names,
+  Counts,  ///< with counts and times, for which files of messages are read to their end
 };
 
 /// The streams of MTP in an MCAP file, by name.
@@ -40,19 +59,19 @@ class Reader : public Source {
  public:
   /// @param places  recordings, or `-`. A folder has one stream for each file; a file of messages
   ///     is one stream with the name of the file.
-  /// @param all  for take_raw(): read all channels of MCAP files, not only those of MTP.
   ///
   /// Errors: NotFound (no such place or stream), Invalid, Malformed, Unsupported (MCAP without
   /// messages of MTP), System.
   static Result<std::unique_ptr<Reader>> open(const std::vector<Place>& places,
-                                              const LinkOptions& options, bool all = false);
+                                              const LinkOptions& options,
+                                              Topics topics = Topics::Mtp);
 
   // take() returns messages by log time, those with equal times in the order of places and files.
   // Files of messages have no log times: those of their messages are used, made monotonic. Where
   // they jump back by more than a second (a clock was set), the jump is removed. A message without
   // a time gets the time before it, at the begin of a file the first one that there is. Errors of
-  // take(): Truncated (at the end, after all complete messages), Malformed, TooLarge, Unsupported,
-  // System; resume() continues after the damage.
+  // take(): Truncated (once, at the end, after all complete messages of all files), Malformed,
+  // TooLarge, Unsupported, System; resume() continues after the damage.
 
   /// Log time and stream of the last message. [ns since the Unix epoch]; 0: unknown.
   [[nodiscard]] virtual std::int64_t log_time() const = 0;
@@ -63,8 +82,7 @@ class Reader : public Source {
   /// Skips messages before this time. To be called before take().
   virtual void start_at(std::int64_t log_time) = 0;
 
-  /// @param counted  with counts and times, for which files of messages are read to their end.
-  virtual Result<std::vector<StreamInfo>> streams(bool counted = false) = 0;
+  virtual Result<std::vector<StreamInfo>> streams(StreamDetail detail = StreamDetail::Names) = 0;
   /// The newest metadata of each name, of MCAP.
   virtual Result<std::map<std::string, mcap::StringMap>> metadata() {
     return std::map<std::string, mcap::StringMap>();
@@ -78,9 +96,7 @@ class Reader : public Source {
   [[nodiscard]] virtual bool mixes_sources() const { return false; }
   /// The next message of MCAP as it is stored; nothing at the end, and if this is not MCAP.
   /// Errors: as take().
-  virtual Result<std::optional<mcap::StoredMessage>> take_raw() {
-    return std::optional<mcap::StoredMessage>();
-  }
+  virtual Result<std::optional<StoredPair>> take_stored() { return std::optional<StoredPair>(); }
 };
 
 /// Opens the link or recording that a word names, as place_of().
@@ -88,7 +104,8 @@ class Reader : public Source {
 Result<std::unique_ptr<Source>> open_source(std::string_view word, const LinkOptions& options);
 
 /// Readers of one file. Internal to record.
-Result<std::unique_ptr<Reader>> read_mcap(const Place& place, const LinkOptions& options, bool all);
+Result<std::unique_ptr<Reader>> read_mcap(const Place& place, const LinkOptions& options,
+                                          Topics topics);
 Result<std::unique_ptr<Reader>> read_messages(const Place& place, const LinkOptions& options);
 
 }  // namespace hc::record

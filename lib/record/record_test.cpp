@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recordings whatever they are written in; what is of MCAP alone is in mcap_test.cpp.
+#include <sys/stat.h>
+
+#include <array>
 #include <limits>
 
 #include <record/recording_test.h>
@@ -86,6 +89,16 @@ TEST_F(Recorded, OfAnEarlierProcessIsLeftAlone) {
   EXPECT_EQ((*open_folder(kept, {"b.out"}))->written().place, kept + "_4");
   for (const char* file : {"kept/a.out.mtp", "kept_2/a.out.mtp", "kept_3/a.out.mtp"})
     EXPECT_EQ(count(in(file)), 1U) << file;
+}
+
+TEST_F(Recorded, SaysTheFileThatItIsIn) {
+  for (const char* name : {"x.mtp", "x_2.mtp", "x_3.mtp"}) {
+    auto writer = writer_of(in("x.mtp"));
+    EXPECT_EQ(writer->written().place, in(name));
+    ASSERT_TRUE(writer->add(0, sized(1)));
+    EXPECT_EQ(writer->close().files, std::vector{in(name)});
+    EXPECT_EQ(count(in(name)), 1U);
+  }
 }
 
 TEST_F(Recorded, WrongNamesAreRefused) {
@@ -176,6 +189,27 @@ TEST_F(InOrder, AMessageWithoutATimeGoesWithTheOneBefore) {
   EXPECT_LT(play({copy({in("b.mtp")}, "b.mcap")}).duration(), kSecond * 60);
 }
 
+TEST_F(InOrder, AFifoIsReadOnce) {
+  ASSERT_EQ(::mkfifo(in("x.mtp").c_str(), 0600), 0);
+  auto reader = Reader::open({place_of(in("x.mtp"))}, {});
+  ASSERT_TRUE(reader) << reader.error().text();
+  std::ofstream fifo(in("x.mtp"), std::ios::binary);  // which has room for 1 MiB
+  for (int i = 0; i < 4; ++i) {
+    auto message = sized(200'000);
+    message.header.seq = i;
+    message.header.time = i == 0 ? 0 : kNow;  // the first has none
+    fifo << encode(message);
+  }
+  fifo.close();
+  Message message;
+  for (int i = 0; i < 4; ++i) {
+    auto got = receive(**reader, message);
+    ASSERT_TRUE(got) << got.error().text();
+    ASSERT_TRUE(*got) << i;
+    EXPECT_EQ(message.header.seq, i);
+  }
+}
+
 TEST_F(InOrder, AClockThatIsSetLosesNoMessageAndMakesNobodyWait) {
   const auto hour = 3600 * kSecond;
   const auto back = play({file("a.mtp", {kNow, kNow + kSecond, kNow + 2 * kSecond - hour,
@@ -212,9 +246,12 @@ TEST_F(InOrder, LogTimesGoByTheMonotonicClock) {
 
 TEST_F(InOrder, OneLinkMayCarrySeveralStreams) {
   auto writer = writer_of(in("x.mcap"));
+  const std::array<int, 2> from{};  // links
   for (int i = 0; i < 6; ++i)
-    ASSERT_TRUE(writer->add(*writer->stream_of(0, "eyes", 7 + i % 2), at(kNow, i, 7 + i % 2)));
-  ASSERT_TRUE(writer->add(*writer->stream_of(1, "eyes", 7), at(kNow, 0)));  // another of the name
+    ASSERT_TRUE(
+        writer->add(*writer->stream_of(&from[0], "eyes", 7 + i % 2), at(kNow, i, 7 + i % 2)));
+  ASSERT_TRUE(
+      writer->add(*writer->stream_of(&from[1], "eyes", 7), at(kNow, 0)));  // another of the name
   const auto place = writer->close().place;
   for (const auto& [name, count] : {std::pair("eyes", 3U), {"eyes.src_8", 3U}, {"eyes_2", 1U}})
     EXPECT_EQ(play({place + "?stream=" + name}).messages.size(), count) << name;
@@ -264,6 +301,12 @@ TEST_F(InOrder, AFileThatIsCutOffEndsThatStreamAlone) {
   ASSERT_TRUE(whole.error);
   EXPECT_EQ(whole.error->code, Code::Truncated);
   EXPECT_TRUE(whole.error->detail.starts_with(cut + ": ")) << whole.error->detail;
+  // Where they are counted it is said too.
+  const auto counted = *(*Reader::open({place_of(kept)}, {}))->streams(StreamDetail::Counts);
+  EXPECT_TRUE(counted.at(0).status);
+  EXPECT_EQ(counted.at(1).messages, 1U);
+  ASSERT_FALSE(counted.at(1).status);
+  EXPECT_EQ(counted.at(1).status.error().code, Code::Truncated);
 }
 
 TEST_F(InOrder, ThatGoOnContinueTheirFiles) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <hc/base/format.h>
+#include <hc/os/new_file.h>
 #include <record/mcap_writer.h>
 
 namespace hc::record {
@@ -50,8 +51,9 @@ Status Writer::begin(const Place& place) {
     std::error_code failed;
     is_new = fs::create_directories(written_.place, failed);
     if (failed) return Error{Code::System, written_.place + ": " + failed.message()};
-  } else if (auto begun = begin_file(place.path); !begun) {
-    return begun;
+  } else {
+    HC_TRY(begin_file(place.path));
+    written_.place = files_.front().path;
   }
   for (const auto& name : options_.streams) {
     auto added = add_stream(name);
@@ -67,13 +69,20 @@ Status Writer::begin(const Place& place) {
 }
 
 Status Writer::begin_file(const std::string& path) {
+  File file{path, {}, nullptr};
   Uri uri{"file", path, {}};
-  if (options_.append) uri.options = {{"append", "1"}};
+  if (options_.append) {
+    uri.options = {{"append", "1"}};
+  } else if (!is_written_in_place(path)) {  // begun here, to know its name
+    auto begun = HC_TRY(hc::begin_file(path));
+    file.path = std::move(begun.path);
+    file.lock = std::move(begun.descriptor);
+    uri.rest = "/proc/self/fd/" + std::to_string(file.lock.get());
+  }
   LinkOptions options;
   if (!is_folder_) options.log = options_.log;
-  auto sink = hc::open_sink(uri, options);
-  if (!sink) return sink.error();
-  files_.push_back({path, std::move(*sink)});
+  file.sink = HC_TRY(hc::open_sink(uri, options));
+  files_.push_back(std::move(file));
   return {};
 }
 
@@ -104,8 +113,8 @@ Result<std::size_t> Writer::add_stream(std::string_view name) {
   return names_.size() - 1;
 }
 
-Result<std::size_t> Writer::stream_of(std::size_t link, const std::string& name, std::int32_t src) {
-  auto& streams = links_[{link, name}];
+Result<std::size_t> Writer::stream_of(const void* from, const std::string& name, std::int32_t src) {
+  auto& streams = links_[{from, name}];
   const auto known = streams.find(src);
   if (known != streams.end()) return known->second;
   auto added = add_stream(streams.empty() ? name : name + ".src_" + std::to_string(src));
@@ -161,18 +170,19 @@ Result<bool> Writer::copy(Reader& reader) {
   if (!next) return next.error();
   if (!*next) return false;
   Reader& file = reader.front();
-  auto stored = copies_all() ? file.take_raw() : std::optional<mcap::StoredMessage>();
+  auto stored = mcap_ ? file.take_stored() : std::optional<StoredPair>();
   if (!stored) return stored.error();
   if (*stored) {
+    const auto& message = (*stored)->message;
     const auto write = [&] { return mcap_->copy(**stored, &file); };
-    auto done = is_mtp(**stored) ? record((*stored)->data.size(), write) : end_if_failed(write());
+    auto done = is_mtp(message) ? record(message.data.size(), write) : end_if_failed(write());
     return done ? Result<bool>(true) : done.error();
   }
   Message message;
   auto got = reader.take(message);
   if (!got || *got != Got::Message) return got ? Result<bool>(false) : got.error();
   const auto src = file.mixes_sources() ? message.header.src : 0;
-  auto stream = stream_of(reinterpret_cast<std::size_t>(&file), std::string(reader.stream()), src);
+  auto stream = stream_of(&file, std::string(reader.stream()), src);
   auto added = stream ? add(*stream, message, reader.log_time()) : stream.error();
   return added ? Result<bool>(true) : added.error();
 }
@@ -188,10 +198,6 @@ Status Writer::log(const LogLine& line) {
 
 Status Writer::metadata(const std::string& name, const mcap::StringMap& words) {
   return to_mcap([&] { return mcap_->metadata(name, words); });
-}
-
-Status Writer::poll() {
-  return to_mcap([&] { return mcap_->poll(); });
 }
 
 void Writer::save() {
@@ -219,6 +225,7 @@ Status Writer::end() {
     if (!closed && status) status = named(file, closed.error());
     written_.lost += file.sink->traffic().dropped_disconnect;
     file.sink.reset();
+    file.lock = {};
   }
   return status;
 }
@@ -244,8 +251,7 @@ class RecordingSink final : public Sink {
 
   Status send(const Message& message) override {
     const auto src = message.header.src;
-    auto stream =
-        writer_->stream_of(static_cast<std::size_t>(src), "src_" + std::to_string(src), src);
+    auto stream = writer_->stream_of(this, "src_" + std::to_string(src), src);
     return stream ? writer_->add(*stream, message) : Status(stream.error());
   }
   Status close() override { return writer_->close().status; }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Writes recordings: folders of files, files of messages, and MCAP. Existing recordings are never
-// overwritten: the new one gets a free name beside them. The first error, such as a full disk, ends
-// a recording; what was written until then can be read. An object is used by one thread.
+// overwritten: the new one gets a free name beside them. What was added is written within a
+// second. The first error, such as a full disk, ends a recording; what was written until then can
+// be read. An object is used by one thread.
 
 #include <cstdint>
 #include <map>
@@ -18,6 +19,7 @@
 #include <hc/base/log.h>
 #include <hc/contract/log_line.h>
 #include <hc/link/link.h>
+#include <hc/os/descriptor.h>
 #include <record/mcap/storage.h>
 #include <record/place.h>
 #include <record/reader.h>
@@ -42,7 +44,9 @@ struct WriterOptions : mcap::StorageOptions {
 
 /// The state of a recording, or its result after close().
 struct Written {
-  std::string place;               ///< the folder or file; with `split` or `last` its base name
+  /// The folder or file, also where that is not the one asked for; with `split` or `last` its base
+  /// name.
+  std::string place;
   std::vector<std::string> files;  ///< files with contents
   std::uint64_t messages = 0;      ///< written
   std::uint64_t bytes = 0;         ///< of the elements of all messages given
@@ -62,9 +66,10 @@ class Writer {
 
   /// Adds a stream; returns its number. A name that is taken becomes NAME_2.
   Result<std::size_t> add_stream(std::string_view name);
-  /// The stream for messages of a src from a link, added if it is new. A pipe may carry both eyes,
-  /// so each src has its own: the first has the link's name, others NAME.src_N.
-  Result<std::size_t> stream_of(std::size_t link, const std::string& name, std::int32_t src);
+  /// The stream for messages of a src, added if it is new. A pipe may carry both eyes, so each src
+  /// has its own: the first has the name, others NAME.src_N.
+  /// @param from  identifies the link or file: those of the same name have streams of their own.
+  Result<std::size_t> stream_of(const void* from, const std::string& name, std::int32_t src);
 
   // Errors of all below: System (the disk), from then on always the same.
 
@@ -73,8 +78,8 @@ class Writer {
   /// @param log_time  when it was first recorded [ns since the Unix epoch]; nothing or 0: now.
   Status add(std::size_t stream, const Message& message, std::optional<std::int64_t> log_time = {});
 
-  /// Whether copy() keeps what MCAP files have beside messages of MTP.
-  [[nodiscard]] bool copies_all() const { return mcap_ != nullptr; }
+  /// What copy() keeps of MCAP files, and so has to be read.
+  [[nodiscard]] Topics copied_topics() const { return mcap_ ? Topics::All : Topics::Mtp; }
   /// Copies the next message of a recording with its stream and log time, from MCAP to MCAP byte
   /// for byte. False at the end. Errors: also those of the reader.
   Result<bool> copy(Reader& reader);
@@ -83,9 +88,8 @@ class Writer {
   Status log(const LogLine& line);
   Status metadata(const std::string& name, const mcap::StringMap& words);
 
-  /// Writes messages that have been buffered for long enough; to be called a few times a second.
-  Status poll();
-  /// With `last`: writes what is in memory into a new file, and logs its name.
+  /// With `last`: writes what is in memory into a new file, and logs its name, or why there is
+  /// none.
   void save();
 
   /// Writes all that is buffered, and ends the files.
@@ -99,6 +103,7 @@ class Writer {
  private:
   struct File {
     std::string path;
+    Descriptor lock;             // of a new file, as long as it is written
     std::unique_ptr<Sink> sink;  // null: closed
   };
 
@@ -128,8 +133,8 @@ class Writer {
   std::unique_ptr<McapWriter> mcap_;     // null: they are written to files of messages
   std::vector<File> files_;              // one for each stream of a folder, else one for all
   std::set<std::string> file_names_;
-  // Streams by src, of each link and name.
-  std::map<std::pair<std::size_t, std::string>, std::map<std::int32_t, std::size_t>> links_;
+  // Streams by src, of each link or file and name.
+  std::map<std::pair<const void*, std::string>, std::map<std::int32_t, std::size_t>> links_;
   std::set<std::size_t> dropping_;
   Written written_;
   bool was_set_ = false, is_closed_ = false;

@@ -151,7 +151,6 @@ int main(int argc, char** argv) {
                   [&, i](const hc::Message& message) { fail_once(recording->add(i, message)); });
   module.on_readable([&] { return has_failed ? -1 : loop->descriptor(); },
                      [&] { hc::succeed_or_end(loop->turn(std::chrono::milliseconds(0))); });
-  module.every(std::chrono::milliseconds(250), [&] { fail_once(recording->poll()); });
   module.on_readable([&] { return signals; },
                      [&] {
                        signalfd_siginfo info{};

@@ -92,7 +92,6 @@ hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& gr
         graph, ports[i],
         hc::Tap::Callbacks{
             .message = [self = recorder.get(), i](const auto& message) { self->write(i, message); },
-            .idle = [self = recorder.get()] { return self->flush_if_due(); },
             .end =
                 [&log = recorder->log_, port = ports[i]](const std::string& why, bool is_error) {
                   if (is_error) log(hc::Level::Error, "recording of " + port + " ended: " + why);
@@ -121,14 +120,6 @@ void Recorder::write(std::size_t stream, const hc::Message& message) {
   const std::lock_guard lock(mutex_);
   if (auto added = writer_->add(stream, kept ? *kept : message); !added) return fail(added.error());
   bytes_ = writer_->written().bytes;
-}
-
-/// On a tap's thread, since it waits for the disk, and the server's thread has to take stops.
-hc::Tap::Clock::time_point Recorder::flush_if_due() {
-  const std::unique_lock lock(mutex_, std::try_to_lock);
-  if (lock && !has_failed_)
-    if (auto polled = writer_->poll(); !polled) fail(polled.error());
-  return hc::Tap::Clock::now() + std::chrono::milliseconds(250);
 }
 
 void Recorder::fail(const hc::Error& error) {

@@ -62,9 +62,8 @@ class Recorder {
  private:
   Recorder(std::unique_ptr<hc::record::Writer> writer, hc::LogSink log, std::string name,
            std::vector<std::string> ports);
-  // On the threads of taps.
+  /// On the threads of taps.
   void write(std::size_t stream, const hc::Message& message);
-  hc::Tap::Clock::time_point flush_if_due();
   void fail(const hc::Error& error);
 
   const hc::LogSink log_;

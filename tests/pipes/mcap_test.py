@@ -414,6 +414,26 @@ class Recordings(Pipes):
         self.shell("hc record cut.mcap mended.mcap", 1)
         self.assertIn("cut.mcap: MCAP: the file has no end", self.err)
         self.assertIn(out.split("\n")[1], self.shell("hc info mended.mcap"))
+        self.shell("hc cat --skip --raw cut.mcap >mended.mtp")
+        self.assertEqual(self.err.count("the file has no end"), 1, self.err)
+
+    def test_info_of_a_folder_says_which_file_is_cut_off(self):
+        self.shell(
+            "mkdir kept; hc send 1 2 3 >kept/a.mtp; hc send 1 2 3 | tee kept/b.mtp >kept/c.mtp"
+        )
+        os.truncate(self.path("kept/b.mtp"), os.path.getsize(self.path("kept/b.mtp")) - 2)
+        out = self.shell("hc info kept", 1)
+        self.assertIn("a  ", out)
+        self.assertRegex(self.err, r"^hc info: kept/b\.mtp: Truncated: .*\n$")
+
+    def test_what_is_played_into_a_file_is_there_while_nothing_follows(self):
+        self.shell("hc send 1 2 3 >one.mtp; mkfifo wait")
+        player = self.start("(cat one.mtp; cat wait) | exec hc play - --out x.mcap")
+        wait_until(lambda: "[" in self.shell("hc cat --skip --json x.mcap 2>/dev/null; true"))
+        self.write("wait", "")
+        player.communicate(timeout=WATCHDOG)
+        self.assertEqual(player.returncode, 0)
+        self.assertEqual(self.seqs("x.mcap"), [0])
 
     def test_what_is_no_recording_is_refused_in_a_line(self):
         self.write("x.mcap", "1 7 0 0 8 0 10390 1 3 1 1\n1 2 3\n")

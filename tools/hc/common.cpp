@@ -52,8 +52,8 @@ std::unique_ptr<hc::Sink> open_sink(const std::string& uri) {
 }
 
 std::unique_ptr<hc::record::Reader> open_recording(const std::vector<hc::record::Place>& places,
-                                                   std::uint64_t limit, bool all) {
-  return value_or_fail(hc::record::Reader::open(places, link_options(limit), all),
+                                                   std::uint64_t limit, hc::record::Topics topics) {
+  return value_or_fail(hc::record::Reader::open(places, link_options(limit), topics),
                        places.front().text());
 }
 

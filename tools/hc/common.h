@@ -63,9 +63,9 @@ hc::LinkOptions link_options(std::uint64_t limit = kDefaultLimit);
 std::unique_ptr<hc::Source> open_source(const std::string& uri, std::uint64_t limit);
 std::unique_ptr<hc::Sink> open_sink(const std::string& uri);
 
-/// @param all  also what is not MTP, to be copied.
-std::unique_ptr<hc::record::Reader> open_recording(const std::vector<hc::record::Place>& places,
-                                                   std::uint64_t limit, bool all = false);
+std::unique_ptr<hc::record::Reader> open_recording(
+    const std::vector<hc::record::Place>& places, std::uint64_t limit,
+    hc::record::Topics topics = hc::record::Topics::Mtp);
 
 /// Files of messages by their path.
 std::unique_ptr<hc::Source> open_file_source(const std::string& path, std::uint64_t limit);

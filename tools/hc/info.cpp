@@ -90,7 +90,8 @@ void print_streams(const std::vector<hc::record::StreamInfo>& streams, std::int6
 }
 
 void print_folder(const hc::record::Place& place, std::uint64_t limit) {
-  const auto streams = value_or_fail(open_recording({place}, limit)->streams(true), place.text());
+  const auto streams = value_or_fail(
+      open_recording({place}, limit)->streams(hc::record::StreamDetail::Counts), place.text());
   std::int64_t begin = 0, end = 0;
   std::uintmax_t size = 0;
   for (const auto& each : streams) {
@@ -100,6 +101,14 @@ void print_folder(const hc::record::Place& place, std::uint64_t limit) {
     size += std::filesystem::file_size(hc::record::stream_file(place.path, each.name), missing);
   }
   print_streams(streams, end - begin, bytes_in_words(size));
+  bool is_whole = true;
+  for (const auto& each : streams) {
+    if (each.status) continue;
+    is_whole = false;
+    const Failure failure(hc::record::stream_file(place.path, each.name), each.status.error());
+    say(hc::format("hc info: {}", failure.what()));
+  }
+  if (!is_whole) throw Failure(1);
 }
 
 /// What the summary of a recording in MCAP says, whoever wrote it; its messages are not read.

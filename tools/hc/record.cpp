@@ -93,7 +93,9 @@ class Recording {
     }
     const auto place = hc::record::place_of(options.file);
     if (!recordings.empty())
-      reader_ = open_recording(recordings, options.limit, place.kind == Place::Kind::Mcap);
+      reader_ = open_recording(
+          recordings, options.limit,
+          place.kind == Place::Kind::Mcap ? hc::record::Topics::All : hc::record::Topics::Mtp);
     if (recordings.size() == 1) read_ = recordings.front().text();
     open(place);
   }
@@ -114,7 +116,7 @@ class Recording {
       progress.show(-1,
                     hc::format("{} messages, {}", written.messages, bytes_in_words(written.bytes)));
       if (is_enough() || (reader_ == nullptr && open.empty())) break;
-      poll();
+      save_if_asked();
       if (!any) static_cast<void>(waits.wait(open, kPeriod));
     }
     const auto& written = writer_->close();
@@ -132,17 +134,14 @@ class Recording {
     options.last = hc::duration(options_.last);
     if (!options_.when.empty()) options.when = hc::record::place_of(options_.when).name();
     options.log = [](hc::Level severity, std::string_view line) {
-      const bool is_file = line.starts_with("file:");  // as links log it
-      say((is_file                        ? ""
-           : severity == hc::Level::Error ? "hc record: error: "
-                                          : "hc record: ") +
+      say((severity == hc::Level::Error ? "hc record: error: " : "hc record: ") +
           std::string(line));
     };
     writer_ = value_or_fail(hc::record::Writer::open(place, options), options_.file);
-    if (place.kind != Place::Kind::File && writer_->written().place != place.path)
+    if (writer_->written().place != place.path)
       say(hc::format("hc record: {} stays as it is; continuing in {}", place.path,
                      writer_->written().place));
-    if (reader_ != nullptr && writer_->copies_all())
+    if (reader_ != nullptr)
       for (const auto& [name, words] : value_or_fail(reader_->metadata(), read_))
         check(writer_->metadata(name, words));
     if (options_.last == 0) return;
@@ -173,13 +172,12 @@ class Recording {
       link.source.reset();
     }
     if (got != hc::Got::Message) return false;
-    auto stream = writer_->stream_of(number, link.name, link.is_port ? 0 : message.header.src);
+    auto stream = writer_->stream_of(&link, link.name, link.is_port ? 0 : message.header.src);
     check(stream ? writer_->add(*stream, message) : hc::Status(stream.error()));
     return true;
   }
 
-  void poll() {
-    check(writer_->poll());
+  void save_if_asked() {
     pollfd keys{STDIN_FILENO, POLLIN, 0};
     std::array<char, 256> line{};
     const bool is_pressed =

@@ -328,7 +328,10 @@ Result<bool> Reader::fill() {
     if (has_message && (!has_part || open_bytes_ > limits_.chunk_bytes ||
                         parts_[next_part_].first >= pending_[next_].time))
       return true;
-    if (!has_part) return summary_.is_whole ? Result<bool>(false) : truncated(scanned_);
+    if (!has_part) {
+      if (summary_.is_whole || std::exchange(is_truncation_said_, true)) return false;
+      return truncated(scanned_);
+    }
     const Part& part = parts_[next_part_++];
     position_ += part.end - part.at;
     auto skipped = is_skipped(part);

@@ -72,8 +72,8 @@ class Reader {
   /// end. Chunks that overlap in time are open together, up to the limit of a chunk's bytes; beyond
   /// it their messages are not sorted.
   ///
-  /// Errors: Truncated (at the end of a truncated file), Malformed, TooLarge, Unsupported, System.
-  /// After Malformed, TooLarge and Unsupported the next call continues with the next chunk.
+  /// Errors: Truncated (once, at the end of a truncated file), Malformed, TooLarge, Unsupported,
+  /// System. After Malformed, TooLarge and Unsupported the next call continues with the next chunk.
   Result<std::optional<StoredMessage>> next();
   /// Its log time. Errors: as next(), each of them once.
   Result<std::optional<std::uint64_t>> next_time();
@@ -152,6 +152,7 @@ class Reader {
   std::vector<Pending> pending_;  // messages of open parts, by time
   std::size_t next_ = 0;
   std::uint64_t open_bytes_ = 0, position_ = 0;
+  bool is_truncation_said_ = false;
 };
 
 }  // namespace hc::mcap

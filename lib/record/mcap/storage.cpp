@@ -119,6 +119,13 @@ Status Storage::add(Repeated record) {
       return older != nullptr && older->name == metadata->name;
     });
   const auto* lasting = std::get_if<Lasting>(&record);
+  if (lasting != nullptr)
+    std::erase_if(repeated_, [&](Repeated& each) {
+      auto* older = std::get_if<Lasting>(&each);
+      if (older == nullptr) return false;
+      for (const auto& one : lasting->about) older->about.erase(one);
+      return older->about.empty();
+    });
   const auto time = lasting != nullptr ? lasting->log_time : 0;
   repeated_.push_back(std::move(record));
   return file_ ? write(repeated_.back(), time) : Status();

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -29,6 +30,7 @@ struct Lasting {
   std::uint32_t sequence = 0;
   std::uint64_t log_time = 0;  ///< [ns since the Unix epoch]
   std::vector<std::byte> data;
+  std::set<std::string> about;  ///< later messages about these replace it, all of them together
 };
 
 /// Reads a number of bytes, also with K, M or G (of 1024) behind it; empty is 0. Errors: Invalid.
@@ -37,7 +39,8 @@ Result<std::uint64_t> parse_bytes(std::string_view text);
 class Storage {
  public:
   /// What each file contains: all schemas and channels, the newest metadata of each name, and
-  /// lasting messages, after the first file with the time at which the file begins.
+  /// lasting messages, after the first file with the time at which the file begins: at most one for
+  /// each thing that they are about.
   using Repeated = std::variant<SchemaRecord, ChannelRecord, MetadataRecord, Lasting>;
 
   /// @param file  "kept.mcap". One that has contents stays, and a new one is written beside it
