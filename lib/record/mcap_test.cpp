@@ -355,11 +355,11 @@ TEST_F(Mcap, FilesOfOthersAreReadWholeAndByTime) {
   ForeignFile file;
   RecordWriter first, second;
   file.add_channel(first, 1);
-  for (const std::uint64_t time : {7, 3, 9}) file.add_message(first, 1, time);
+  for (const std::uint64_t time : {7U, 3U, 9U}) file.add_message(first, 1, time);
   file.add_chunk(first, 3, 9, "");
   file.add_channel(file.out, 2);
-  for (const std::uint64_t time : {8, 1, 5}) file.add_message(file.out, 2, time);
-  for (const std::uint64_t time : {2, 4, 6}) file.add_message(second, 1, time);
+  for (const std::uint64_t time : {8U, 1U, 5U}) file.add_message(file.out, 2, time);
+  for (const std::uint64_t time : {2U, 4U, 6U}) file.add_message(second, 1, time);
   file.add_chunk(second, 2, 6, "");
   write("x.mcap", file.bytes());
   auto reader = mcap::Reader::open(in("x.mcap"));
@@ -382,7 +382,7 @@ TEST_F(Mcap, CompanionsWithoutTheirMessagesAreCopied) {
   file.out.add(Opcode::Channel, std::uint16_t{1}, std::uint16_t{0}, "/a", "json",
                StringMap{{kCompanionKey, "/a/mtp"}});
   RecordWriter first, second;
-  for (const std::uint64_t time : {1, 2}) file.add_message(first, 1, time);
+  for (const std::uint64_t time : {1U, 2U}) file.add_message(first, 1, time);
   file.add_chunk(first, 1, 2, "");
   file.add_message(second, 1, 3);
   file.add_chunk(second, 3, 3, "");
