@@ -15,7 +15,7 @@ from harness import DATA, Pipes, WATCHDOG, wait_until
 GRAPH = (
     """
 [modules.camera]
-parameters = { source = "%s/aloeL.jpg", loop = true, rate = 50, width = 80, height = 60 }
+parameters = { source = "%s/HappyFish.jpg", loop = true, rate = 50, width = 80, height = 60 }
 [modules.brightness]
 [[modules.brightness.inputs.image]]
 from = "camera.left"
