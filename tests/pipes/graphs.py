@@ -117,8 +117,8 @@ class Graphs(Pipes):
         end = time.monotonic() + WATCHDOG
         while time.monotonic() < end:
             src, rows = messages.next()
-            if src == 1 and condition(json.loads(rows[0])):
-                return json.loads(rows[0])
+            if src == 1 and condition(state := json.loads(rows[0])):
+                return state
         self.fail("no state is as wanted; the last: %s" % rows)
 
     def ask(self, process, *commands, name="g"):
