@@ -23,16 +23,22 @@ class ImageFiles final : public ImageSequence {
   explicit ImageFiles(std::vector<std::string> paths) : paths_(std::move(paths)) {}
   cv::Mat next() override {
     if (at_ == paths_.size()) return {};
-    cv::Mat image = cv::imread(paths_[at_]);
-    if (image.empty()) throw unusable(paths_[at_], "not an image that can be read");
-    ++at_;
-    return image;
+    const std::string& path = paths_[at_++];
+    std::error_code unknown;
+    const auto written = fs::last_write_time(path, unknown);
+    // One that is sent again and again is read again only where it has changed.
+    if (paths_.size() > 1 || image_.empty() || written != written_) image_ = cv::imread(path);
+    if (image_.empty()) throw unusable(path, "not an image that can be read");
+    written_ = written;
+    return image_;
   }
   void rewind() override { at_ = 0; }
 
  private:
   std::vector<std::string> paths_;
   std::size_t at_ = 0;
+  cv::Mat image_;
+  fs::file_time_type written_;
 };
 
 class Capture final : public ImageSequence {

@@ -11,7 +11,8 @@
 class ImageSequence {
  public:
   virtual ~ImageSequence() = default;
-  /// The next image, (H, W, 3) u8 in OpenCV's order blue, green, red; empty at the end.
+  /// The next image, (H, W, 3) u8 in OpenCV's order blue, green, red; empty at the end. Not to be
+  /// written to: it may be given again.
   virtual cv::Mat next() = 0;
   /// Starts again from the beginning.
   virtual void rewind() = 0;

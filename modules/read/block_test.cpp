@@ -52,11 +52,18 @@ cv::Mat draw(const Text& lines, const std::string& font, const Look& look) {
   const double narrow = std::cos(look.yaw * CV_PI / 180);
   turn.row(0) *= narrow;
   turn.at<double>(0, 2) += 800 * (1 - narrow);
-  cv::warpAffine(image, turned, turn, image.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  turned = image;
+  if (look.roll != 0 || look.yaw != 0)
+    cv::warpAffine(image, turned, turn, image.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
   cv::resize(turned, seen, {800, 600}, 0, 0, cv::INTER_AREA);
   if (look.blur > 0) cv::GaussianBlur(seen, seen, {}, look.blur);
-  cv::Mat noise(seen.size(), CV_16SC3), sum;
-  cv::RNG(7).fill(noise, cv::RNG::NORMAL, 0, look.noise);
+  static std::map<double, cv::Mat> noises;  // by their deviations, since they take long
+  cv::Mat& noise = noises[look.noise];
+  if (noise.empty()) {
+    noise.create(seen.size(), CV_16SC3);
+    cv::RNG(7).fill(noise, cv::RNG::NORMAL, 0, look.noise);
+  }
+  cv::Mat sum;
   cv::add(seen, noise, sum, cv::noArray(), CV_8U);
   return sum;
 }

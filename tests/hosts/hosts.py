@@ -29,7 +29,7 @@ TO_END = 5 if FULL else WATCHDOG
 CAMERA = """
 [modules.camera]
 host = "%s"
-parameters = { source = "{0}/aloeL.jpg", loop = true, rate = 50, width = 80, height = 60 }
+parameters = { source = "{0}/HappyFish.jpg", loop = true, rate = 50, width = 80, height = 60 }
 """.replace(
     "{0}", DATA
 )

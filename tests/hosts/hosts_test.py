@@ -321,7 +321,7 @@ class Hosts(HostsTest):
     def test_what_a_host_lacks_is_named_before_anything_starts(self):
         (host,) = self.network.add()
         wrong = CAMERA.replace("camera]", "camera]\nprogram = 'camra'")
-        camera = CAMERA.replace("aloeL", "no_such") % "h1"
+        camera = CAMERA.replace("HappyFish", "no_such") % "h1"
         unreachable = self.tables(host).replace(host.address, "10.9.0.99")
         other = self.write_program(
             "other_hc", "#!/bin/sh\nexec %s agent | sed -u s/0.1.0/9.9.9/" % HC

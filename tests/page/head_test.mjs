@@ -13,6 +13,24 @@ import {
   watchGaze,
 } from "./harness.mjs";
 
+// Images that take little time; with them it is not calibrated, and drives by these lenses.
+const lenses = ["point", "track", "read_gaze"].flatMap((name) => [
+  `${name}.focal=120`,
+  `${name}.cx=79.5`,
+  `${name}.cy=59.5`,
+]);
+const small = [
+  "head_eyes.rate=10",
+  "head_eyes.width=160",
+  "head_eyes.height=120",
+  "head_eyes.focal=120",
+  "rectify.focal=120",
+  "calibrate.salience=0",
+  "left_ball.min_area=3",
+  "right_ball.min_area=3",
+  ...lenses,
+];
+
 let graph, browser, context, page, origin;
 
 /** Shows panels: what follows # in the URL. */
@@ -57,7 +75,7 @@ async function takeSeat(panels = "seat") {
 
 describe("the page", { timeout: 10 * watchdog }, () => {
   before(async () => {
-    graph = new Graph("head.toml", "--set", "head_eyes.rate=10");
+    graph = new Graph("head.toml", ...small.flatMap((each) => ["--set", each]));
     browser = await openBrowser();
     context = await browser.newContext({ viewport: { width: 1000, height: 720 } });
     context.setDefaultTimeout(watchdog);
@@ -70,8 +88,6 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     const url = await graph.url();
     origin = new URL(url).origin;
     await page.goto(url);
-    // Nobody steers before the head knows how its eyes are mounted.
-    await until("the head is calibrated", () => graph.log.includes("calibrate: cameras"));
   });
 
   after(async () => {

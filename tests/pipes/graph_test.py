@@ -57,7 +57,7 @@ class Graph(Pipes):
     LIVE = """version = 1
 restart = "failure"
 [modules.camera]
-parameters = { source = "%s/aloeL.jpg", loop = true, rate = 200, width = 80, height = 60 }
+parameters = { source = "%s/HappyFish.jpg", loop = true, rate = 200, width = 80, height = 60 }
 [modules.brightness]
 [[modules.brightness.inputs.image]]
 from = "camera.left"
@@ -93,7 +93,7 @@ from = "camera.left"
             "slow.toml",
             """version = 1
 [modules.camera]
-parameters = { source = "%s/aloeL.jpg", loop = true, count = 30, rate = 200, width = 80, height = 60 }
+parameters = { source = "%s/HappyFish.jpg", loop = true, count = 30, rate = 200, width = 80, height = 60 }
 [modules.brightness]
 [[modules.brightness.inputs.image]]
 from = "camera.left"

@@ -15,7 +15,7 @@ from harness import DATA, Pipes, WATCHDOG, wait_until
 GRAPH = (
     """
 [modules.camera]
-parameters = { source = "%s/aloeL.jpg", loop = true, rate = 50, width = 80, height = 60 }
+parameters = { source = "%s/HappyFish.jpg", loop = true, rate = 50, width = 80, height = 60 }
 [modules.brightness]
 [[modules.brightness.inputs.image]]
 from = "camera.left"
@@ -117,8 +117,8 @@ class Graphs(Pipes):
         end = time.monotonic() + WATCHDOG
         while time.monotonic() < end:
             src, rows = messages.next()
-            if src == 1 and condition(json.loads(rows[0])):
-                return json.loads(rows[0])
+            if src == 1 and condition(state := json.loads(rows[0])):
+                return state
         self.fail("no state is as wanted; the last: %s" % rows)
 
     def ask(self, process, *commands, name="g"):

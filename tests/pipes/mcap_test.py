@@ -238,12 +238,12 @@ class Recordings(Pipes):
 
     def test_a_killed_recorder_loses_its_last_chunk_at_most(self):
         chance = random.Random(1)
-        self.noise(4000)  # 65 MB
+        self.noise(1600)  # 26 MB
         for kill in range(KILLS):
             name = "k%d.mcap" % kill
             path = pathlib.Path(self.path(name))
             recorder = self.start("exec hc record noise.mtp " + name)
-            least = chance.randrange(0, 50 << 20)
+            least = chance.randrange(0, 20 << 20)
             wait_until(lambda: path.exists() and path.stat().st_size >= least)
             os.kill(recorder.pid, signal.SIGKILL)
             recorder.wait(timeout=WATCHDOG)

@@ -208,7 +208,7 @@ class Watching(Graphs):
         name, process = self.run_named("back", text)
         messages = self.observe(process, name)
         link = lambda condition: self.state(messages, lambda each: condition(each["links"][0]))
-        camera = "exec hc camera %s/aloeL.jpg --loop --rate 50 --width 80 --height 60" % DATA
+        camera = "exec hc camera %s/HappyFish.jpg --loop --rate 50 --width 80 --height 60" % DATA
         publish = camera + " --out tcp-listen:%d" % port
         writer = self.start(publish)
         link(lambda link: link["per_second"] > 0)

@@ -34,7 +34,7 @@ GRAPH = (
     """
 version = 1
 [modules.camera]
-parameters = { source = "%s/aloeL.jpg", loop = true, rate = 50, width = 80, height = 60 }
+parameters = { source = "%s/HappyFish.jpg", loop = true, rate = 50, width = 80, height = 60 }
 [modules.darken]
 program = "./darken"
 inputs.image = "camera.left"
@@ -81,7 +81,7 @@ class Graphs(Package):
         with hc.start(self.graph) as graph:
             self.assertEqual(graph.parameters["darken.shift"], 1)
             self.assertEqual(graph.parameters["camera.loop"], True)
-            self.assertIn("aloeL", graph.parameters["camera.source"])
+            self.assertIn("HappyFish", graph.parameters["camera.source"])
             graph.parameters["darken.shift"] = 7
             self.assertTrue(any(m.numbers[0] < 2 for m in graph["brightness.mean"]))
             wait_until(lambda: graph.parameters["darken.shift"] == 7)

@@ -395,7 +395,7 @@ class Head(Page):
 
     def wait_focus(self, name):
         mode = self.mode(name)
-        self.wait(lambda: self.focused.modes(0)[-1][1] == mode, name + " has the focus")
+        self.wait(lambda: self.focused.mode() == mode, name + " has the focus")
 
     def wait_moving(self):
         """Waits until it has been moving for a while."""

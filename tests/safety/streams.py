@@ -114,6 +114,10 @@ class Motion(Stream):
 class Focus(Stream):
     """The mode in focus, as the workspace says it."""
 
+    def mode(self):
+        """The number of the last."""
+        return int(self.messages[-1][1]) if self.messages else None
+
     def modes(self, begin):
         """(time [ns], number of the mode) from a time on [ns]."""
         return [(at, int(row)) for at, row in list(self.messages) if at >= begin]
