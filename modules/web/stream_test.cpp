@@ -62,7 +62,7 @@ TEST(Stream, the_socket_of_a_page_ends_on_the_servers_thread_though_the_tap_serv
   std::promise<void> serves;
   std::latch left(1);
   std::once_flag once;
-  // Called on the tap's thread, which holds the page's seat meanwhile.
+  // Called on the tap's thread, which holds what it knows of the page meanwhile.
   Stream stream(observed.graph, "m.p", [&](const std::function<void()>&) {
     std::call_once(once, [&] { serves.set_value(); });
     left.wait();

@@ -107,7 +107,7 @@ class Seat(Safety):
         self.note("travelled", head.motion.travelled(rested))
         self.hold()
 
-    def test_the_server_of_the_page_waits_for_a_disk(self):
+    def test_the_server_of_the_page_hangs_and_goes_on(self):
         head = self.head
         head.wait(lambda: head.sent()["web.stop"] > 5, "the page guards the robot")
         head.quiet()
