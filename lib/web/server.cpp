@@ -111,7 +111,7 @@ struct Shared {
   }
 
   /// As Server::aside().
-  void aside(Work work) {
+  Status aside(Work work) {
     using Then = std::function<void()>;
     const auto place = asides.emplace(asides.end());
     const auto kept = std::make_shared<Work>(std::move(work));
@@ -127,9 +127,14 @@ struct Shared {
           asides.erase(place);
           guard([&] { then.get()(); });
         });
-    if (begun) return std::swap(*place, *begun);
-    asides.erase(place);  // no thread is to be had
-    guard([&] { (*kept)()(); });
+    if (begun) {
+      std::swap(*place, *begun);
+      return {};
+    }
+    // Not done in place: who waits for a disk here takes no stop meanwhile.
+    asides.erase(place);
+    return Error{Code::System, "the server is too busy for this (" + begun.error().detail +
+                                   "); try again in a moment"};
   }
 };
 
@@ -372,12 +377,15 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     if (!visitor_->shared().guard([&] { reply = visitor_->site().reply(*request); })) return;
     if (reply.status < 400 && !visitor_->know())
       return write(refusal(503, "too many connections are open"), false);
-    if (reply.aside)
-      return visitor_->shared().aside(
+    if (reply.aside) {
+      const auto begun = visitor_->shared().aside(
           [self = this->shared_from_this(), keeps, make = std::move(reply.aside)] {
             const auto made = std::make_shared<Reply>(make());
             return [self, keeps, made] { self->write(std::move(*made), keeps); };
           });
+      if (!begun) write(refusal(503, begun.error().detail), keeps);
+      return;
+    }
     if (reply.status != 101) return write(std::move(reply), keeps);
     visitor_->close = nullptr;
     std::make_shared<Socket<Stream>>(std::move(stream_), visitor_)
@@ -424,7 +432,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
 
   /// Nothing else is done with this connection meanwhile.
   void read_piece(bool keeps) {
-    visitor_->shared().aside([self = this->shared_from_this(), keeps] {
+    const auto begun = visitor_->shared().aside([self = this->shared_from_this(), keeps] {
       self->piece_.resize(std::min<std::uint64_t>(kPiece, self->reply_.size));
       const auto got = ::read(self->reply_.file.get(), self->piece_.data(), self->piece_.size());
       return [self, keeps, got] {
@@ -434,6 +442,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
         self->write_on(keeps);
       };
     });
+    if (!begun) beast::get_lowest_layer(stream_).close();
   }
 
   void end() {
@@ -519,7 +528,7 @@ class BeastServer final : public Server {
   void post(std::function<void()> call) override {
     loop_->post([shared = shared_, call = std::move(call)] { shared->guard(call); });
   }
-  void aside(Work work) override { shared_->aside(std::move(work)); }
+  Status aside(Work work) override { return shared_->aside(std::move(work)); }
 
   void every(std::chrono::milliseconds period, std::function<void()> call) override {
     auto& timer = timers_.emplace_back();

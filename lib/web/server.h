@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // HTTP and WebSocket, with TLS or without; what is asked for and who may ask is its Site's affair.
-// Everything here is called on the thread that runs it, but for post(). The one file that knows
-// Beast is server.cpp.
+// Everything here is called on the thread that runs it, but for post() and stop(). The one file
+// that knows Beast is server.cpp.
 
 #include <chrono>
 #include <cstdint>
@@ -49,6 +49,7 @@ struct Reply {
   Descriptor file;                                          ///< its next bytes follow the body
   std::uint64_t size = 0;  ///< of these [byte]; a file that is shorter breaks the connection
   /// Makes what is answered in place of this, as Server::aside() calls it: it waits for a disk.
+  /// Where that cannot be, 503 is answered.
   std::function<Reply()> aside;
 };
 
@@ -115,7 +116,9 @@ class Server {
   virtual void post(std::function<void()> call) = 0;
   /// Has work done that may wait, on a thread of its own (run_aside()). What it holds ends here,
   /// and it is done before run() ends; what it throws is logged.
-  virtual void aside(Work work) = 0;
+  ///
+  /// Errors: System (no descriptor or thread to be had; it is not done).
+  virtual Status aside(Work work) = 0;
   /// Calls a function periodically, until it ends. To be called before run().
   virtual void every(std::chrono::milliseconds period, std::function<void()> call) = 0;
 };

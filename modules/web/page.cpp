@@ -207,12 +207,13 @@ void Page::open_stream(const std::shared_ptr<web::WebSocket>& socket, const web:
   const auto wanted = parse_wanted(request.query);
   if (!wanted) return socket->close(kPolicy, wanted.error().detail);
   const std::string port = request.path.substr(std::string_view("/streams/").size());
-  auto& stream = streams_[port];
-  if (!stream)
-    stream = std::make_shared<Stream>(options_.graph, port, [this](std::function<void()> call) {
-      server_.post(std::move(call));
-    });
-  stream->view(*wanted, socket);
+  auto found = streams_.find(port);
+  if (found == streams_.end()) {
+    auto post = [this](std::function<void()> call) { server_.post(std::move(call)); };
+    found = streams_.emplace(port, std::make_shared<Stream>(options_.graph, port, std::move(post)))
+                .first;
+  }
+  found->second->view(*wanted, socket);
 }
 
 void Page::open_drive(const std::shared_ptr<web::WebSocket>& socket, const web::Request& request) {
@@ -326,13 +327,12 @@ std::optional<Rows> Page::record(const Asked& asked, const Rows& words) {
     return Rows{"a recording is just beginning or ending; try again in a moment"};
   if (words.size() == 2 && words[1] == "end") {
     if (!recorder_) return Rows{"nothing is being recorded"};
-    end_recording([this, asked] { answer(asked, {"ok"}); });
-    return std::nullopt;
+    return end_recording([this, asked] { answer(asked, {"ok"}); });
   }
   if (recorder_) return Rows{"there is a recording already: " + recorder_->name()};
   if (words.size() < 3)
     return Rows{"record is followed by a name and outputs, MODULE.PORT, or by end"};
-  record_aside([this, asked, words] {
+  return record_aside([this, asked, words] {
     auto begun =
         Recorder::begin(options_.graph, {options_.recordings, options_.frames, callbacks_.log},
                         words[1], {words.begin() + 2, words.end()});
@@ -343,11 +343,10 @@ std::optional<Rows> Page::record(const Asked& asked, const Rows& words) {
       answer(asked, said);
     };
   });
-  return std::nullopt;
 }
 
-void Page::end_recording(const std::function<void()>& ended) {
-  record_aside([this, recorder = recorder_, ended] {
+std::optional<Rows> Page::end_recording(const std::function<void()>& ended) {
+  return record_aside([this, recorder = recorder_, ended] {
     recorder->end();
     return [this, ended] {
       recorder_.reset();
@@ -356,10 +355,11 @@ void Page::end_recording(const std::function<void()>& ended) {
   });
 }
 
-void Page::record_aside(web::Work work) {
+std::optional<Rows> Page::record_aside(web::Work work) {
   const auto job = std::make_shared<web::Work>(std::move(work));
   recording_job_ = job;
-  server_.aside([job] { return [job, then = (*job)()] { then(); }; });
+  const auto begun = server_.aside([job] { return [job, then = (*job)()] { then(); }; });
+  return begun ? std::nullopt : std::optional(Rows{begun.error().detail});
 }
 
 void Page::give(const std::vector<Order>& orders) const {
@@ -372,12 +372,11 @@ void Page::tick() {
   if (recorder_ && !recorder_->goes_on() && recording_job_.expired()) end_recording([] {});
   for (auto& [number, session] : sessions_) send_session(session);
   std::erase_if(streams_, [&](const auto& each) {
-    if (each.second->is_viewed()) return false;
-    server_.aside([stream = each.second] {
+    const auto stop = [stream = each.second] {
       stream->stop();
       return [] {};
-    });
-    return true;
+    };
+    return !each.second->is_viewed() && server_.aside(stop).has_value();  // else later
   });
 }
 

@@ -90,9 +90,9 @@ class Page final : public web::Site {
                                                  const std::vector<std::string>& words);
   std::vector<std::string> invite(const std::vector<std::string>& words);
   /// Ends the recording, and then calls back.
-  void end_recording(const std::function<void()>& ended);
+  std::optional<std::vector<std::string>> end_recording(const std::function<void()>& ended);
   /// As Server::aside(), for what begins or ends a recording.
-  void record_aside(web::Work work);
+  std::optional<std::vector<std::string>> record_aside(web::Work work);
   void answer(const Asked& asked, const std::vector<std::string>& rows);
   void tick();
   void give(const std::vector<Order>& orders) const;

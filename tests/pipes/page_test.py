@@ -604,10 +604,13 @@ class Recordings(Page):
         wait_until(lambda: path.stat().st_size > 20000)
         return path
 
-    def threads(self, graph):
+    def pid(self, graph):
+        """Of the server."""
         state = json.loads(self.hear(graph, 1))
-        pid = next(each["pid"] for each in state["modules"] if each["name"] == "web")
-        return {int(each) for each in os.listdir("/proc/%d/task" % pid)}
+        return next(each["pid"] for each in state["modules"] if each["name"] == "web")
+
+    def threads(self, graph):
+        return {int(each) for each in os.listdir("/proc/%d/task" % self.pid(graph))}
 
     def test_a_disk_that_hangs_holds_no_page_up(self):
         self.serve()
@@ -623,14 +626,36 @@ class Recordings(Page):
         self.assertEqual(self.hear(graph, 4), "ok")
         self.hear(graph, 3, lambda text: json.loads(text)["recording"] is None)
 
+    def test_where_no_thread_is_to_be_had_it_refuses_what_waits_for_a_disk(self):
+        self.serve()
+        cookie = self.session()
+        graph = self.socket("/graph", cookie)
+        self.record(graph)
+        with connect(self.port) as kept, kept.makefile("rb") as file:
+
+            def status():
+                fields = "Host: 127.0.0.1:%d\r\nCookie: %s\r\n" % (self.port, cookie)
+                kept.sendall(("GET /recordings HTTP/1.1\r\n%s\r\n" % fields).encode())
+                head = read_head(file)
+                file.read(int(re.search(r"Content-Length: (\d+)", head)[1]))
+                return head.split()[1]
+
+            self.assertEqual(status(), "200")
+            pid = self.pid(graph)
+            before = resource.prlimit(pid, resource.RLIMIT_NOFILE)
+            resource.prlimit(pid, resource.RLIMIT_NOFILE, (3, before[1]))  # no descriptor, either
+            self.assertEqual(status(), "503")
+            self.assertIn("too busy", self.command(graph, "record end")[0])
+            resource.prlimit(pid, resource.RLIMIT_NOFILE, before)
+        self.assertEqual(self.command(graph, "record end"), ["ok"])
+        self.hear(graph, 3, lambda text: json.loads(text)["recording"] is None)
+
     def test_a_full_disk_ends_the_recording_and_keeps_it(self):
         self.serve(before="trap '' XFSZ; ")
         graph = self.socket("/graph", self.session())
         path = self.record(graph)
-        state = json.loads(self.hear(graph, 1))
-        pid = next(each["pid"] for each in state["modules"] if each["name"] == "web")
         # As on a full disk: a write that fails.
-        resource.prlimit(pid, resource.RLIMIT_FSIZE, (path.stat().st_size + 5000,) * 2)
+        resource.prlimit(self.pid(graph), resource.RLIMIT_FSIZE, (path.stat().st_size + 5000,) * 2)
         self.hear(graph, 2, lambda text: "what was written before is kept" in text)
         self.hear(graph, 3, lambda text: json.loads(text)["recording"] is None)
         self.assertRegex(self.shell("hc info recordings/one.mcap"), r"camera\.left +[1-9]")
