@@ -37,7 +37,9 @@ endif()
 
 # Flags that are ours, not our users'.
 add_library(hc_flags INTERFACE)
-target_compile_options(hc_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+target_compile_options(hc_flags INTERFACE -Wall -Wextra -Wpedantic -Wconversion
+                       # In a unity build the names of one file shadow those of another.
+                       $<$<NOT:$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wshadow>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # False for every "text" + std::string: https://gcc.gnu.org/bugzilla/show_bug.cgi?id=105651
   target_compile_options(hc_flags INTERFACE -Wno-restrict)
@@ -135,8 +137,8 @@ function(hc_test name)
   cmake_parse_arguments(arg "" "SHARDS" "SOURCES;LIBS" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE hc_flags ${arg_LIBS} GTest::gtest_main)
-  # Most of what a build takes is tests; and in a unity build the names of one file shadow another's.
-  target_compile_options(${name} PRIVATE -O1 $<$<BOOL:${CMAKE_UNITY_BUILD}>:-Wno-shadow>)
+  # Most of what a build takes is tests.
+  target_compile_options(${name} PRIVATE -O1)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/unit)
   if(NOT arg_SHARDS)
     set(arg_SHARDS 1)

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tls/key.h>
 
-#include <fcntl.h>
 #include <unistd.h>
-
-#include <cstdlib>
 
 #include <openssl/err.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
 #include <openssl/x509v3.h>
 
-#include <hc/os/descriptor.h>
-#include <hc/os/program.h>
+#include <hc/os/new_file.h>
 #include <tls/context.h>
 
 namespace hc::tls {
@@ -60,16 +56,7 @@ Result<std::string> make_key_text() {
 
 Status make_key(const std::string& path) {
   if (::access(path.c_str(), F_OK) == 0) return {};
-  const auto text = HC_TRY(make_key_text());
-  std::string unfinished = path + ".XXXXXX";
-  const auto file = HC_TRY(open_descriptor(
-      "mkostemp", unfinished, [&] { return ::mkostemp(unfinished.data(), O_CLOEXEC); }));
-  Status made = write_all(file.get(), text);
-  if (made && ::link(unfinished.c_str(), path.c_str()) != 0 && errno != EEXIST)
-    made = system_error("link", "");
-  ::unlink(unfinished.c_str());
-  if (made) return {};
-  return Error{made.error().code, path + ": " + made.error().detail};
+  return make_private_file(path, HC_TRY(make_key_text()));
 }
 
 Result<std::string> fingerprint_of(const std::string& path) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <hc/module/module.h>
+#include <hc/os/file_stamp.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
@@ -24,12 +25,11 @@ class ImageFiles final : public ImageSequence {
   cv::Mat next() override {
     if (at_ == paths_.size()) return {};
     const std::string& path = paths_[at_++];
-    std::error_code unknown;
-    const auto written = fs::last_write_time(path, unknown);
     // One that is sent again and again is read again only where it has changed.
-    if (paths_.size() > 1 || image_.empty() || written != written_) image_ = cv::imread(path);
+    const auto stamp = hc::file_stamp(path);
+    if (paths_.size() > 1 || image_.empty() || stamp != stamp_) image_ = cv::imread(path);
     if (image_.empty()) throw unusable(path, "not an image that can be read");
-    written_ = written;
+    stamp_ = stamp;
     return image_;
   }
   void rewind() override { at_ = 0; }
@@ -38,7 +38,7 @@ class ImageFiles final : public ImageSequence {
   std::vector<std::string> paths_;
   std::size_t at_ = 0;
   cv::Mat image_;
-  fs::file_time_type written_;
+  hc::FileStamp stamp_;
 };
 
 class Capture final : public ImageSequence {

@@ -1,37 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/os/file_watch.h>
 
-#include <sys/stat.h>
-#include <sys/types.h>
-
 #include <condition_variable>
-#include <cstdint>
 #include <map>
 #include <mutex>
 #include <optional>
 
 #include <hc/os/event.h>
+#include <hc/os/file_stamp.h>
 #include <hc/os/thread.h>
 
 namespace hc {
-namespace {
-
-/// What tells one state of a file from another; all 0: there is none.
-struct Stamp {
-  dev_t device = 0;
-  ino_t number = 0;
-  off_t size = 0;
-  std::int64_t written = 0, written_ns = 0;
-  bool operator==(const Stamp&) const = default;
-};
-
-Stamp stamp_of(const std::string& file) {
-  struct stat about {};
-  if (::stat(file.c_str(), &about) != 0) return {};
-  return {about.st_dev, about.st_ino, about.st_size, about.st_mtim.tv_sec, about.st_mtim.tv_nsec};
-}
-
-}  // namespace
 
 /// What the thread has too, and alone once it is left behind.
 struct FileWatch::Shared {
@@ -39,8 +18,9 @@ struct FileWatch::Shared {
   std::mutex mutex;  // of what follows
   std::condition_variable over;
   bool is_over = false;
-  int sets = 0;                                       // how often files were set
-  std::map<std::string, std::optional<Stamp>> known;  // at the last call; none: not looked at yet
+  int sets = 0;  // how often files were set
+  std::map<std::string, std::optional<FileStamp>>
+      known;  // at the last call; none: not looked at yet
 
   void look_until_over() {
     std::unique_lock lock(mutex);
@@ -50,7 +30,7 @@ struct FileWatch::Shared {
       auto now = known;
       const int sets_before = sets;
       lock.unlock();
-      for (auto& [file, stamp] : now) stamp = stamp_of(file);
+      for (auto& [file, stamp] : now) stamp = file_stamp(file);
       lock.lock();
       if (sets != sets_before) continue;
       for (auto& [file, stamp] : known)
@@ -69,7 +49,7 @@ Result<std::unique_ptr<FileWatch>> FileWatch::make(Loop& loop,
                                                    std::function<void()> changed) {
   auto shared = std::make_shared<Shared>();
   shared->changed = HC_TRY(Event::make());
-  for (const auto& file : files) shared->known[file] = stamp_of(file);
+  for (const auto& file : files) shared->known[file] = file_stamp(file);
   std::unique_ptr<FileWatch> made(new FileWatch(shared));
   made->changed_ =
       HC_TRY(loop.watch(shared->changed.descriptor(), EPOLLIN,
@@ -101,7 +81,7 @@ void FileWatch::set_files(const std::vector<std::string>& files) {
 bool FileWatch::was_there(const std::string& file) const {
   const std::lock_guard lock(shared_->mutex);
   const auto known = shared_->known.find(file);
-  return known == shared_->known.end() || known->second != Stamp{};
+  return known == shared_->known.end() || known->second != FileStamp{};
 }
 
 }  // namespace hc

@@ -16,11 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t kMode = 0666;
-
-Result<Descriptor> open_file(const std::string& path, int flags) {
+Result<Descriptor> open_file(const std::string& path, int flags, mode_t mode = 0666) {
   return open_descriptor("open", path, [&] {
-    return ::open(path.c_str(), flags | O_CREAT | O_CLOEXEC | O_NOCTTY, kMode);
+    return ::open(path.c_str(), flags | O_CREAT | O_CLOEXEC | O_NOCTTY, mode);
   });
 }
 
@@ -41,6 +39,31 @@ bool is_at(const Descriptor& file, const std::string& path) {
 bool has_contents(const std::string& path) {
   struct stat about {};
   return ::stat(path.c_str(), &about) == 0 && about.st_size > 0;
+}
+
+/// A file that is to take the place of another, empty, of no other process.
+Result<Descriptor> open_successor(const std::string& path, mode_t mode) {
+  while (true) {
+    auto file = HC_TRY(open_file(path, O_WRONLY, mode));
+    // Where a file system has no locks, nobody waits. Whoever had it may have put it in its place.
+    const bool is_interrupted = ::flock(file.get(), LOCK_EX) != 0 && errno == EINTR;
+    if (is_interrupted || !is_at(file, path)) continue;
+    if (::ftruncate(file.get(), 0) != 0) return system_error("ftruncate", path);
+    return file;
+  }
+}
+
+Status put_in_place(const std::string& path, std::string_view contents, mode_t mode,
+                    bool replaces) {
+  const std::string unfinished = path + ".unfinished";
+  const auto file = HC_TRY(open_successor(unfinished, mode));
+  const bool is_wanted = replaces || ::access(path.c_str(), F_OK) != 0;
+  Status done = is_wanted ? write_all(file.get(), contents) : Status();
+  if (done && is_wanted && std::rename(unfinished.c_str(), path.c_str()) != 0)
+    done = system_error("rename", path);
+  if (!done || !is_wanted) ::unlink(unfinished.c_str());
+  if (done) return {};
+  return Error{done.error().code, path + ": " + done.error().detail};
 }
 
 }  // namespace
@@ -93,19 +116,14 @@ Result<NewFile> continue_file(const std::string& path) {
 }
 
 Status replace_file(const std::string& path, std::string_view contents) {
-  const bool is_direct = is_written_in_place(path);
-  const std::string unfinished = is_direct ? path : path + ".unfinished";
-  auto file = HC_TRY(open_file(unfinished, O_WRONLY));
-  // A process that locks it late may have opened what is in its place by then.
-  if (!is_direct && !(lock(file) && is_at(file, unfinished)))
-    return Error{Code::System, path + ": another process is replacing it"};
-  Status done = is_direct || ::ftruncate(file.get(), 0) == 0 ? write_all(file.get(), contents)
-                                                             : system_error("ftruncate", path);
-  if (done && !is_direct && std::rename(unfinished.c_str(), path.c_str()) != 0)
-    done = system_error("rename", path);
-  if (done) return {};
-  if (!is_direct) ::unlink(unfinished.c_str());
-  return Error{done.error().code, path + ": " + done.error().detail};
+  if (!is_written_in_place(path)) return put_in_place(path, contents, 0666, true);
+  const auto file = HC_TRY(open_file(path, O_WRONLY));
+  const auto done = write_all(file.get(), contents);
+  return done ? done : Error{done.error().code, path + ": " + done.error().detail};
+}
+
+Status make_private_file(const std::string& path, std::string_view contents) {
+  return put_in_place(path, contents, 0600, false);
 }
 
 }  // namespace hc

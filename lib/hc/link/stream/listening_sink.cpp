@@ -23,11 +23,11 @@ constexpr std::chrono::milliseconds kNewPeerPeriod{1};
 /// A connection for each reader; see listening_sink().
 class ListeningSink final : public Sink {
  public:
-  ListeningSink(ListeningSocket socket, std::unique_ptr<Loop> loop, const Audience& audience,
+  ListeningSink(ListeningSocket socket, std::unique_ptr<Loop> loop, Audience audience,
                 const Policy& policy, LinkOptions options)
       : socket_(std::move(socket)),
         loop_(std::move(loop)),
-        audience_(audience),
+        audience_(std::move(audience)),
         policy_(policy),
         options_(std::move(options)) {}
 
