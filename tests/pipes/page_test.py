@@ -633,11 +633,11 @@ class Recordings(Page):
         self.record(graph)
         with connect(self.port) as kept, kept.makefile("rb") as file:
 
-            def status():
+            def status(path="/recordings", more=""):
                 fields = "Host: 127.0.0.1:%d\r\nCookie: %s\r\n" % (self.port, cookie)
-                kept.sendall(("GET /recordings HTTP/1.1\r\n%s\r\n" % fields).encode())
+                kept.sendall(("GET %s HTTP/1.1\r\n%s\r\n" % (path, fields + more)).encode())
                 head = read_head(file)
-                file.read(int(re.search(r"Content-Length: (\d+)", head)[1]))
+                file.read(int((re.search(r"Content-Length: (\d+)", head) or [0, 0])[1]))
                 return head.split()[1]
 
             self.assertEqual(status(), "200")
@@ -646,6 +646,12 @@ class Recordings(Page):
             resource.prlimit(pid, resource.RLIMIT_NOFILE, (3, before[1]))  # no descriptor, either
             self.assertEqual(status(), "503")
             self.assertIn("too busy", self.command(graph, "record end")[0])
+            # A stream that cannot begin ends its connection alone.
+            origin = "Origin: http://127.0.0.1:%d\r\n" % self.port
+            handshake = "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+            handshake += "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
+            self.assertEqual(status("/streams/camera.left", origin + handshake), "101")
+            self.assertEqual(file.read(), b"")
             resource.prlimit(pid, resource.RLIMIT_NOFILE, before)
         self.assertEqual(self.command(graph, "record end"), ["ok"])
         self.hear(graph, 3, lambda text: json.loads(text)["recording"] is None)

@@ -4,9 +4,9 @@
 
 #include <sys/eventfd.h>
 
+#include <stdexcept>
 #include <utility>
 
-#include <hc/base/check.h>
 #include <hc/os/descriptor.h>
 
 namespace hc {
@@ -22,10 +22,10 @@ class Event {
     return Event(std::move(made));
   }
 
-  /// The same where a program begins, and cannot do without: ends it.
+  /// The same for a constructor: throws std::runtime_error, as that of a thread does.
   static Event must_make() {
     auto made = make();
-    HC_CHECK(made, made.error().text());
+    if (!made) throw std::runtime_error(made.error().text());
     return std::move(*made);
   }
 
