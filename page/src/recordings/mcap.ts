@@ -100,7 +100,7 @@ interface Found extends Place {
 class McapFile {
   private readonly channels = new Map<number, Channel>();
   private readonly chunks: Chunk[] = [];
-  // The last of each topic of MTP: the companion of a message to come, and a message without one.
+  // By log time and topic of MTP: companions of messages to come, and messages without one.
   private readonly companions = new Map<string, Found>();
   private readonly alone = new Map<string, Found>();
   private newest?: { readonly chunk: Chunk; readonly bytes: Promise<Uint8Array<ArrayBuffer>> };
@@ -177,10 +177,10 @@ class McapFile {
       const found: Found = { chunk, offset, time, bytes };
       if (channel?.companion !== undefined) this.addCompanion(channel.companion, found);
       if (!channel?.stream) return;
-      const last = this.companions.get(channel.topic);
-      const companion = last?.time === time ? last : undefined;
-      if (companion) this.companions.delete(channel.topic);
-      this.alone.set(channel.topic, found);
+      const key = `${time} ${channel.topic}`;
+      const companion = this.companions.get(key);
+      this.companions.delete(key);
+      if (!companion) this.alone.set(key, found);
       found.companion = companion;
       channel.stream.places.push(found);
       channel.stream.track.add(time, bytes + (companion?.bytes ?? 0));
@@ -189,10 +189,11 @@ class McapFile {
 
   /** Adds one that comes before its message, or behind it where another program has sorted them. */
   private addCompanion(topic: string, companion: Found): void {
-    const message = this.alone.get(topic);
-    if (message && !message.companion && message.time === companion.time)
-      message.companion = companion;
-    else this.companions.set(topic, companion);
+    const key = `${companion.time} ${topic}`;
+    const message = this.alone.get(key);
+    this.alone.delete(key);
+    if (message) message.companion = companion;
+    else this.companions.set(key, companion);
   }
 
   /** The messages of a chunk, plain. */
