@@ -39,10 +39,24 @@ std::int64_t signed_time(std::uint64_t time) {
       std::min<std::uint64_t>(time, std::numeric_limits<std::int64_t>::max()));
 }
 
+/// The topic of MTP that a message and its companion have; empty: it is neither.
+std::string_view pair_topic(const StoredMessage& stored) {
+  if (is_mtp(stored)) return stored.channel->topic;
+  const auto topic = stored.channel->metadata.find(kCompanionKey);
+  return topic != stored.channel->metadata.end() ? std::string_view(topic->second) : "";
+}
+
+/// Whether the companion of a message of MTP has its elements.
+bool lacks_elements(const StoredMessage& stored) {
+  const auto matrix = ros::CdrReader::read<ros::Matrix>(stored.data);
+  return matrix && matrix->offset > 0;
+}
+
 class McapReader final : public Reader {
  public:
-  McapReader(mcap::Reader reader, const Limits& limits, Topics topics)
-      : reader_(std::move(reader)), limits_(limits), topics_(topics) {}
+  /// @param most_ahead  of chunks that are kept to find a companion. [byte]
+  McapReader(mcap::Reader reader, const Limits& limits, std::uint64_t most_ahead, Topics topics)
+      : reader_(std::move(reader)), limits_(limits), most_ahead_(most_ahead), topics_(topics) {}
 
   Result<Got> take(Message& message) override {
     message = {};
@@ -72,6 +86,9 @@ class McapReader final : public Reader {
   [[nodiscard]] std::string_view stream() const override { return stream_; }
   void start_at(std::int64_t log_time) override {
     reader_.start_at(static_cast<std::uint64_t>(log_time));
+    std::erase_if(queue_, [&](const StoredMessage& each) {
+      return signed_time(each.record.log_time) < log_time;
+    });
     if (ahead_ && signed_time(ahead_->message.record.log_time) < log_time) ahead_.reset();
   }
   [[nodiscard]] int descriptor() const override { return reader_.descriptor(); }
@@ -87,45 +104,56 @@ class McapReader final : public Reader {
   Result<std::map<std::string, mcap::StringMap>> metadata() override { return reader_.metadata(); }
 
  private:
-  /// The next message with its companion, which comes before it; a companion without its message
-  /// comes alone. Nothing at the end.
+  /// The next message with its companion, whichever of them comes first; a companion without its
+  /// message comes alone. Nothing at the end.
   Result<std::optional<StoredPair>> read_pair() {
-    while (alone_.empty()) {
-      auto stored = HC_TRY(reader_.next());
-      if (!stored) {
-        if (companions_.empty()) return std::optional<StoredPair>();
-        release_companions();
-        continue;
-      }
-      const auto& channel = *stored->channel;
-      const auto topic = channel.metadata.find(kCompanionKey);
-      if (!is_mtp(*stored) && topic != channel.metadata.end()) {
-        keep(topic->second, std::move(*stored));
-        continue;
-      }
-      StoredPair pair{std::move(*stored), std::nullopt};
-      const auto kept = companions_.find(channel.topic);
-      if (is_mtp(pair.message) && kept != companions_.end() &&
-          kept->second.record.sequence == pair.message.record.sequence)
-        pair.companion = std::move(companions_.extract(kept).mapped());
-      return std::optional(std::move(pair));
-    }
-    StoredPair pair{std::move(alone_.front()), std::nullopt};
-    alone_.pop_front();
+    if (!HC_TRY(look(0))) return std::optional<StoredPair>();
+    StoredPair pair{std::move(queue_.front()), std::nullopt};
+    queue_.pop_front();
+    pair.companion = find_other(pair.message);
+    if (pair.companion && is_mtp(*pair.companion)) std::swap(pair.message, *pair.companion);
     return std::optional(std::move(pair));
   }
 
-  /// Keeps the companion of the next message of a topic. They are in the same chunk, so those of
-  /// other chunks, and their memory, are released.
-  void keep(const std::string& topic, StoredMessage stored) {
-    if (!companions_.empty() && companions_.begin()->second.owner != stored.owner)
-      release_companions();
-    const auto [kept, is_new] = companions_.try_emplace(topic, stored);
-    if (!is_new) alone_.push_back(std::exchange(kept->second, std::move(stored)));
+  /// Reads ahead, so that there is a message at a place of the queue; false: none so far.
+  Result<bool> look(std::size_t place) {
+    if (place < queue_.size()) return true;
+    if (failed_) return *std::exchange(failed_, std::nullopt);
+    auto stored = HC_TRY(reader_.next());
+    if (stored) queue_.push_back(std::move(*stored));
+    return stored.has_value();
   }
-  void release_companions() {
-    for (auto& [topic, companion] : companions_) alone_.push_back(std::move(companion));
-    companions_.clear();
+
+  /// Takes the companion of a message, or the message of a companion, out of those of the same log
+  /// time, as far as the limits go.
+  std::optional<StoredMessage> find_other(const StoredMessage& one) {
+    constexpr std::size_t kMost = 1000;
+    const auto topic = pair_topic(one);
+    const bool is_alone = topic.empty() || (is_mtp(one) && !lacks_elements(one));
+    const void* owner = one.owner.get();
+    std::uint64_t owned = one.owned;
+    for (std::size_t i = 0; i < kMost && !is_alone && owned <= most_ahead_; ++i) {
+      if (i == queue_.size()) {
+        if (failed_) break;
+        const auto time = reader_.next_time();
+        if (!time) failed_ = time.error();
+        if (!time || *time != one.record.log_time) break;
+        auto read = look(i);
+        if (!read) failed_ = read.error();
+        if (!read || !*read) break;
+      }
+      const auto& each = queue_[i];
+      const auto& [channel, sequence, log_time, publish_time] = each.record;
+      if (log_time != one.record.log_time) break;
+      if (std::exchange(owner, each.owner.get()) != each.owner.get()) owned += each.owned;
+      if (sequence != one.record.sequence || is_mtp(each) == is_mtp(one) ||
+          pair_topic(each) != topic)
+        continue;
+      auto other = std::move(queue_[i]);
+      queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(i));
+      return other;
+    }
+    return std::nullopt;
   }
 
   /// The message of MTP, with the elements of its companion where they are there.
@@ -167,13 +195,14 @@ class McapReader final : public Reader {
 
   mcap::Reader reader_;
   const Limits limits_;
+  const std::uint64_t most_ahead_;
   const Topics topics_;
   Traffic traffic_;
   std::string stream_;  // of the last message
   std::int64_t log_time_ = 0;
   std::optional<StoredPair> ahead_;
-  std::map<std::string, StoredMessage> companions_;  // the last, by the topic of MTP
-  std::deque<StoredMessage> alone_;                  // companions that have lost their message
+  std::deque<StoredMessage> queue_;  // read ahead, by log time
+  std::optional<Error> failed_;      // what comes behind them
 };
 
 }  // namespace
@@ -238,7 +267,8 @@ Result<std::unique_ptr<Reader>> read_mcap(const Place& place, const LinkOptions&
         channels.insert(each.channels.begin(), each.channels.end());
     reader->select(std::move(channels));
   }
-  return std::unique_ptr<Reader>(new McapReader(std::move(*reader), options.limits, topics));
+  return std::unique_ptr<Reader>(
+      new McapReader(std::move(*reader), options.limits, limits.chunk_bytes, topics));
 }
 
 }  // namespace hc::record

@@ -391,6 +391,40 @@ TEST_F(Mcap, CompanionsWithoutTheirMessagesAreCopied) {
             (std::map<std::string, std::uint64_t>{{"/a", 3}}));
 }
 
+TEST_F(Mcap, AMessageAndItsCompanionAreFoundInAnyOrderAndChunks) {
+  const auto all = record_images(in("x.mcap"), 2);
+  std::vector<mcap::StoredMessage> stored;  // companion, message, companion, message
+  auto reader = mcap::Reader::open(in("x.mcap"));
+  for (auto next = reader->next(); next && *next; next = reader->next()) stored.push_back(**next);
+  ASSERT_EQ(stored.size(), 4U);
+  const std::vector<std::vector<std::size_t>> orders[] = {
+      {{1, 0, 3, 2}}, {{0}, {1, 2}, {3}}, {{1}, {0, 3}, {2}}, {{1, 3}, {0, 2}}};
+  for (const auto& chunks : orders) {
+    ForeignFile file;
+    for (const auto& [id, schema] : reader->summary().schemas)
+      file.out.add(Opcode::Schema, id, schema.name, schema.encoding, schema.text);
+    for (const auto& [id, channel] : reader->summary().channels)
+      file.out.add(Opcode::Channel, id, channel.schema, channel.topic, channel.encoding,
+                   channel.metadata);
+    for (const auto& chunk : chunks) {
+      RecordWriter plain;
+      std::set<std::uint64_t> times;
+      for (const auto i : chunk) {
+        const auto& [channel, sequence, log_time, publish_time] = stored[i].record;
+        plain.begin(Opcode::Message, channel, sequence, log_time, publish_time);
+        plain.append(stored[i].data);
+        plain.end();
+        times.insert(log_time);
+      }
+      file.add_chunk(plain, *times.begin(), *times.rbegin(), "");
+    }
+    const auto sorted = write("sorted.mcap", file.bytes());
+    EXPECT_EQ(play(sorted).messages, all);
+    fs::remove(in("again.mcap"));
+    EXPECT_EQ(play(copy({sorted}, "again.mcap")).messages, all);
+  }
+}
+
 TEST_F(Mcap, TopicsOfOneNameAndTwoDefinitionsStayTwo) {
   const auto write_topic = [&](const std::string& name, const std::string& text) {
     ForeignFile file;
@@ -578,6 +612,27 @@ TEST_F(Mcap, OfEachStaticFrameTheLatestIsRepeated) {
   ASSERT_GT(written.files.size(), 1U);
   EXPECT_EQ(topics_of(summary_of(written.files.front()))["/tf_static"], 3U);
   EXPECT_EQ(topics_of(summary_of(written.files.back()))["/tf_static"], 1U);
+}
+
+TEST_F(Mcap, StaticFramesThatCannotBeReadAreAllRepeated) {
+  ForeignFile file;
+  std::uint16_t channel = 0;
+  for (const std::string robot : {"a", "b"}) {
+    file.out.add(Opcode::Channel, ++channel, std::uint16_t{0}, "/tf_static", "json",
+                 StringMap{{"robot", robot}});
+    file.add_message(file.out, channel, 1);
+  }
+  write("tf.mcap", file.bytes());
+  record_images(in("x.mcap"), 20);
+  auto options = chunks_of();
+  options.split = 20000;
+  auto writer = writer_of(in("all.mcap"), options);
+  auto reader =
+      *Reader::open({place_of(in("tf.mcap")), place_of(in("x.mcap"))}, {}, writer->copied_topics());
+  for (auto copied = Result<bool>(true); copied && *copied;) copied = writer->copy(*reader);
+  const auto& written = writer->close();
+  ASSERT_GT(written.files.size(), 1U);
+  EXPECT_EQ(topics_of(summary_of(written.files.back()))["/tf_static"], 2U);
 }
 
 /// A `transformation` along x, from a neck of address 11.

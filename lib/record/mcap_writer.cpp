@@ -63,12 +63,11 @@ mcap::SchemaRecord schema_of(ros::Type type) {
 }
 
 /// The child frames that a message of /tf_static is about: as in tf2, a later message replaces what
-/// it says of each.
+/// it says of each. Of one that cannot be read they are not known.
 std::set<std::string> frames_of(std::span<const std::byte> message) {
   std::set<std::string> frames;
   if (const auto tf = ros::CdrReader::read<ros::TfMessage>(message))
     for (const auto& each : tf->transforms) frames.insert(each.child_frame_id);
-  if (frames.empty()) frames.emplace();  // all that cannot be read are about the same
   return frames;
 }
 
@@ -298,11 +297,15 @@ Status McapWriter::repeat(mcap::Storage::Repeated record) {
   return enqueue({[this, record = std::move(record)] { return storage_.add(record); }});
 }
 
+bool McapWriter::is_due() const {
+  return chunk_.size() >= chunk_bytes_ ||
+         std::chrono::steady_clock::now() - chunk_begun_ >= kChunkTime;
+}
+
 Status McapWriter::flush_if_due() {
-  const bool is_due = chunk_.size() >= chunk_bytes_ ||
-                      std::chrono::steady_clock::now() - chunk_begun_ >= kChunkTime;
-  if (is_due && !chunk_.empty()) return flush();
-  const std::lock_guard lock(mutex_);
+  if (is_due()) static_cast<void>(flush());
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return waiting_ <= kBacklog; });
   return status_;
 }
 
@@ -315,8 +318,7 @@ Status McapWriter::flush() {
 }
 
 Status McapWriter::enqueue(Job job) {
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return waiting_ == 0 || waiting_ + job.bytes <= kBacklog; });
+  const std::lock_guard lock(mutex_);
   waiting_ += job.bytes;
   jobs_.push_back(std::move(job));
   changed_.notify_all();
@@ -359,8 +361,8 @@ void McapWriter::work() {
     if (!changed_.wait_for(lock, kChunkTime / 2, [&] { return is_ending_ || !jobs_.empty(); })) {
       lock.unlock();
       // A call that has the chunk looks for itself at its end.
-      if (const std::unique_lock chunk(chunk_mutex_, std::try_to_lock); chunk)
-        static_cast<void>(flush_if_due());
+      if (const std::unique_lock chunk(chunk_mutex_, std::try_to_lock); chunk && is_due())
+        static_cast<void>(flush());
       lock.lock();
       continue;
     }

@@ -103,8 +103,11 @@ class McapWriter {
   void add_copy(const mcap::StoredMessage& message, const void* from);
   /// Writes what each file contains.
   Status repeat(mcap::Storage::Repeated record);
-  /// Passes the chunk to the thread: if it is full or old, or in any case. Never between a message
-  /// and its companion: whoever adds them holds chunk_mutex_.
+  /// Whether the chunk is full or old.
+  [[nodiscard]] bool is_due() const;
+  /// Passes the chunk to the thread: if it is due, or in any case. Never between a message and its
+  /// companion: whoever adds them holds chunk_mutex_. The first then waits while too much waits to
+  /// be written; the thread, which writes it, does not call it.
   Status flush_if_due();
   Status flush();
   Status enqueue(Job job);

@@ -32,7 +32,7 @@ struct StreamInfo {
 };
 
 /// A message as MCAP stores it, and its companion: the message for viewers with the same sequence,
-/// which may have its elements. Both have to be in the same chunk.
+/// which may have its elements. They are written into one chunk.
 struct StoredPair {
   mcap::StoredMessage message;
   std::optional<mcap::StoredMessage> companion;

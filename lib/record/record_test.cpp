@@ -61,6 +61,20 @@ TEST_F(Recorded, AnErrorLeavesNothingBehind) {
   EXPECT_TRUE(fs::is_empty(kept));
 }
 
+TEST_F(Recorded, NothingIsLeftBehindWhereNoDescriptorsAre) {
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  bool is_open = false;
+  for (rlim_t most = 3; most < 100 && !is_open; ++most) {
+    const rlimit limit{most, before.rlim_max};
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
+    is_open = open_folder(kept, {"eyes.left"}).has_value();
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+    EXPECT_EQ(fs::exists(kept), is_open) << most;
+  }
+  EXPECT_TRUE(is_open);
+}
+
 TEST_F(Recorded, HasAFileOfEachStream) {
   auto made = std::move(*open_folder(kept, {"eyes.left", "eyes.right", "neck.pose"}));
   ASSERT_TRUE(made->add(0, sized(3)));

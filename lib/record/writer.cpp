@@ -81,7 +81,12 @@ Status Writer::begin_file(const std::string& path) {
   }
   LinkOptions options;
   if (!is_folder_) options.log = options_.log;
-  file.sink = HC_TRY(hc::open_sink(uri, options));
+  auto sink = hc::open_sink(uri, options);
+  if (!sink) {
+    if (file.lock) fs::remove(file.path);  // begun here, and empty
+    return sink.error();
+  }
+  file.sink = std::move(*sink);
   files_.push_back(std::move(file));
   return {};
 }

@@ -424,7 +424,7 @@ class Recordings(Pipes):
         os.truncate(self.path("kept/b.mtp"), os.path.getsize(self.path("kept/b.mtp")) - 2)
         out = self.shell("hc info kept", 1)
         self.assertIn("a  ", out)
-        self.assertRegex(self.err, r"^hc info: kept/b\.mtp: Truncated: .*\n$")
+        self.assertRegex(self.err, r"^hc info: Truncated: kept/b\.mtp: .*\n$")
 
     def test_what_is_played_into_a_file_is_there_while_nothing_follows(self):
         self.shell("hc send 1 2 3 >one.mtp; mkfifo wait")

@@ -377,7 +377,8 @@ Result<std::optional<StoredMessage>> Reader::next() {
   pop();
   const auto content = take_record(record).second;
   RecordReader reader(content);
-  StoredMessage stored{read_head(reader), nullptr, nullptr, {}, part->bytes.owner};
+  StoredMessage stored{read_head(reader),      nullptr, nullptr, {}, part->bytes.owner,
+                       part->bytes.span.size()};
   stored.data = content.last(reader.left());
   const auto channel = summary_.channels.find(stored.record.channel);
   if (channel == summary_.channels.end())

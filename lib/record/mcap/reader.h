@@ -47,6 +47,7 @@ struct StoredMessage {
   const SchemaRecord* schema = nullptr;    ///< null: none
   std::span<const std::byte> data;
   std::shared_ptr<const void> owner;
+  std::size_t owned = 0;  ///< of the owner [byte]
 };
 
 class Reader {

@@ -122,7 +122,7 @@ Status Storage::add(Repeated record) {
   if (lasting != nullptr)
     std::erase_if(repeated_, [&](Repeated& each) {
       auto* older = std::get_if<Lasting>(&each);
-      if (older == nullptr) return false;
+      if (older == nullptr || older->about.empty()) return false;
       for (const auto& one : lasting->about) older->about.erase(one);
       return older->about.empty();
     });

@@ -30,7 +30,8 @@ struct Lasting {
   std::uint32_t sequence = 0;
   std::uint64_t log_time = 0;  ///< [ns since the Unix epoch]
   std::vector<std::byte> data;
-  std::set<std::string> about;  ///< later messages about these replace it, all of them together
+  /// Later messages about these replace it, all of them together; empty: none does.
+  std::set<std::string> about;
 };
 
 /// Reads a number of bytes, also with K, M or G (of 1024) behind it; empty is 0. Errors: Invalid.

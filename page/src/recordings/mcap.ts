@@ -73,8 +73,8 @@ interface Channel {
   readonly topic: string;
   /** Of messages of MTP. */
   readonly stream?: Stream;
-  /** Of those beside them: the topic of these. */
-  readonly beside?: string;
+  /** Of companions: the topic of their messages. */
+  readonly companion?: string;
 }
 
 /** A stream, and where its messages are. */
@@ -87,8 +87,8 @@ interface Stream {
 interface Place {
   readonly chunk: Chunk;
   readonly offset: number; // in its chunk
-  /** Of a message of MTP: the one beside it, which may be in another chunk. */
-  beside?: Place | undefined;
+  /** Of a message of MTP: its companion, which may be in another chunk. */
+  companion?: Place | undefined;
 }
 
 /** A message in the index of a chunk. */
@@ -100,8 +100,8 @@ interface Found extends Place {
 class McapFile {
   private readonly channels = new Map<number, Channel>();
   private readonly chunks: Chunk[] = [];
-  // The last of each topic of MTP: the one beside a message to come, and a message with none beside it.
-  private readonly besides = new Map<string, Found>();
+  // By log time and topic of MTP: companions of messages to come, and messages without one.
+  private readonly companions = new Map<string, Found>();
   private readonly alone = new Map<string, Found>();
   private newest?: { readonly chunk: Chunk; readonly bytes: Promise<Uint8Array<ArrayBuffer>> };
 
@@ -150,7 +150,7 @@ class McapFile {
     const places: Place[] = [];
     const track = new Track(name ?? "", (index) => this.message(topic, places[index]!));
     const stream = name === undefined ? undefined : { track, places };
-    this.channels.set(id, { topic, stream, beside: words.get("hypercolumn.mtp") });
+    this.channels.set(id, { topic, stream, companion: words.get("hypercolumn.mtp") });
   }
 
   private addChunk(content: Fields): void {
@@ -175,22 +175,25 @@ class McapFile {
     entries.forEach(({ time, offset, channel }, i) => {
       const bytes = (entries[i + 1]?.offset ?? chunk.plain) - offset;
       const found: Found = { chunk, offset, time, bytes };
-      if (channel?.beside !== undefined) this.addBeside(channel.beside, found);
+      if (channel?.companion !== undefined) this.addCompanion(channel.companion, found);
       if (!channel?.stream) return;
-      const beside = this.besides.get(channel.topic);
-      this.besides.delete(channel.topic);
-      this.alone.set(channel.topic, found);
-      found.beside = beside;
+      const key = `${time} ${channel.topic}`;
+      const companion = this.companions.get(key);
+      this.companions.delete(key);
+      if (!companion) this.alone.set(key, found);
+      found.companion = companion;
       channel.stream.places.push(found);
-      channel.stream.track.add(time, bytes + (beside?.bytes ?? 0));
+      channel.stream.track.add(time, bytes + (companion?.bytes ?? 0));
     });
   }
 
   /** Adds one that comes before its message, or behind it where another program has sorted them. */
-  private addBeside(topic: string, beside: Found): void {
-    const message = this.alone.get(topic);
-    if (message && !message.beside && message.time === beside.time) message.beside = beside;
-    else this.besides.set(topic, beside);
+  private addCompanion(topic: string, companion: Found): void {
+    const key = `${companion.time} ${topic}`;
+    const message = this.alone.get(key);
+    this.alone.delete(key);
+    if (message) message.companion = companion;
+    else this.companions.set(key, companion);
   }
 
   /** The messages of a chunk, plain. */
@@ -226,7 +229,7 @@ class McapFile {
     const [from, size] = [matrix.u32(), matrix.u32()];
     let bytes = matrix.take(matrix.u32());
     if (from > 0) {
-      const other = place.beside && (await this.stored(place.beside));
+      const other = place.companion && (await this.stored(place.companion));
       if (other?.sequence !== sequence || from + size > other.data.length)
         throw new Error(`A message of ${topic} lacks its elements.`);
       bytes = other.data.subarray(from, from + size);
