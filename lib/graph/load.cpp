@@ -169,7 +169,12 @@ class FileLoader : public GraphLoader {
     Answers described;  // here; a failure is not tried twice
     LoadedGraph loaded{graph, {}, {}, {}};
     const bool has_recorder = !options_.recorder.empty();
-    const std::string recorder = has_recorder ? find_program("recorder") : "";
+    std::string recorder;
+    if (has_recorder) {
+      const auto found =
+          unless_stopped(stop, []() -> Result<std::string> { return find_program("recorder"); });
+      recorder = found.value_or("");
+    }
     std::vector<std::string> recorded;
     auto describe = [&](const std::string& program,
                         const std::string& host) -> Result<std::string> {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <graph/process.h>
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <sys/prctl.h>
 #include <sys/signalfd.h>
@@ -8,8 +9,9 @@
 #include <sys/wait.h>
 
 #include <array>
-#include <chrono>
+#include <charconv>
 #include <csignal>
+#include <cstring>
 #include <string_view>
 
 #include <graph/plan.h>
@@ -20,42 +22,39 @@ namespace hc {
 
 namespace {
 
-constexpr std::chrono::seconds kExecTime{1};  // that we wait to hear that a program cannot be run
-
 /// What a guard and its program get from us. Between fork and exec, and in a guard all its life,
 /// nothing may allocate: another thread of ours may have held a lock when we forked.
 struct Start {
   char* const* arguments;
   int input, output, errors;  // of the program; -1: none
-  int failure;                // for the errno of what fails
+  int number;                 // for the number of the program, or -errno where fork fails
   int life;                   // at its end when we have ended
   const Given* given;         // to the program
   char* const* environment;
 };
 
-[[noreturn]] void fail(const Start& start) {
-  int number = errno;
-  [[maybe_unused]] auto written = ::write(start.failure, &number, sizeof number);
-  ::_exit(kCannotExecute);
+/// Closes what exec would: on a disk that hangs that is late or never, and meanwhile others wait
+/// for the ends of these pipes, as guards do for that of our life.
+void close_on_exec(const Start& start) {
+  const int list = ::open("/proc/self/fd", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  alignas(dirent64) char piece[4096];
+  for (ssize_t size = 0; (size = ::getdents64(list, piece, sizeof piece)) > 0;)
+    for (ssize_t at = 0; at < size;) {
+      const auto* entry = reinterpret_cast<const dirent64*>(piece + at);
+      at += entry->d_reclen;
+      int number = -1;
+      std::from_chars(entry->d_name, entry->d_name + std::strlen(entry->d_name), number);
+      if (number >= 0 && number != list && number != start.life && number != start.number &&
+          (::fcntl(number, F_GETFD) & FD_CLOEXEC) != 0)
+        ::close(number);
+    }
+  ::close(list);
 }
 
-/// Becomes the program.
-[[noreturn]] void become(Start start, pid_t parent) {
+/// Becomes the program, or says on its standard error why it cannot.
+[[noreturn]] void become(const Start& start, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(kCannotExecute);  // it died before it could be noticed
-  int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-  ::dup2(start.input >= 0 ? start.input : null, STDIN_FILENO);
-  ::dup2(start.output >= 0 ? start.output : null, STDOUT_FILENO);
-  ::dup2(start.errors >= 0 ? start.errors : null, STDERR_FILENO);
-  for (const int listener : start.given->listeners) ::fcntl(listener, F_SETFD, 0);
-  if (const int key = start.given->key; key >= 0) {
-    // The descriptor it becomes may be the one for failures.
-    start.failure = ::fcntl(start.failure, F_DUPFD_CLOEXEC, kKeyDescriptor + 1);
-    if (key == kKeyDescriptor)
-      ::fcntl(key, F_SETFD, 0);
-    else
-      ::dup2(key, kKeyDescriptor);
-  }
   std::signal(SIGPIPE, SIG_DFL);
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
@@ -63,7 +62,10 @@ struct Start {
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   ::execvpe(start.arguments[0], start.arguments, start.environment);
-  fail(start);
+  const char* const why = ::strerrordesc_np(errno);
+  for (const char* part : std::array<const char*, 5>{"exec(", start.arguments[0], "): ", why, "\n"})
+    if (::write(STDERR_FILENO, part, std::strlen(part)) < 0) break;
+  ::_exit(kCannotExecute);
 }
 
 /// Signals every child of ours to die; whether there was one that can be.
@@ -86,7 +88,7 @@ bool kill_children() {
 }
 
 /// The guard between us and a program: see process.h.
-[[noreturn]] void guard(const Start& start) {
+[[noreturn]] void guard(Start start) {
   sigset_t all, ended;
   ::sigfillset(&all);
   ::sigprocmask(SIG_SETMASK, &all, nullptr);
@@ -95,9 +97,23 @@ bool kill_children() {
   ::prctl(PR_SET_NAME, "guard");
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   pid_t self = ::getpid();
-  pid_t program = ::fork();
-  if (program < 0) fail(start);
+  // Done before the program is forked, which anybody may stop before it has done it.
+  for (int* kept : {&start.life, &start.number})
+    *kept = ::fcntl(*kept, F_DUPFD_CLOEXEC, kKeyDescriptor + 1);
+  int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  ::dup2(start.input >= 0 ? start.input : null, STDIN_FILENO);
+  ::dup2(start.output >= 0 ? start.output : null, STDOUT_FILENO);
+  ::dup2(start.errors >= 0 ? start.errors : null, STDERR_FILENO);
+  for (const int listener : start.given->listeners) ::fcntl(listener, F_SETFD, 0);
+  if (const int key = start.given->key; key == kKeyDescriptor)
+    ::fcntl(key, F_SETFD, 0);
+  else if (key >= 0)
+    ::dup2(key, kKeyDescriptor);
+  close_on_exec(start);
+  const pid_t program = ::fork();
   if (program == 0) become(start, self);
+  const int number = program < 0 ? -errno : program;
+  if (::write(start.number, &number, sizeof number) < 0 || program < 0) ::_exit(kCannotExecute);
 
   // All pipes of other processes are open here too, and would not close when we go.
   ::dup2(start.life, 0);
@@ -145,9 +161,9 @@ std::vector<std::string> environment_with(const std::vector<int>& listeners) {
   return words;
 }
 
-/// Why a program was not started, by the call that failed, and what to do.
-Error start_error(std::string_view call, const std::string& program, int number) {
-  if (number != EAGAIN) return system_error(call, program, number);
+/// Why a program was not started, and what to do.
+Error fork_error(const std::string& program, int number) {
+  if (number != EAGAIN) return system_error("fork", program, number);
   return {Code::System, program + " cannot be started: there are as many processes as this user, " +
                             "or its control group, may have (ulimit -u, pids.max)"};
 }
@@ -165,7 +181,7 @@ Result<Process> Process::start(const std::vector<std::string>& command, Capture 
   const auto words = environment_with(given.listeners);
   const auto arguments = pointers(command), environment = pointers(words);
   auto output = HC_TRY(make_pipe());
-  auto failure = HC_TRY(make_pipe());
+  auto number = HC_TRY(make_pipe());
   auto life = HC_TRY(make_pipe());
   std::array<Descriptor, 2> input, errors;
   if (capture == Capture::Both)
@@ -179,16 +195,16 @@ Result<Process> Process::start(const std::vector<std::string>& command, Capture 
                     is_both                      ? errors[1].get()
                     : capture == Capture::Errors ? captured
                                                  : -1,
-                    failure[1].get(),
+                    number[1].get(),
                     life[0].get(),
                     &given,
                     environment.data()};
-  pid_t child = ::fork();
-  if (child < 0) return start_error("fork", command[0], errno);
+  const pid_t child = ::fork();
+  if (child < 0) return fork_error(command[0], errno);
   if (child == 0) guard(start);
 
   Process process;
-  process.number_ = child;
+  process.guard_ = child;
   process.handle_ = Descriptor(static_cast<int>(::syscall(SYS_pidfd_open, child, 0)));
   process.output_ = std::move(output[0]);
   process.errors_ = std::move(errors[0]);
@@ -196,25 +212,19 @@ Result<Process> Process::start(const std::vector<std::string>& command, Capture 
   process.life_ = std::move(life[1]);
   for (const auto* ours : {&process.output_, &process.errors_, &process.input_})
     if (*ours) ::fcntl(ours->get(), F_SETFL, O_NONBLOCK);
-  // The pipe closes when exec succeeds. On a disk that hangs that may be late or never: we go on,
-  // and one that fails then has status kCannotExecute.
-  failure[1].reset();
-  const auto deadline = std::chrono::steady_clock::now() + kExecTime;
-  if (HC_TRY(wait_for(failure[0].get(), POLLIN, -1, deadline))) {
-    int number = 0;
-    auto size =
-        system_call("read", "", [&] { return ::read(failure[0].get(), &number, sizeof number); });
-    if (size && *size == sizeof number) return start_error("exec", command[0], number);
-  }
   if (!process.handle_) return system_error("pidfd_open", command[0]);
+  number[1].reset();
+  int& said = process.number_;  // 0: the guard was killed, as its end tells
+  HC_TRY(system_call("read", "", [&] { return ::read(number[0].get(), &said, sizeof said); }));
+  if (said < 0) return fork_error(command[0], -said);
   return process;
 }
 
 Process::~Process() {
-  if (!owned_.flag || number_ < 0 || status_) return;
+  if (!owned_.flag || guard_ < 0 || status_) return;
   kill();
   siginfo_t ended{};
-  while (::waitid(P_PID, static_cast<id_t>(number_), &ended, WEXITED | WNOWAIT) < 0 &&
+  while (::waitid(P_PID, static_cast<id_t>(guard_), &ended, WEXITED | WNOWAIT) < 0 &&
          errno == EINTR) {
   }
   poll_status();
@@ -222,13 +232,13 @@ Process::~Process() {
 
 std::optional<int> Process::poll_status() {
   siginfo_t ended{};
-  if (status_ || ::waitid(P_PID, static_cast<id_t>(number_), &ended, WEXITED | WNOHANG | WNOWAIT) ||
-      ended.si_pid != number_)
+  if (status_ || ::waitid(P_PID, static_cast<id_t>(guard_), &ended, WEXITED | WNOHANG | WNOWAIT) ||
+      ended.si_pid != guard_)
     return status_;
   // What a guard that was killed could not see to. Until it is reaped, the number is nobody else's.
-  ::kill(-number_, SIGKILL);
+  ::kill(-guard_, SIGKILL);
   int status = 0;
-  ::waitpid(number_, &status, 0);
+  ::waitpid(guard_, &status, 0);
   status_ = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
   return status_;
 }
@@ -237,8 +247,8 @@ void Process::ask_to_end() const {
   if (status_) return;
   // First, as a stopped process could not end; later it may undo the stop of a leak checker or a
   // debugger that looks at a process that is ending.
-  ::kill(-number_, SIGCONT);
-  ::kill(-number_, SIGTERM);
+  ::kill(-guard_, SIGCONT);
+  ::kill(-guard_, SIGTERM);
 }
 
 }  // namespace hc

@@ -38,19 +38,21 @@ class Process {
 
   /// Starts a program; a name without a slash is looked up in PATH. Its standard input is empty;
   /// one of its standard output and standard error comes to us, the other is dropped. With Both we
-  /// have all three.
+  /// have all three. Does not wait until the program has been read, which a disk may take for ever:
+  /// one that cannot be executed says why on its standard error, and has status kCannotExecute.
   ///
   /// @param given  what it gets of ours.
   ///
-  /// Errors: NotFound, System.
+  /// Errors: System.
   static Result<Process> start(const std::vector<std::string>& command, Capture capture,
                                const Given& given = {});
 
   Process(Process&&) = default;
   ~Process();
 
-  /// Of its guard, whose eldest child the process is.
-  [[nodiscard]] pid_t guard_number() const { return number_; }
+  [[nodiscard]] pid_t number() const { return number_; }
+  /// Of its guard, whose child the process is.
+  [[nodiscard]] pid_t guard_number() const { return guard_; }
   /// What is captured; reading gives 0 bytes when all who could write have ended.
   [[nodiscard]] int output() const { return output_.get(); }
   /// With Capture::Both: its standard error, and its standard input, which is ours to write.
@@ -72,7 +74,8 @@ class Process {
  private:
   Process() = default;
 
-  pid_t number_ = -1;  // of the guard, and its group
+  pid_t number_ = 0;
+  pid_t guard_ = -1;   // its number, and that of its group
   Descriptor handle_;  // a pidfd
   Descriptor output_, errors_, input_;
   Descriptor life_;  // closed: the guard is to kill

@@ -69,10 +69,10 @@ TEST(Process, IsHeardAndHasAStatus) {
 }
 
 TEST(Process, WhatCannotBeExecutedIsNamed) {
-  const auto missing = refused(Process::start({"/nowhere/program"}, Capture::Output));
-  EXPECT_EQ(missing.code, Code::NotFound);
-  EXPECT_EQ(missing.detail, "exec(/nowhere/program): No such file or directory");
-  EXPECT_EQ(refused(Process::start({"/"}, Capture::Output)).detail, "exec(/): Permission denied");
+  auto missing = must(Process::start({"/nowhere/program"}, Capture::Errors));
+  EXPECT_EQ(listen(missing), "exec(/nowhere/program): No such file or directory\n");
+  EXPECT_EQ(status_of(missing), kCannotExecute);
+  EXPECT_EQ(listen(must(Process::start({"/"}, Capture::Errors))), "exec(/): Permission denied\n");
 }
 
 TEST(Process, ASignalCountsFrom128) {
@@ -131,7 +131,36 @@ TEST(Process, AGuardThatIsKilledTakesItsGroupAlong) {
   EXPECT_EQ(listen(process), "");  // all who could write have ended
 }
 
+/// A program on a disk that hangs: who executes it waits.
+class HungProgram {
+ public:
+  HungProgram() {
+    std::ofstream(name_) << "#!/bin/sh\necho said\n";
+    ::chmod(name_.c_str(), S_IRWXU);
+    // Who opens a file that is leased waits until the lease is given back.
+    std::signal(SIGIO, SIG_IGN);
+    lease_ = Descriptor(::open(name_.c_str(), O_RDONLY | O_CLOEXEC));
+    HC_CHECK(::fcntl(lease_.get(), F_SETLEASE, F_WRLCK) == 0, errno);
+  }
+  HungProgram(const HungProgram&) = delete;
+  HungProgram& operator=(const HungProgram&) = delete;
+  ~HungProgram() { ::unlink(name_.c_str()); }
+
+  /// A process that hangs in exec.
+  [[nodiscard]] Process start() const {
+    auto process = must(Process::start({name_}, Capture::Output));
+    while (::fcntl(lease_.get(), F_GETLEASE) == F_WRLCK) ::sched_yield();
+    return process;
+  }
+  void go_on() { lease_.reset(); }
+
+ private:
+  const std::string name_ = ::testing::TempDir() + "hung_" + std::to_string(::getpid());
+  Descriptor lease_;
+};
+
 TEST(Process, NothingIsLeftBehindWhenWeAreKilled) {
+  HungProgram hung;
   int ends[2];
   ASSERT_EQ(::pipe(ends), 0);
   pid_t runner = ::fork();
@@ -139,6 +168,7 @@ TEST(Process, NothingIsLeftBehindWhenWeAreKilled) {
     ::close(ends[0]);
     auto process = shell(kLeaveBehind + "sleep 1000");
     std::string left = listen(process, '\n') + "\n";
+    const auto another = hung.start();  // it was forked with the pipe of the first open
     if (::write(ends[1], left.data(), left.size()) < 0) ::_exit(1);
     while (true) ::pause();
   }
@@ -153,31 +183,31 @@ TEST(Process, NothingIsLeftBehindWhenWeAreKilled) {
   ::close(ends[0]);
 }
 
-/// The name of a process: its program's once that has been executed.
-std::string name_of(pid_t process) {
-  std::ifstream file("/proc/" + std::to_string(process) + "/comm");
-  std::string name;
-  std::getline(file, name);
-  return name;
+TEST(Process, AProgramOnADiskThatHangsIsNotWaitedFor) {
+  HungProgram hung;
+  auto process = hung.start();
+  hung.go_on();
+  EXPECT_EQ(listen(process), "said\n");
+  EXPECT_EQ(status_of(process), 0);
 }
 
-TEST(Process, AProgramOnADiskThatHangsIsNotWaitedFor) {
-  const std::string program = ::testing::TempDir() + "hung_" + std::to_string(::getpid());
-  std::ofstream(program) << "#!/bin/sh\necho said\n";
-  ::chmod(program.c_str(), S_IRWXU);
-  // Who opens a file that is leased waits until the lease is given back, as on a disk that hangs.
-  std::signal(SIGIO, SIG_IGN);
-  const Descriptor lease(::open(program.c_str(), O_RDONLY | O_CLOEXEC));
-  ASSERT_EQ(::fcntl(lease.get(), F_SETLEASE, F_WRLCK), 0);
-  auto process = Process::start({program}, Capture::Output);
-  ASSERT_TRUE(process);
-  pid_t child = 0;
-  while ((child = first_child(process->guard_number())) == 0) ::sched_yield();
-  EXPECT_EQ(name_of(child), "guard");
-  ::fcntl(lease.get(), F_SETLEASE, F_UNLCK);
-  EXPECT_EQ(listen(*process), "said\n");
-  EXPECT_EQ(status_of(*process), 0);
-  ::unlink(program.c_str());
+TEST(Process, AProgramOnADiskThatHangsCanBeKilledAndKeepsNoOtherAlive) {
+  const HungProgram hung;
+  auto other = shell("exec sleep 1000");
+  auto process = hung.start();
+  other.kill();
+  EXPECT_EQ(status_of(other), 128 + SIGKILL);
+  process.kill();
+  EXPECT_EQ(status_of(process), 128 + SIGKILL);
+}
+
+TEST(Process, WhatWeHaveInheritedIsInherited) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  auto process = shell("echo said >&" + std::to_string(ends[1]));
+  EXPECT_EQ(status_of(process), 0);
+  ::close(ends[0]);
+  ::close(ends[1]);
 }
 
 TEST(Process, TooManyProcessesAreSaidInWords) {

@@ -51,7 +51,6 @@ class ProcessHere final : public ModuleProcess {
     process_.emplace(std::move(started));
     said_ = std::move(said);
     ended_ = std::move(ended);
-    number_ = first_child(process_->guard_number());
     return {};
   }
 
@@ -74,7 +73,6 @@ class ProcessHere final : public ModuleProcess {
     process_.reset();
     processes_.clear();
     memory_.reset();
-    number_ = 0;
     if (commands_) commands_->leave_all();
     callbacks_.ended(*status);
   }
@@ -86,7 +84,7 @@ class ProcessHere final : public ModuleProcess {
   }
   bool send(const Message& command) override { return !commands_ || commands_->say(command); }
 
-  [[nodiscard]] pid_t number() const override { return number_; }
+  [[nodiscard]] pid_t number() const override { return process_ ? process_->number() : 0; }
   Usage usage(bool with_memory) override {
     if (!process_) return {};
     with_memory = with_memory || !memory_;
@@ -117,7 +115,6 @@ class ProcessHere final : public ModuleProcess {
   std::unique_ptr<Announcer> commands_;
   internal::HeldNames names_;  // of all its processes
   std::optional<Process> process_;
-  pid_t number_ = 0;
   std::vector<pid_t> processes_;         // when they were last looked for,
   std::optional<std::uint64_t> memory_;  // and this
   Loop::Handle said_, ended_;

@@ -69,11 +69,6 @@ std::uint64_t memory_of(pid_t process) {
 
 }  // namespace
 
-pid_t first_child(pid_t process) {
-  auto children = children_of(process, std::to_string(process));
-  return children.empty() ? 0 : static_cast<pid_t>(children.front());
-}
-
 std::vector<pid_t> descendants(pid_t process) {
   std::vector<pid_t> all;
   auto add = [&](pid_t parent) {

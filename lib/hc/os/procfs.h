@@ -10,9 +10,6 @@
 
 namespace hc {
 
-/// The process that a guard has started first, and has not outlived; 0 where there is none.
-pid_t first_child(pid_t process);
-
 /// All that descends from a process, without itself. Cost: some system calls for each of them.
 std::vector<pid_t> descendants(pid_t process);
 
