@@ -240,7 +240,7 @@ Result<std::unique_ptr<Reader>> read_mcap(const Place& place, const LinkOptions&
   for (const auto& [key, value] : place.uri.options)
     if (key != "stream")
       return Error{Code::Invalid,
-                   "a recording in MCAP has no option \"" + key + "\", only \"stream\""};
+                   "a recording in MCAP has no option \"" + key + R"(", only "stream")"};
   mcap::ReaderLimits limits;
   limits.chunk_bytes = options.limits.element_bytes + (std::uint64_t{64} << 20);
   auto reader = mcap::Reader::open(place.path, limits);
@@ -256,6 +256,7 @@ Result<std::unique_ptr<Reader>> read_mcap(const Place& place, const LinkOptions&
   const auto& wanted = place.stream;
   if (!wanted.empty() && std::ranges::find(known, wanted, &StreamInfo::name) == known.end()) {
     std::vector<std::string> names;
+    names.reserve(known.size());
     for (const auto& each : known) names.push_back(each.name);
     return Error{Code::NotFound,
                  place.path + ": no stream \"" + wanted + "\"" + suggestion(wanted, names)};
