@@ -112,13 +112,13 @@ class GraphReader {
                   {"host", fields_.any_text(host)},
                   {"modules", [&](const Node& modules) { overrides = &modules; }}});
     if (file.value.empty()) return;
-    auto text = read_included(graph.file, file);
-    if (!text) {
+    const auto found = read_included(graph.file, file);
+    if (!found) {
       graph.is_whole = false;
       return;
     }
-    Graph included = internal::with_prefix(
-        read(*text, problems_.add_file(path_of(graph.file, file.value))), name);
+    Graph included =
+        internal::with_prefix(read(found->text, problems_.add_file(found->path)), name);
     for (auto& module : included.modules)
       if (module.host.place.line == 0) module.host = host;
     if (overrides != nullptr)
@@ -140,24 +140,19 @@ class GraphReader {
                 suggestion(node.key, known));
   }
 
-  static std::string path_of(const std::string& from, const std::string& file) {
-    namespace fs = std::filesystem;
-    std::error_code missing;
-    const auto path = (fs::path(from).parent_path() / file).lexically_normal();
-    const auto shipped = graph_folder() / file;
-    const bool is_name = file.find('/') == std::string::npos;
-    return is_name && !fs::exists(path, missing) && fs::exists(shipped, missing) ? shipped : path;
-  }
+  struct Included {
+    std::string path, text;
+  };
 
-  std::optional<std::string> read_included(const std::string& from,
-                                           const Lined<std::string>& file) {
-    const std::string path = path_of(from, file.value);
+  /// Reads a file by its path from the one that names it, or a shipped one by its name.
+  std::optional<Included> read_included(const std::string& from, const Lined<std::string>& file) {
+    std::string path = (std::filesystem::path(from).parent_path() / file.value).lexically_normal();
     auto refuse = [&](const std::string& what) {
       problems_.add(file.place, what);
       return std::nullopt;
     };
-    if (std::find(including_.begin(), including_.end(), path) != including_.end())
-      return refuse(path + " includes itself");
+    auto includes_itself = [&] { return std::ranges::find(including_, path) != including_.end(); };
+    if (includes_itself()) return refuse(path + " includes itself");
     if (including_.size() > kMaxIncludedDepth)
       return refuse("at most " + std::to_string(kMaxIncludedDepth) + " nested includes");
     if (++included_ > kMaxIncluded) {
@@ -166,12 +161,20 @@ class GraphReader {
     }
     Result<std::string> text = Error{Code::NotFound, path + ": cannot be read"};
     if (read_file_) text = read_file_(path);
+    if (!text && text.error().code == Code::NotFound && file.value.find('/') == std::string::npos) {
+      const std::string shipped = graph_folder() / file.value;
+      if (auto found = read_file_ ? read_file_(shipped) : text) {
+        path = shipped;
+        text = std::move(found);
+        if (includes_itself()) return refuse(path + " includes itself");
+      }
+    }
     if (!text) return refuse(text.error().detail);
     included_bytes_ += text->size();
     if (included_bytes_ > kMaxIncludedBytes)
       return refuse("all included files together have at most " +
                     std::to_string(kMaxIncludedBytes) + " bytes");
-    return std::move(*text);
+    return Included{std::move(path), std::move(*text)};
   }
 
   internal::Fields fields_;

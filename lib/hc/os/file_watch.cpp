@@ -16,7 +16,7 @@ namespace hc {
 struct FileWatch::Shared {
   Event changed;
   std::mutex mutex;  // of what follows
-  std::condition_variable over;
+  std::condition_variable woken;
   bool is_over = false;
   int sets = 0;  // how often files were set
   std::map<std::string, std::optional<FileStamp>>
@@ -26,13 +26,16 @@ struct FileWatch::Shared {
     std::unique_lock lock(mutex);
     auto seen = known;
     auto pause = kPeriod;
-    while (!over.wait_for(lock, pause, [this] { return is_over; })) {
+    int sets_seen = sets;
+    while (true) {
+      woken.wait_for(lock, pause, [&] { return is_over || sets != sets_seen; });
+      if (is_over) return;
       auto now = known;
-      const int sets_before = sets;
+      sets_seen = sets;
       lock.unlock();
       for (auto& [file, stamp] : now) stamp = file_stamp(file);
       lock.lock();
-      if (sets != sets_before) continue;
+      if (sets != sets_seen) continue;
       for (auto& [file, stamp] : known)
         if (!stamp) stamp = now[file];
       const bool is_quiet = std::exchange(seen, now) == now;
@@ -65,7 +68,7 @@ Result<std::unique_ptr<FileWatch>> FileWatch::make(Loop& loop,
 FileWatch::~FileWatch() {
   const std::lock_guard lock(shared_->mutex);
   shared_->is_over = true;
-  shared_->over.notify_all();
+  shared_->woken.notify_all();
 }
 
 void FileWatch::set_files(const std::vector<std::string>& files) {
@@ -76,6 +79,7 @@ void FileWatch::set_files(const std::vector<std::string>& files) {
     shared_->known[file] = found == before.end() ? std::nullopt : found->second;
   }
   ++shared_->sets;
+  shared_->woken.notify_all();
 }
 
 bool FileWatch::was_there(const std::string& file) const {

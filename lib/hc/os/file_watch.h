@@ -30,8 +30,8 @@ class FileWatch {
                                                  std::function<void()> changed);
   ~FileWatch();
 
-  /// Watches these from now on, those that it has watched before from its last call on, others from
-  /// the next look on, and no others any more.
+  /// Watches these from now on, those that it has watched before from its last call on, and no
+  /// others any more. Others are looked at at once, on its thread.
   void set_files(const std::vector<std::string>& files);
 
   /// Whether a file that it watches was there at its last call.
