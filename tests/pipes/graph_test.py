@@ -103,8 +103,12 @@ rate = 2
             % DATA,
         )
         out = self.shell("hc run --quiet --links slow.toml")
-        self.assertRegex(out, r"  (\d+) throttled\n")
-        self.assertRegex(out, r"camera\.left → brightness\.image .* \d+ throttled\n")
+        # Where others have the processor, newer ones overtake some before they are looked at.
+        self.assertRegex(out, r"  \d+ throttled(, \d+ dropped)?\n")
+        line = (
+            r"camera\.left → brightness\.image .* \d+ throttled(, \d+ dropped \(newer arrived\))?\n"
+        )
+        self.assertRegex(out, line)
 
     def test_interrupt_ends_a_graph_cleanly(self):
         process = self.run_live()
