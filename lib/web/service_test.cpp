@@ -216,11 +216,11 @@ TEST(Service, work_aside_goes_on_in_the_servers_thread_and_is_logged_where_it_th
   auto& server = (*service)->server();
   std::promise<std::array<std::thread::id, 3>> threads;
   server.post([&] {
-    server.aside([&, here = std::this_thread::get_id()] {
+    EXPECT_TRUE(server.aside([&, here = std::this_thread::get_id()] {
       return [&, here, beside = std::this_thread::get_id()] {
         threads.set_value({here, beside, std::this_thread::get_id()});
       };
-    });
+    }));
   });
   (*service)->serve(std::make_unique<Hello>(closed));
   const auto [before, beside, after] = threads.get_future().get();
@@ -241,12 +241,12 @@ TEST(Service, ends_after_the_work_aside) {
   auto& server = (*service)->server();
   std::latch begun(1);
   server.post([&] {
-    server.aside([&] {
+    EXPECT_TRUE(server.aside([&] {
       begun.count_down();
       closed.wait(0);
       is_done = true;
       return [] {};
-    });
+    }));
   });
   (*service)->serve(std::make_unique<Hello>(closed));
   begun.wait();
