@@ -186,10 +186,10 @@ struct Log {
 };
 
 /// hypercolumn_msgs/msg/Matrix: an MTP message whole, or what a message of another type, which
-/// is beside it, lacks of it.
+/// is its companion, lacks of it.
 struct Matrix {
   std::string header;        ///< its header line without the line end
-  std::uint32_t offset = 0;  ///< of the elements in the message beside; 0: they are here
+  std::uint32_t offset = 0;  ///< of the elements in the companion; 0: they are here
   std::uint32_t size = 0;    ///< of the elements there [byte]
   Numbers<std::uint8_t> elements;
   static auto members(auto& m) { return std::tie(m.header, m.offset, m.size, m.elements); }

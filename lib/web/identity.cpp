@@ -6,11 +6,13 @@
 #include <openssl/x509.h>
 
 #include <array>
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <system_error>
 
 #include <tls/key.h>
 
@@ -28,11 +30,6 @@ std::unique_ptr<Object, Free> read_pem(Object* read(BIO*, Object**, pem_password
   return {read(bio.get(), nullptr, nullptr, nullptr), free};
 }
 
-std::string contents(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 auto certificate_of(const std::string& text) {
   return read_pem(PEM_read_bio_X509, X509_free, text);
 }
@@ -46,9 +43,11 @@ Result<std::string> load_identity(const std::string& folder) {
   if (error)
     return Error{Code::System, "certificate: cannot make " + folder + ": " + error.message()};
   if (auto made = tls::make_key(path); !made) return made.error();
-  auto text = contents(path);
-  // Each had a file of its own, and browsers have accepted that certificate.
-  if (!certificate_of(text)) text += contents(folder + "/page_certificate.pem");
+  std::ifstream file(path);
+  if (!file)
+    return Error{Code::System,
+                 path + ": cannot be read: " + std::generic_category().message(errno)};
+  const std::string text(std::istreambuf_iterator<char>(file), {});
   const auto certificate = certificate_of(text);
   const auto key = read_pem(PEM_read_bio_PrivateKey, EVP_PKEY_free, text);
   if (!certificate || !key || X509_check_private_key(certificate.get(), key.get()) != 1)

@@ -10,9 +10,10 @@
 namespace hc::web {
 
 /// The certificate and its key in a folder, PEM, from page_key.pem, which is made where it is not
-/// there (tls::make_key()). The certificate may be beside it, in page_certificate.pem.
+/// there (tls::make_key()).
 ///
-/// Errors: System (the folder cannot be written), Malformed (the file holds something else).
+/// Errors: System (the folder cannot be written, or the file not be read), Malformed (the file
+/// holds something else).
 Result<std::string> load_identity(const std::string& folder);
 
 /// The SHA-256 fingerprint of a certificate in PEM, as browsers show it: "AB:CD:…"; empty: none.

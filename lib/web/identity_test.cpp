@@ -49,17 +49,6 @@ TEST(Identity, is_the_same_for_all_that_start_at_once) {
   fs::remove_all(folder);
 }
 
-TEST(Identity, may_have_its_certificate_in_a_file_beside) {
-  const fs::path folder = fs::path(testing::TempDir()) / ("beside_" + std::to_string(::getpid()));
-  const auto made = load_identity(folder);
-  ASSERT_TRUE(made) << made.error().text();
-  const auto end = made->find("-----BEGIN CE");
-  std::ofstream(folder / "page_key.pem") << made->substr(0, end);
-  std::ofstream(folder / "page_certificate.pem") << made->substr(end);
-  EXPECT_EQ(*load_identity(folder), *made);
-  fs::remove_all(folder);
-}
-
 TEST(Identity, of_which_a_part_is_missing_or_another_says_what_to_do) {
   const fs::path folder = fs::path(testing::TempDir()) / ("parts_" + std::to_string(::getpid()));
   const auto made = load_identity(folder / "a"), other = load_identity(folder / "b");

@@ -113,7 +113,7 @@ test("the header's line and the elements make the message again", async (t) => {
   const wanted = readFileSync(raw);
   await indexed(async (reader) => {
     const decode = decoder();
-    const beside = new Map();
+    const companions = new Map();
     const parts = [];
     // In the order of the file: log times are those of sensing.
     for await (const message of reader.readMessages()) {
@@ -121,14 +121,14 @@ test("the header's line and the elements make the message again", async (t) => {
       const schema = reader.schemasById.get(channel.schemaId);
       const decoded = decode(channel, schema, message);
       if (schema.name !== "hypercolumn_msgs/msg/Matrix") {
-        beside.set(channel.metadata.get("hypercolumn.mtp"), message.data);
+        companions.set(channel.metadata.get("hypercolumn.mtp"), message.data);
         continue;
       }
       const { header, offset, size, elements } = decoded;
       if (header.split(" ")[6] !== "30301") continue; // the rest is text, or compressed
       assert.ok(offset > 0, "no image is stored twice");
       assert.equal(elements.length, 0);
-      const data = beside.get(channel.topic).subarray(offset, offset + size);
+      const data = companions.get(channel.topic).subarray(offset, offset + size);
       parts.push(Buffer.from(header + "\n"), data, Buffer.from("\n"));
     }
     const images = Buffer.concat(parts);

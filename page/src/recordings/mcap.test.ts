@@ -9,7 +9,7 @@ const folder = join(process.env.HC_VECTORS!, "../../tests/fuzz/corpus/mcap");
 const small = readFileSync(join(folder, "small.mcap"));
 const zstd = readFileSync(join(folder, "zstd.mcap"));
 
-test("each message of a recording is found, its elements here or beside", async () => {
+test("each message of a recording is found, its elements here or in its companion", async () => {
   const [track, ...others] = await openMcap(new Blob([small]));
   assert.equal(others.length, 0);
   assert.equal(track!.port, "s");
@@ -58,8 +58,8 @@ test("a damaged file ends with a sentence", async () => {
   }
 });
 
-/** A file of MCAP, whose chunks have these messages of a stream `s`, and those beside them. */
-function fileOf(chunks: ("message" | "beside")[][]): Blob {
+/** A file of MCAP, whose chunks have these messages of a stream `s`, and their companions. */
+function fileOf(chunks: ("message" | "companion")[][]): Blob {
   const number = (size: number, value: number) => {
     const bytes = Buffer.alloc(size);
     bytes.writeUIntLE(value, 0, Math.min(size, 6));
@@ -78,7 +78,7 @@ function fileOf(chunks: ("message" | "beside")[][]): Blob {
     record(4, number(2, id), number(2, 0), text(topic), text("cdr"), list(text(key), text(value)));
   const header = "1 0 0 0 8 0 120190 0 0 2 1";
   const matrix = Buffer.concat([Buffer.alloc(4), text(header), Buffer.alloc(-header.length & 3)]);
-  const counts = { message: 0, beside: 0 };
+  const counts = { message: 0, companion: 0 };
   const magic = Buffer.from(small.subarray(0, 8));
   const file = [magic];
   const size = () => file.reduce((sum, part) => sum + part.length, 0);
@@ -91,10 +91,10 @@ function fileOf(chunks: ("message" | "beside")[][]): Blob {
       const sequence = counts[kind]++;
       const elements = Buffer.from(new Float64Array([sequence, 0.5]).buffer);
       const data =
-        kind === "beside"
+        kind === "companion"
           ? Buffer.concat([Buffer.alloc(8), elements])
           : Buffer.concat([matrix, number(4, 8), number(4, 16), number(4, 0)]);
-      const id = number(2, kind === "beside" ? 1 : 2);
+      const id = number(2, kind === "companion" ? 1 : 2);
       const time = number(8, 1e9 * (1 + sequence));
       const offset = Buffer.concat(records).length;
       records.push(record(5, id, number(4, sequence), time, time, data));
@@ -114,16 +114,16 @@ function fileOf(chunks: ("message" | "beside")[][]): Blob {
   return new Blob([...file, ...summary, record(2, begin, number(12, 0)), magic] as BlobPart[]);
 }
 
-test("a chunk may end between a message and the one beside it", async () => {
+test("a chunk may end between a message and its companion", async () => {
   for (const chunks of [
-    [["beside", "message", "beside", "message"]],
-    [["beside"], ["message", "beside"], ["message"]],
-    [["message"], ["beside", "message"], ["beside"]],
+    [["companion", "message", "companion", "message"]],
+    [["companion"], ["message", "companion"], ["message"]],
+    [["message"], ["companion", "message"], ["companion"]],
     [
       ["message", "message"],
-      ["beside", "beside"],
+      ["companion", "companion"],
     ],
-  ] as ("message" | "beside")[][][]) {
+  ] as ("message" | "companion")[][][]) {
     const [track] = await openMcap(fileOf(chunks));
     const messages = await Promise.all([0, 1].map((index) => track!.message(index)));
     assert.deepEqual(
@@ -137,7 +137,7 @@ test("a chunk may end between a message and the one beside it", async () => {
 });
 
 test("a message whose elements are missing says so, and the others are found", async () => {
-  const [track] = await openMcap(fileOf([["message"], ["message", "beside"]]));
+  const [track] = await openMcap(fileOf([["message"], ["message", "companion"]]));
   await assert.rejects(track!.message(1), /lacks its elements/);
   assert.deepEqual([...(await track!.message(0)).elements], [0, 0.5]);
 });
