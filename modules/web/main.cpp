@@ -150,9 +150,13 @@ int main(int argc, char** argv) {
   for (auto* each : {stops.get(), loop.get()})
     module.on_readable([each] { return each->descriptor(); },
                        [each] { hc::succeed_or_end(each->turn(std::chrono::milliseconds(0))); });
+  auto show_stopped = [&] {
+    const auto said = wanted->is_stopped(module.monotonic());
+    robot.stopped = !said ? Stopped::Unknown : *said ? Stopped::Yes : Stopped::No;
+  };
   module.on(stopped, [&](const auto& message) {
     wanted->hear(message.numbers()[0] != 0, module.monotonic());
-    robot.stopped = wanted->is_stopped(module.monotonic());
+    show_stopped();
   });
   // Nothing while the server hangs: a stop could not arrive.
   auto is_guarded = [&]() -> std::optional<bool> {
@@ -162,7 +166,7 @@ int main(int argc, char** argv) {
   module.every(Stop::kPeriod, [&] {
     if (const auto word = wanted->tick(is_guarded(), module.monotonic()))
       send_stop(*word, *word == Stop::Word::Clear ? ordered : module.now());
-    robot.stopped = wanted->is_stopped(module.monotonic());
+    show_stopped();
   });
   module.every(std::chrono::milliseconds(100), [&] {
     unsigned bits = 0;

@@ -392,7 +392,8 @@ std::string Page::session_text(const Session& session) const {
   for (std::size_t i = 1; i < std::size(kNames); ++i)
     if ((robot_.linked & (1U << i)) != 0) now["drives"].push_back(kNames[i]);
   if (driver_socket_) now["driver"] = "other";
-  if (const std::optional<bool> stopped = robot_.stopped) now["stopped"] = *stopped;
+  if (const Stopped stopped = robot_.stopped; stopped != Stopped::Unknown)
+    now["stopped"] = stopped == Stopped::Yes;
   if (recorder_)
     now["recording"] = {{"name", recorder_->name()},
                         {"bytes", recorder_->bytes()},

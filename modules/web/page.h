@@ -4,6 +4,7 @@
 // (spec/page.md). For the server's thread, but for what is said otherwise.
 
 #include <atomic>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,11 +23,13 @@
 
 namespace web = hc::web;
 
+/// What the workspace says of the robot; Unknown: the graph has none, or it is silent.
+enum class Stopped : std::uint8_t { Unknown, No, Yes };
+
 /// What the module and its page share. From any thread.
 struct Robot {
   std::atomic<unsigned> linked{0};  ///< a bit for each Control whose output is linked
-  /// What the workspace says; nothing: the graph has none, or it is silent.
-  std::atomic<std::optional<bool>> stopped{};
+  std::atomic<Stopped> stopped{Stopped::Unknown};
   std::atomic<unsigned> sessions{0};        ///< pages that are open
   std::atomic<hc::MonotonicTime> served{};  ///< when the server's thread ran
 };
