@@ -243,8 +243,8 @@ class FileLoader : public GraphLoader {
   }
 
   /// Connects to the hosts that modules run on, and asks each where its programs are and for their
-  /// descriptions: all at the same time. Problems: one that cannot be reached; the others are not
-  /// waited for then, but for a moment.
+  /// descriptions: all at the same time. Problems: a host that cannot be reached; the others then
+  /// have one more second to answer.
   ///
   /// Errors: Stopped, System.
   Status ask_hosts(const Graph& graph, Problems& problems, int stop, HostAnswers& elsewhere) {

@@ -100,7 +100,7 @@ class MergedReader final : public Reader {
     failed_ = last_->reader.get();
     return named(error);
   }
-  /// Keeps what is to be said at the end of all files.
+  /// Adds a truncated file to the error that is returned after the last message of all files.
   void add_truncated(const Error& error) {
     if (truncated_)
       truncated_->detail += "; " + named(error).detail;

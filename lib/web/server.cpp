@@ -131,7 +131,7 @@ struct Shared {
       std::swap(*place, *begun);
       return {};
     }
-    // Not done in place: who waits for a disk here takes no stop meanwhile.
+    // Not done on this thread: while it waits for a disk, a stop could not arrive.
     asides.erase(place);
     return Error{Code::System, "the server is too busy for this (" + begun.error().detail +
                                    "); try again in a moment"};

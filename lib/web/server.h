@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // HTTP and WebSocket, with TLS or without; what is asked for and who may ask is its Site's affair.
-// Everything here is called on the thread that runs it, but for post() and stop(). The one file
-// that knows Beast is server.cpp.
+// All functions are called on the server's thread, except post() and stop(), which any thread may
+// call. Only server.cpp uses Beast.
 
 #include <chrono>
 #include <cstdint>
@@ -23,7 +23,7 @@ namespace hc::web {
 /// Has a function called on the server's thread, soon. From any thread.
 using Post = std::function<void(std::function<void()>)>;
 
-/// What is done on another thread than the server's; it gives what is to be called on that.
+/// Work on a thread of its own; the function it returns is called on the server's thread.
 using Work = std::function<std::function<void()>()>;
 
 /// Bytes that several are sent.

@@ -46,7 +46,7 @@ class Stream {
   void close(const std::string& why);
   [[nodiscard]] bool is_viewed() const { return !sockets_.empty(); }
 
-  /// Once nobody views it: waits for what its thread is encoding. From any thread.
+  /// Ends the stream after its last viewer: waits for the image being encoded. From any thread.
   void stop() { tap_.reset(); }
 
  private:

@@ -41,11 +41,11 @@ bool has_contents(const std::string& path) {
   return ::stat(path.c_str(), &about) == 0 && about.st_size > 0;
 }
 
-/// A file that is to take the place of another, empty, of no other process.
+/// An empty file, locked by this process, that is to replace another.
 Result<Descriptor> open_successor(const std::string& path, mode_t mode) {
   while (true) {
     auto file = HC_TRY(open_file(path, O_WRONLY, mode));
-    // Where a file system has no locks, nobody waits. Whoever had it may have put it in its place.
+    // The process before may have renamed the file. Without locks (some file systems) none waits.
     const bool is_interrupted = ::flock(file.get(), LOCK_EX) != 0 && errno == EINTR;
     if (is_interrupted || !is_at(file, path)) continue;
     if (::ftruncate(file.get(), 0) != 0) return system_error("ftruncate", path);

@@ -19,7 +19,7 @@ export interface Arrival {
   readonly bytes: number;
 }
 
-/** Has the messages of an output heard by who listens to them. */
+/** Passes the messages of an output on to its listeners. */
 export class Emitter {
   protected readonly headers = new Signal<string>();
   protected readonly problems = new Signal<string>();
