@@ -140,6 +140,20 @@ hc cat --raw "$in" | hc play --speed max --out "$out" /dev/stdin
         self.state(observed, lambda state: restarts(state) == [1, 0, 3])
         await_more()
 
+    def test_a_reader_that_hangs_does_not_hold_a_writer_that_is_restarted(self):
+        other = "[modules.other]\nprogram = 'brightness'\ninputs.image = 'camera.left'\n"
+        process = self.running_graph(GRAPH + other, last="other: started")
+        observed = self.observe(process)
+        flows = lambda state: min(link["messages"] for link in state["links"])
+        pid = self.module(self.state(observed, flows), "other")["pid"]
+        os.kill(pid, signal.SIGSTOP)
+        os.kill(self.module(self.state(observed), "camera")["pid"], signal.SIGKILL)
+        is_back = lambda state: self.module(state, "camera")["restarts"] == 1
+        count = lambda state: state["links"][0]["messages"]
+        before = count(self.state(observed, is_back))  # of the old process, or the new one
+        self.state(observed, lambda state: is_back(state) and count(state) not in (0, before))
+        os.kill(pid, signal.SIGCONT)
+
     def ask_for_a_program_that_hangs(self, process):
         """Who asks for a module whose program does not answer, and the number of that."""
         self.write("hang", "#!/bin/sh\necho $$ > asked\nexec sleep 1000\n", 0o755)

@@ -21,20 +21,26 @@ Status wait_for_event(int descriptor, LinkOptions& options, TimePoint until) {
 
 Result<Audience> Audience::make(const Uri& uri, std::int64_t most, const Policy& policy,
                                 const LinkOptions& options) {
-  auto readers = HC_TRY(number_option(uri, "readers", -1, {0, most}));
-  auto stays = HC_TRY(number_option(uri, "stay", 0, {0, 1}));
-  return Audience(readers, stays == 1, policy, options);
+  Audience made;
+  made.readers_ = HC_TRY(number_option(uri, "readers", -1, {0, most}));
+  made.stays_ = HC_TRY(number_option(uri, "stay", 0, {0, 1})) == 1;
+  made.writer_waits_ = policy.writer_waits();
+  made.arrival_ = Patience(std::chrono::seconds(HC_TRY(number_option(uri, "wait", 0))));
+  made.absence_ = Patience(policy.timeout, {}, options.log);
+  return made;
 }
 
 Audience::Fate Audience::decide(std::size_t present) {
-  if (!has_begun_ && present < static_cast<std::size_t>(std::abs(readers_))) return Fate::Kept;
+  const bool is_complete = present >= static_cast<std::size_t>(std::abs(readers_));
+  if (!has_begun_ && !is_complete && !arrival_.is_over()) return Fate::Kept;
   const bool was_begun = std::exchange(has_begun_, true);
   if (present > 0) {
+    arrival_.renew();
     absence_.renew();
     return Fate::Sent;
   }
   if (was_begun && ends_with_readers()) return Fate::End;
-  const bool goes_on = readers_ == 0 || absence_.is_over() || !writer_waits_;
+  const bool goes_on = readers_ == 0 || arrival_.is_over() || absence_.is_over() || !writer_waits_;
   return goes_on ? Fate::Lost : Fate::Kept;
 }
 
@@ -50,16 +56,16 @@ Status Audience::await(int descriptor, LinkOptions& options,
   const bool waits = now_present && *now_present < wanted;
   if (waits && options.awaits_reader) options.awaits_reader(true);
   Status outcome;
-  while (now_present && *now_present < wanted) {
-    if (has_begun_ && !absence_.waits(0, std::chrono::steady_clock::now())) break;
-    outcome = wait_for_event(descriptor, options, absence_.due());
+  auto& patience = has_begun_ ? absence_ : arrival_;
+  while (now_present && *now_present < wanted &&
+         patience.waits(0, std::chrono::steady_clock::now())) {
+    outcome = wait_for_event(descriptor, options, patience.due());
     if (!outcome) break;
     now_present = present();
   }
-  absence_.end();
+  patience.end();
   if (waits && options.awaits_reader) options.awaits_reader(false);
-  if (!now_present) return now_present.error();
-  return outcome;
+  return now_present ? outcome : Status(now_present.error());
 }
 
 }  // namespace hc::internal

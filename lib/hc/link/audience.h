@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Which readers a sink with several waits for: the options `readers` and `stay`, and `timeout` for
-// those that have left. One rule for all transports. Internal. Of the thread that sends.
+// Which readers a sink with several waits for: the options `readers`, `stay`, `wait`, and `timeout`
+// for those that have left. One rule for all transports. Internal. Of the thread that sends.
 
 #include <cstdint>
 #include <functional>
@@ -41,8 +41,8 @@ class Audience {
   /// Whether the link's end has to wait for its readers: nothing has been sent to them yet.
   [[nodiscard]] bool is_awaited() const { return !has_begun_ && readers_ > 0; }
 
-  /// Waits for the readers that the next message, or the end, is for; no longer than the timeout
-  /// where there have been some.
+  /// Waits for the readers of the next message, or the end: at first for `wait`, then for
+  /// `timeout`.
   /// @param descriptor  readable when `present` may give another number
   /// @param present  the number of readers; an error ends the wait.
   ///
@@ -51,15 +51,10 @@ class Audience {
                const std::function<Result<std::size_t>()>& present);
 
  private:
-  Audience(std::int64_t readers, bool stays, const Policy& policy, const LinkOptions& options)
-      : readers_(readers),
-        stays_(stays),
-        writer_waits_(policy.writer_waits()),
-        absence_(policy.timeout, {}, options.log) {}
-
-  std::int64_t readers_;  // for the first message; 0: none, ever; below 0: one, not counted
-  bool stays_, writer_waits_;
+  std::int64_t readers_ = 0;  // for the first message; 0: none, ever; below 0: one, not counted
+  bool stays_ = false, writer_waits_ = false;
   bool has_begun_ = false;  // the first message has been sent, or lost
+  Patience arrival_;        // with readers that have not connected yet
   Patience absence_;        // with all readers that have left
 };
 

@@ -86,19 +86,29 @@ TEST_P(QueuedLink, WhatWaitsWhenItIsAbandonedIsLost) {
   EXPECT_FALSE(*receive(*source, message));
 }
 
+/// Sends messages with this `seq` until a reader that connects meanwhile has one; what it got
+/// first.
+std::int64_t first_of_next_reader(Sink& sink, const std::string& uri, std::int64_t seq) {
+  std::atomic<bool> heard = false, done = false;
+  std::thread sender([&] {
+    while (!heard) ASSERT_TRUE(sink.send(numbered(seq, 10)));
+    done = true;
+  });
+  const auto source = source_of(uri);
+  Message message;
+  EXPECT_TRUE(*receive(*source, message));
+  const auto first = message.header.seq;
+  heard = true;
+  while (!done) EXPECT_TRUE(source->take(message));
+  sender.join();
+  return first;
+}
+
 TEST_P(LastingLink, WhoLosesNothingWaitsForTheNextReader) {
   begin("&stay=1");
   source_.reset();
-  std::atomic<bool> heard = false, done = false;
-  std::thread sender([&] {  // what goes before the leave is noticed has nobody
-    while (!heard) ASSERT_TRUE(sink_->send(numbered(1, 10)));
-    done = true;
-  });
-  source_ = source_of(ends_.source);
-  ASSERT_TRUE(*receive(*source_, message_));
-  heard = true;
-  while (!done) ASSERT_TRUE(source_->take(message_));
-  sender.join();
+  // What goes before the leave is noticed has nobody.
+  EXPECT_EQ(first_of_next_reader(*sink_, ends_.source, 1), 1);
   EXPECT_LE(sink_->traffic().dropped_disconnect, 1U);  // the one in flight to the reader that left
 }
 
@@ -108,21 +118,19 @@ TEST_P(LastingLink, WhoHasLeftIsGivenUpUntilAnotherComes) {
     const Ends ends = ends_of(GetParam());
     const auto sink = sink_of(ends.sink + options);
     auto source = source_of(ends.source);
-    Message message;
     carry(*sink, *source, numbered(0, 10));
     source.reset();
     while (sink->traffic().dropped_timeout < 3) ASSERT_TRUE(sink->send(numbered(1, 10)));
-    source = source_of(ends.source);
-    std::atomic<bool> heard = false, done = false;
-    std::thread sender([&] {
-      while (!heard) ASSERT_TRUE(sink->send(numbered(2, 10)));
-      done = true;
-    });
-    EXPECT_EQ(next(*source).header.seq, 2);
-    heard = true;
-    while (!done) ASSERT_TRUE(source->take(message));
-    sender.join();
+    EXPECT_EQ(first_of_next_reader(*sink, ends.source, 2), 2);
   }
+}
+
+TEST_P(LastingLink, WhoDoesNotComeInTimeIsNotWaitedFor) {
+  const Ends ends = ends_of(GetParam());
+  const auto sink = sink_of(ends.sink + "?readers=2&stay=1&wait=1");
+  ASSERT_TRUE(sink->send(numbered(0, 10)));  // after a second, to nobody
+  EXPECT_EQ(sink->traffic().dropped_disconnect, 1U);
+  EXPECT_EQ(first_of_next_reader(*sink, ends.source, 1), 1);  // without the other one
 }
 
 TEST_P(LastingLink, WithoutStayItEndsWithItsReaders) {

@@ -77,7 +77,7 @@ class Patience {
   /// @param timeout  0: it is waited for as long as it takes.
   /// @param tell  called with true when a wait gets long, with false when it ends; may be empty.
   /// @param log  gets a line when the reader is given up, and when it takes messages again.
-  explicit Patience(std::chrono::seconds timeout, std::function<void(bool)> tell = {},
+  explicit Patience(std::chrono::seconds timeout = {}, std::function<void(bool)> tell = {},
                     LogSink log = {})
       : timeout_(timeout), tell_(std::move(tell)), log_(std::move(log)) {}
 

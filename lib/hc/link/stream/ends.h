@@ -138,7 +138,7 @@ template <Result<ListeningSocket> listen(const Uri&)>
 Transport listening(std::string scheme, const std::string& options, Status (*check)(const Uri&)) {
   return {std::move(scheme),
           options,
-          "readers stay " + options + " " + kPolicyOptions,
+          "readers stay wait " + options + " " + kPolicyOptions,
           [](const Uri& uri, const LinkOptions& link) -> Result<std::unique_ptr<Source>> {
             auto socket = listen(uri);
             return socket ? listening_source(std::move(*socket), link) : socket.error();
