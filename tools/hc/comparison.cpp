@@ -149,6 +149,8 @@ Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
       nearest->is_matched = true;
       ++result.differing;
       note(message.header, time, what);
+    } else if (message.header.seq > tolerance.last) {
+      --result.recorded;
     } else {
       ++result.missing;
       note(message.header, time, "recorded, and not replayed");

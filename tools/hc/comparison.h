@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 
 #include <hc/mtp/message.h>
@@ -16,6 +17,9 @@ struct Tolerance {
   double number = 0;      ///< numbers, by so much
   std::int64_t time = 0;  ///< when a message is sent, either way [ns]
   double share = 1;       ///< of the messages, so many are the same
+  /// The `seq` of the last recorded message that has to be replayed; a later one that is not does
+  /// not count.
+  std::int64_t last = std::numeric_limits<std::int64_t>::max();
 };
 
 /// The first field in which two messages differ, with both values: "width: 4 recorded, 5 replayed";

@@ -89,6 +89,17 @@ TEST(Comparison, ATimeMayDifferWhereThatIsAllowed) {
   EXPECT_EQ(compare_all(recorded, replayed, {.time = 100}).text(), "2 messages, the same");
 }
 
+TEST(Comparison, OfTheEndNotAllHasToBeReplayed) {
+  const std::vector<hc::Message> recorded = {number(kSecond, 1), number(2 * kSecond, 2),
+                                             number(3 * kSecond, 3)};
+  std::vector<hc::Message> numbered = recorded;
+  for (std::size_t i = 0; i < numbered.size(); ++i)
+    numbered[i].header.seq = static_cast<std::int64_t>(i);
+  EXPECT_EQ(compare_all(numbered, {recorded[0]}, {.last = 0}).text(), "1 messages, the same");
+  EXPECT_EQ(compare_all(numbered, {recorded[0]}, {.last = 1}).missing, 1U);
+  EXPECT_EQ(compare_all(numbered, recorded, {.last = 0}).text(), "3 messages, the same");
+}
+
 TEST(Comparison, NothingIsTheSameAsNothing) {
   EXPECT_TRUE(compare_all({}, {}).is_same({}));
   EXPECT_FALSE(compare_all({}, {number(1, 1)}).is_same({}));

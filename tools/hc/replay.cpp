@@ -132,17 +132,24 @@ std::int64_t clock_at(const std::vector<hc::TraceEvent>& events, std::size_t at)
   return event.moment;
 }
 
+/// The number of events until the last end of a step. The module was stopped in what followed, or
+/// that was not reported any more; it is not done again.
+std::size_t whole_steps(std::span<const hc::TraceEvent> events) {
+  while (!events.empty() && events.back().what != What::Ended)
+    events = events.first(events.size() - 1);
+  return events.size();
+}
+
 /// What the module is to do again: the beginning, of which it hears the moment alone, and what it
 /// began.
 std::vector<hc::TraceEvent> steps_of(const std::vector<hc::TraceEvent>& events) {
   std::vector<hc::TraceEvent> steps;
-  auto last = events.size();
-  while (last > 0 && events[last - 1].what != What::Ended) --last;
+  const auto last = whole_steps(events);
   for (std::size_t i = 0; i < events.size(); ++i) {
     const bool is_focus = events[i].what == What::Took && events[i].port == kFocus;
     if (i == 0) steps.push_back({What::Took, "", 0, 0, 0, clock_at(events, i)});
     if (!is_focus && events[i].what != What::Began) continue;
-    if (i >= last) break;  // it was stopped in this one
+    if (i >= last) break;
     auto& step = steps.emplace_back(events[i]);
     step.what = What::Began;
     if (!is_focus) step.moment = clock_at(events, i);
@@ -294,8 +301,13 @@ class Replay {
     std::vector<std::string> words = {module.program};
     words.insert(words.end(), module.options.begin(), module.options.end());
     for (const auto& [key, value] : module.parameters) words.push_back("--" + key + "=" + value);
-    auto steps = steps_of(read_events(recording_, module.name));
+    const auto events = read_events(recording_, module.name);
+    auto steps = steps_of(events);
     const bool is_known = !steps.empty();
+    if (is_known)
+      for (const auto& port : recorded_outputs(module)) last_[module.name + "." + port] = -1;
+    for (const auto& event : std::span(events).first(whole_steps(events)))
+      if (event.what == What::Sent) last_[module.name + "." + event.port] = event.seq;
     std::map<std::string, std::int32_t> links;  // of each port so far
     const auto add = [&](const char* option, const hc::PlannedEnd& end, const fs::path& file) {
       const std::string link = end.port + "=file:" + file.string();
@@ -371,8 +383,9 @@ class Replay {
     auto replayed = [&](hc::Message& message) {
       return receive(*made, message, again) && expand(message, again);
     };
-    const Tolerance tolerance{numbers_.of(output), hc::duration(times_.of(output)).count(),
-                              shares_.of(output)};
+    Tolerance tolerance{numbers_.of(output), hc::duration(times_.of(output)).count(),
+                        shares_.of(output)};
+    if (const auto last = last_.find(output); last != last_.end()) tolerance.last = last->second;
     const auto result = compare(recorded, replayed, tolerance);
     const bool is_same = result.is_same(tolerance);
     print(hc::format("{}{}: {}\n", is_same ? "" : "DIFFERS ", output, result.text()));
@@ -386,6 +399,7 @@ class Replay {
   hc::Plan plan_;
   fs::path folder_;  // removed at the end, unless it was named
   Settings numbers_, times_, shares_;
+  std::map<std::string, std::int64_t> last_;  // `seq` of what a whole step sent last, by output
 };
 
 }  // namespace
