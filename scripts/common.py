@@ -11,6 +11,15 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 
 
+def build_folder():
+    """The folder of a build that is the first argument; without one, ends with what the script says
+    of itself."""
+    folder = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "").resolve()
+    if not (folder / "CMakeCache.txt").exists():
+        sys.exit(sys.modules["__main__"].__doc__.strip())
+    return folder
+
+
 def machine():
     """The processor of this machine, its cores and today, in words."""
     name = re.search(r"model name\s*: (.*)", pathlib.Path("/proc/cpuinfo").read_text())
