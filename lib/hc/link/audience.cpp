@@ -57,11 +57,10 @@ Status Audience::await(int descriptor, LinkOptions& options,
   if (waits && options.awaits_reader) options.awaits_reader(true);
   Status outcome;
   auto& patience = has_begun_ ? absence_ : arrival_;
-  while (now_present && *now_present < wanted &&
+  while (outcome && now_present && *now_present < wanted &&
          patience.waits(0, std::chrono::steady_clock::now())) {
     outcome = wait_for_event(descriptor, options, patience.due());
-    if (!outcome) break;
-    now_present = present();
+    if (outcome) now_present = present();
   }
   patience.end();
   if (waits && options.awaits_reader) options.awaits_reader(false);
