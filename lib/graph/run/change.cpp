@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include <hc/base/uri.h>
-#include <hc/contract/command.h>
 
 namespace hc::internal {
 namespace {
@@ -37,22 +36,21 @@ void add_settings(const PlannedModule& before, const PlannedModule& after, Modul
     auto found = before.parameters.find(key);
     if (found != before.parameters.end() && found->second == value) continue;
     if (after.is_fixed(key)) change.needs_restart = true;
-    change.outputs.push_back(text({Verb::Set, true, key, value}));
+    change.outputs.push_back({Verb::Set, true, key, value});
   }
 }
 
 void add_links(const PlannedModule& before, const PlannedModule& after, ModuleChange& change) {
   for (const auto& end : before.ends)
     if (find_same(after.ends, end) == nullptr)
-      change.unlinks.push_back(text({Verb::Unlink, end.is_input, end.text(), {}}));
+      change.unlinks.push_back({Verb::Unlink, end.is_input, end.text(), {}});
   for (const auto& end : after.ends) {
     auto& commands = end.is_input ? change.inputs : change.outputs;
     const PlannedEnd* old = find_same(before.ends, end);
     const std::string link = old == nullptr ? end_of_running(end).text() : old->text();
-    if (old == nullptr) commands.push_back(text({Verb::Link, end.is_input, link, {}}));
+    if (old == nullptr) commands.push_back({Verb::Link, end.is_input, link, {}});
     if (end.route != (old == nullptr ? "" : old->route))
-      commands.push_back(
-          text({Verb::Route, end.is_input, link, end.route.empty() ? "to=*" : end.route}));
+      commands.push_back({Verb::Route, end.is_input, link, end.route.empty() ? "to=*" : end.route});
   }
 }
 

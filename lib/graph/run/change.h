@@ -2,10 +2,10 @@
 #pragma once
 // The commands that make a running module as another plan says. Pure. Internal to graph.
 
-#include <string>
 #include <vector>
 
 #include <graph/plan.h>
+#include <hc/contract/command.h>
 
 namespace hc::internal {
 
@@ -13,7 +13,7 @@ struct ModuleChange {
   bool needs_restart = false;  ///< commands cannot make it so, and there are none
   /// Commands: those of all modules that remove links come first; then those that set parameters
   /// and add outputs; then those that add inputs.
-  std::vector<std::string> unlinks, outputs, inputs;
+  std::vector<ModuleCommand> unlinks, outputs, inputs;
 
   [[nodiscard]] bool is_empty() const {
     return !needs_restart && unlinks.empty() && outputs.empty() && inputs.empty();

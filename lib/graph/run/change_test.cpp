@@ -6,7 +6,13 @@
 namespace hc::internal {
 namespace {
 
-using Commands = std::vector<std::string>;
+using Texts = std::vector<std::string>;
+
+Texts texts(const std::vector<ModuleCommand>& commands) {
+  Texts texts;
+  for (const auto& command : commands) texts.push_back(text(command));
+  return texts;
+}
 
 class ChangeTest : public ::testing::Test {
  protected:
@@ -40,7 +46,7 @@ TEST_F(ChangeTest, MoreReadersAreNoOtherLink) {
 
 TEST_F(ChangeTest, AParameterIsSet) {
   after_.parameters["rate"] = "10";
-  EXPECT_EQ(change().outputs, Commands{"set rate=10"});
+  EXPECT_EQ(texts(change().outputs), Texts{"set rate=10"});
   EXPECT_FALSE(change().needs_restart);
 }
 
@@ -69,20 +75,21 @@ TEST_F(ChangeTest, LinksComeAndGo) {
                  {false, "right", "shm:t.camera.right?readers=1&stay=1", "to=21"},
                  {false, "seen", "unix-listen:@seen?readers=0", ""}};
   auto made = change();
-  EXPECT_EQ(made.unlinks,
-            (Commands{"unlink out left=shm:t.camera.left?readers=1&stay=1",
-                      "unlink in gaze=unix:@t.eyes.gaze.camera.gaze?reconnect=86400"}));
-  EXPECT_EQ(made.outputs,
-            (Commands{"link out left=shm:t.camera.left.view.image?readers=1&rate=3&wait=1",
-                      "link out right=shm:t.camera.right?readers=1&stay=1&wait=1",
-                      "route right=shm:t.camera.right?readers=1&stay=1&wait=1 to=21",
-                      "link out seen=unix-listen:@seen?readers=0"}));
+  EXPECT_EQ(texts(made.unlinks),
+            (Texts{"unlink out left=shm:t.camera.left?readers=1&stay=1",
+                   "unlink in gaze=unix:@t.eyes.gaze.camera.gaze?reconnect=86400"}));
+  EXPECT_EQ(texts(made.outputs),
+            (Texts{"link out left=shm:t.camera.left.view.image?readers=1&rate=3&wait=1",
+                   "link out right=shm:t.camera.right?readers=1&stay=1&wait=1",
+                   "route right=shm:t.camera.right?readers=1&stay=1&wait=1 to=21",
+                   "link out seen=unix-listen:@seen?readers=0"}));
   EXPECT_TRUE(made.inputs.empty());
 }
 
 TEST_F(ChangeTest, ARouteAloneChanges) {
   after_.ends[0].route = "to=5,-1";
-  EXPECT_EQ(change().outputs, Commands{"route left=shm:t.camera.left?readers=1&stay=1 to=5,-1"});
+  EXPECT_EQ(texts(change().outputs),
+            Texts{"route left=shm:t.camera.left?readers=1&stay=1 to=5,-1"});
 }
 
 }  // namespace

@@ -10,13 +10,13 @@
 
 #include <graph/process.h>
 #include <hc/base/check.h>
-#include <hc/contract/command.h>
 #include <hc/mtp/rows.h>
 
 namespace hc::internal {
 namespace {
 
 using MonotonicClock = std::chrono::steady_clock;
+using Verb = ModuleCommand::Verb;
 
 constexpr int kCutOff = 1;                             // a failure, as far as restarts go
 constexpr std::chrono::milliseconds kCauseDelay{200};  // until the cause of an end is seen, at most
@@ -27,8 +27,8 @@ std::string seconds_in_words(std::chrono::nanoseconds time) {
   return text;
 }
 
-Message command_message(const std::string& command) {
-  return make_rows(std::array{command});
+Message message_of(const ModuleCommand& command) {
+  return make_rows(std::array{text(command)});
 }
 
 }  // namespace
@@ -89,13 +89,12 @@ Status Supervised::make_process() {
 std::vector<Message> Supervised::catch_up() {
   const auto change = change_between(told_, plan_);
   std::vector<Message> commands;
-  auto add = [&](const std::string& command) { commands.push_back(command_message(command)); };
+  auto add = [&](const ModuleCommand& command) { commands.push_back(message_of(command)); };
   for (const auto* some : {&change.unlinks, &change.outputs, &change.inputs})
     for (const auto& command : *some) add(command);
-  for (const auto& input : finished_) add(text({ModuleCommand::Verb::Finish, true, input, {}}));
-  for (const auto& [port, observed] : observed_) add("link out " + observed.end.text());
-  if (wall_offset_ != 0)
-    add(text({ModuleCommand::Verb::WallOffset, true, std::to_string(wall_offset_), {}}));
+  for (const auto& input : finished_) add({Verb::Finish, true, input, {}});
+  for (const auto& [port, observed] : observed_) add({Verb::Link, false, observed.end.text(), {}});
+  if (wall_offset_ != 0) add({Verb::WallOffset, true, std::to_string(wall_offset_), {}});
   set_told();
   return commands;
 }
@@ -137,7 +136,7 @@ void Supervised::send_wall_offset() {
   if (std::abs(wall_offset - wall_offset_) < kNear) return;
   wall_offset_ = wall_offset;
   if (process_->is_listening())
-    send_commands({text({ModuleCommand::Verb::WallOffset, true, std::to_string(wall_offset), {}})});
+    send_commands({{Verb::WallOffset, true, std::to_string(wall_offset), {}}});
 }
 
 Status Supervised::start() {
@@ -233,14 +232,13 @@ ModuleChange Supervised::adopt(PlannedModule plan) {
   }
   if (process_->is_listening()) set_told();
   for (const auto& command : change.outputs)
-    if (command.starts_with("set ")) callbacks_.event(Level::Info, command);
+    if (command.verb == Verb::Set) callbacks_.event(Level::Info, text(command));
   return change;
 }
 
-void Supervised::send_commands(const std::vector<std::string>& commands) {
+void Supervised::send_commands(const std::vector<ModuleCommand>& commands) {
   for (const auto& command : commands) {
-    if (!process_->is_listening() || wish_ == Wish::Restart ||
-        process_->send(command_message(command)))
+    if (!process_->is_listening() || wish_ == Wish::Restart || process_->send(message_of(command)))
       continue;
     callbacks_.event(Level::Warning, "does not accept commands; restarting");
     restart();
@@ -249,10 +247,8 @@ void Supervised::send_commands(const std::vector<std::string>& commands) {
 
 void Supervised::finish_input(const PlannedEnd& end, bool is_finished) {
   const std::string what = end.text();
-  if (is_finished && finished_.insert(what).second)
-    send_commands({text({ModuleCommand::Verb::Finish, true, what, {}})});
-  if (!is_finished && finished_.erase(what) != 0)
-    send_commands({text({ModuleCommand::Verb::Link, true, what, {}})});
+  if (is_finished && finished_.insert(what).second) send_commands({{Verb::Finish, true, what, {}}});
+  if (!is_finished && finished_.erase(what) != 0) send_commands({{Verb::Link, true, what, {}}});
 }
 
 void Supervised::note_end(int status) {

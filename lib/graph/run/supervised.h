@@ -67,7 +67,7 @@ class Supervised {
   ModuleChange adopt(PlannedModule plan);
   /// Sends commands. They reach a module that has not connected yet when it connects; one
   /// that accepts no commands is restarted.
-  void send_commands(const std::vector<std::string>& commands);
+  void send_commands(const std::vector<ModuleCommand>& commands);
 
   /// Sends it `finish` when an input's writer has ended for good, and `link` when there is one
   /// again; each once.

@@ -23,7 +23,7 @@ Result<std::string> Supervised::observe(const std::string& port, const std::stri
     Observed observed{{false, port, {}, {}}, {}};
     HC_TRY(open_observed(observed, name));
     found = observed_.emplace(port, std::move(observed)).first;
-    send_commands({"link out " + found->second.end.text()});
+    send_commands({{ModuleCommand::Verb::Link, false, found->second.end.text(), {}}});
   }
   found->second.until = now() + kObserved;
   return found->second.uri;
@@ -58,7 +58,7 @@ void Supervised::end_observations(MonotonicTime time) {
       observed.until = time + kObserved;
   std::erase_if(observed_, [&](const auto& entry) {
     const bool is_over = time >= entry.second.until;
-    if (is_over) send_commands({"unlink out " + entry.second.end.text()});
+    if (is_over) send_commands({{ModuleCommand::Verb::Unlink, false, entry.second.end.text(), {}}});
     return is_over;
   });
 }
