@@ -6,15 +6,21 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 
+#include <hc/base/backoff.h>
 #include <hc/os/program.h>
 
 namespace hc {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::chrono::seconds kPatience{2};  // with a process that replaces a file
+constexpr const char* kIsWritten = ": another process is writing it";
 
 Result<Descriptor> open_file(const std::string& path, int flags, mode_t mode = 0666) {
   return open_descriptor("open", path, [&] {
@@ -41,16 +47,34 @@ bool has_contents(const std::string& path) {
   return ::stat(path.c_str(), &about) == 0 && about.st_size > 0;
 }
 
+/// Whether others than its owner, this process, can read or write an open file.
+bool is_of_others(const Descriptor& file) {
+  struct stat about {};
+  return ::fstat(file.get(), &about) != 0 || about.st_uid != ::geteuid() ||
+         (about.st_mode & (S_IRWXG | S_IRWXO)) != 0;
+}
+
 /// An empty file, locked by this process, that is to replace another.
 Result<Descriptor> open_successor(const std::string& path, mode_t mode) {
+  const auto give_up = std::chrono::steady_clock::now() + kPatience;
+  Backoff pause(std::chrono::milliseconds(1));
   while (true) {
-    auto file = HC_TRY(open_file(path, O_WRONLY, mode));
-    // The process before may have renamed the file. Without locks (some file systems) none waits.
-    const bool is_interrupted = ::flock(file.get(), LOCK_EX) != 0 && errno == EINTR;
-    if (is_interrupted || !is_at(file, path)) continue;
-    if (::ftruncate(file.get(), 0) != 0) return system_error("ftruncate", path);
-    return file;
+    // Others may have put a link or a FIFO there.
+    auto file = HC_TRY(open_file(path, O_WRONLY | O_NOFOLLOW | O_NONBLOCK, mode));
+    // The process before may have renamed the file.
+    if (lock(file) && is_at(file, path)) {
+      if (::ftruncate(file.get(), 0) != 0) return system_error("ftruncate", path);
+      return file;
+    }
+    const auto now = std::chrono::steady_clock::now();
+    if (now > give_up) return Error{Code::System, path + kIsWritten};
+    HC_TRY(wait_for(-1, 0, -1, std::min(now + pause.next(), give_up)));
   }
+}
+
+Status write_to(const Descriptor& file, const std::string& path, std::string_view contents) {
+  const auto done = write_all(file.get(), contents);
+  return done ? done : Error{done.error().code, path + ": " + done.error().detail};
 }
 
 Status put_in_place(const std::string& path, std::string_view contents, mode_t mode,
@@ -58,12 +82,13 @@ Status put_in_place(const std::string& path, std::string_view contents, mode_t m
   const std::string unfinished = path + ".unfinished";
   const auto file = HC_TRY(open_successor(unfinished, mode));
   const bool is_wanted = replaces || ::access(path.c_str(), F_OK) != 0;
-  Status done = is_wanted ? write_all(file.get(), contents) : Status();
+  if (!replaces && is_wanted && is_of_others(file))
+    return Error{Code::System, unfinished + ": other users can read it; remove it"};
+  Status done = is_wanted ? write_to(file, path, contents) : Status();
   if (done && is_wanted && std::rename(unfinished.c_str(), path.c_str()) != 0)
     done = system_error("rename", path);
   if (!done || !is_wanted) ::unlink(unfinished.c_str());
-  if (done) return {};
-  return Error{done.error().code, path + ": " + done.error().detail};
+  return done;
 }
 
 }  // namespace
@@ -111,15 +136,13 @@ Result<NewFile> begin_file(const std::string& path) {
 
 Result<NewFile> continue_file(const std::string& path) {
   auto file = HC_TRY(open_file(path, O_RDWR));
-  if (!lock(file)) return Error{Code::System, path + ": another process is writing it"};
+  if (!lock(file)) return Error{Code::System, path + kIsWritten};
   return NewFile{std::move(file), path};
 }
 
 Status replace_file(const std::string& path, std::string_view contents) {
   if (!is_written_in_place(path)) return put_in_place(path, contents, 0666, true);
-  const auto file = HC_TRY(open_file(path, O_WRONLY));
-  const auto done = write_all(file.get(), contents);
-  return done ? done : Error{done.error().code, path + ": " + done.error().detail};
+  return write_to(HC_TRY(open_file(path, O_WRONLY)), path, contents);
 }
 
 Status make_private_file(const std::string& path, std::string_view contents) {

@@ -39,16 +39,17 @@ Result<NewFile> continue_file(const std::string& path);
 
 /// Replaces what a file contains, for files that show the present and can be made again: readers
 /// find the old or the new contents, also after a crash or on a full disk. Of several processes
-/// that replace it at once, each waits for the one before. What is_written_in_place() is written
-/// to.
+/// that replace it at once, each waits up to 2 s for those before, where the file system has locks
+/// (flock). What is_written_in_place() is written to.
 ///
-/// Errors: System; the file is as it was then.
+/// Errors: System (also: another process does not finish); the file is as it was then.
 Status replace_file(const std::string& path, std::string_view contents);
 
-/// Makes a file that only its owner can read, unless it is there: of several that do so at once
-/// all find the same contents, and never a part of them.
+/// Makes a file that only its owner can read, unless it is there: of several that do so at once,
+/// with locks as above, all find the same contents, and never a part of them.
 ///
-/// Errors: System, NotFound (the folder does not exist).
+/// Errors: System (also: PATH.unfinished is there, and others can read it), NotFound (the folder
+/// does not exist).
 Status make_private_file(const std::string& path, std::string_view contents);
 
 }  // namespace hc

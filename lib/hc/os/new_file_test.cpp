@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
@@ -127,6 +128,37 @@ TEST_F(NewFiles, AFileIsReplacedWholeOrNotAtAll) {
   EXPECT_NE(replaced.error().detail.find("File too large"), std::string::npos);
   EXPECT_EQ(contents("x"), "first");
   EXPECT_FALSE(fs::exists(at("x.unfinished")));
+}
+
+TEST_F(NewFiles, AProcessThatDoesNotFinishIsNotWaitedForForEver) {
+  ASSERT_TRUE(replace_file(at("x"), "first"));
+  const Descriptor other(::open(at("x.unfinished").c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0600));
+  ASSERT_EQ(::flock(other.get(), LOCK_EX), 0);
+  EXPECT_EQ(refused(replace_file(at("x"), "second")).detail,
+            at("x.unfinished") + ": another process is writing it");
+  EXPECT_EQ(contents("x"), "first");
+}
+
+TEST_F(NewFiles, APrivateFileIsNotWrittenWhereOthersCanRead) {
+  std::ofstream(at("x.unfinished")) << "";
+  ASSERT_EQ(::chmod(at("x.unfinished").c_str(), 0604), 0);
+  EXPECT_EQ(refused(make_private_file(at("x"), "secret")).detail,
+            at("x.unfinished") + ": other users can read it; remove it");
+  EXPECT_FALSE(fs::exists(at("x")));
+  EXPECT_EQ(contents("x.unfinished"), "");
+  fs::remove(at("x.unfinished"));
+  must(make_private_file(at("x"), "secret"));
+  EXPECT_EQ(fs::status(at("x")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  must(make_private_file(at("x"), "another"));
+  EXPECT_EQ(contents("x"), "secret");
+}
+
+TEST_F(NewFiles, WhatAnUnfinishedFileLinksToStays) {
+  std::ofstream(at("other")) << "of others";
+  fs::create_symlink(at("other"), at("x.unfinished"));
+  EXPECT_FALSE(replace_file(at("x"), "ours"));
+  EXPECT_FALSE(make_private_file(at("x"), "ours"));
+  EXPECT_EQ(contents("other"), "of others");
 }
 
 TEST_F(NewFiles, ReplacedByManyAtOnceIsTheWholeOfOne) {
