@@ -19,14 +19,14 @@ struct FileWatch::Shared {
   std::condition_variable woken;
   bool is_over = false;
   int sets = 0;  // how often files were set
-  std::map<std::string, std::optional<FileStamp>>
-      known;  // at the last call; none: not looked at yet
+  // At the last call; none: not looked at yet.
+  std::map<std::string, std::optional<FileStamp>> known;
 
   void look_until_over() {
     std::unique_lock lock(mutex);
     auto seen = known;
     auto pause = kPeriod;
-    int sets_seen = sets;
+    int sets_seen = 0;
     while (true) {
       woken.wait_for(lock, pause, [&] { return is_over || sets != sets_seen; });
       if (is_over) return;
