@@ -27,16 +27,24 @@ namespace {
 struct Start {
   char* const* arguments;
   int input, output, errors;  // of the program; -1: none
-  int number;                 // for the number of the program, or -errno where fork fails
+  int number;                 // for the number of the program, or -errno where none is started
   int life;                   // at its end when we have ended
   const Given* given;         // to the program
   char* const* environment;
 };
 
+/// Ends a guard that has no program, and says why by errno.
+[[noreturn]] void give_up(const Start& start) {
+  const int why = -errno;
+  [[maybe_unused]] const auto said = ::write(start.number, &why, sizeof why);
+  ::_exit(kCannotExecute);
+}
+
 /// Closes what exec would: on a disk that hangs that is late or never, and meanwhile others wait
 /// for the ends of these pipes, as guards do for that of our life.
 void close_on_exec(const Start& start) {
   const int list = ::open("/proc/self/fd", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (list < 0) give_up(start);
   alignas(dirent64) char piece[4096];
   for (ssize_t size = 0; (size = ::getdents64(list, piece, sizeof piece)) > 0;)
     for (ssize_t at = 0; at < size;) {
@@ -98,9 +106,13 @@ bool kill_children() {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   pid_t self = ::getpid();
   // Done before the program is forked, which anybody may stop before it has done it.
-  for (int* kept : {&start.life, &start.number})
-    *kept = ::fcntl(*kept, F_DUPFD_CLOEXEC, kKeyDescriptor + 1);
-  int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  for (int* kept : {&start.life, &start.number}) {
+    const int copy = ::fcntl(*kept, F_DUPFD_CLOEXEC, kKeyDescriptor + 1);
+    if (copy < 0) give_up(start);
+    *kept = copy;
+  }
+  const int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  if (null < 0) give_up(start);
   ::dup2(start.input >= 0 ? start.input : null, STDIN_FILENO);
   ::dup2(start.output >= 0 ? start.output : null, STDOUT_FILENO);
   ::dup2(start.errors >= 0 ? start.errors : null, STDERR_FILENO);
@@ -112,8 +124,9 @@ bool kill_children() {
   close_on_exec(start);
   const pid_t program = ::fork();
   if (program == 0) become(start, self);
-  const int number = program < 0 ? -errno : program;
-  if (::write(start.number, &number, sizeof number) < 0 || program < 0) ::_exit(kCannotExecute);
+  if (program < 0) give_up(start);
+  // Where we have ended meanwhile, it fails, and the program is killed below.
+  [[maybe_unused]] const auto said = ::write(start.number, &program, sizeof program);
 
   // All pipes of other processes are open here too, and would not close when we go.
   ::dup2(start.life, 0);
@@ -162,10 +175,12 @@ std::vector<std::string> environment_with(const std::vector<int>& listeners) {
 }
 
 /// Why a program was not started, and what to do.
-Error fork_error(const std::string& program, int number) {
-  if (number != EAGAIN) return system_error("fork", program, number);
-  return {Code::System, program + " cannot be started: there are as many processes as this user, " +
-                            "or its control group, may have (ulimit -u, pids.max)"};
+Error start_error(const std::string& program, int number) {
+  const std::string why = number == EAGAIN
+                              ? "there are as many processes as this user, or its control group, "
+                                "may have (ulimit -u, pids.max)"
+                              : std::strerror(number);
+  return {Code::System, program + " cannot be started: " + why};
 }
 
 Result<std::array<Descriptor, 2>> make_pipe() {
@@ -200,7 +215,7 @@ Result<Process> Process::start(const std::vector<std::string>& command, Capture 
                     &given,
                     environment.data()};
   const pid_t child = ::fork();
-  if (child < 0) return fork_error(command[0], errno);
+  if (child < 0) return start_error(command[0], errno);
   if (child == 0) guard(start);
 
   Process process;
@@ -216,7 +231,7 @@ Result<Process> Process::start(const std::vector<std::string>& command, Capture 
   number[1].reset();
   int& said = process.number_;  // 0: the guard was killed, as its end tells
   HC_TRY(system_call("read", "", [&] { return ::read(number[0].get(), &said, sizeof said); }));
-  if (said < 0) return fork_error(command[0], -said);
+  if (said < 0) return start_error(command[0], -said);
   return process;
 }
 

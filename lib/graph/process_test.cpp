@@ -226,5 +226,23 @@ TEST(Process, TooManyProcessesAreSaidInWords) {
   EXPECT_EQ(status, 0);
 }
 
+TEST(Process, TooFewDescriptorsAreSaid) {
+  const pid_t limited = ::fork();
+  if (limited == 0) {
+    rlimit limit{};
+    ::getrlimit(RLIMIT_NOFILE, &limit);
+    const Descriptor last(::dup(0));
+    for (limit.rlim_cur = static_cast<rlim_t>(last.get()) + 1;; ++limit.rlim_cur) {
+      ::setrlimit(RLIMIT_NOFILE, &limit);
+      auto process = Process::start({"/bin/true"}, Capture::Output);
+      if (process) ::_exit(status_of(*process));
+      if (process.error().detail.find(": Too many open files") == std::string::npos) ::_exit(1);
+    }
+  }
+  int status = -1;
+  ASSERT_EQ(::waitpid(limited, &status, 0), limited);
+  EXPECT_EQ(status, 0);
+}
+
 }  // namespace
 }  // namespace hc::internal
