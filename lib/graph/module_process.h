@@ -36,7 +36,7 @@ class ModuleProcess {
   /// Starts a process; none may run.
   /// @param control_uri  where it connects to for commands; empty: it takes none.
   ///
-  /// Errors: NotFound, System (also: a name is in use).
+  /// Errors: System (also: a name is in use).
   virtual Status start(const std::vector<std::string>& command, const std::string& control_uri) = 0;
   [[nodiscard]] virtual bool runs() const = 0;
   /// Asks it to end (SIGTERM).

@@ -27,7 +27,7 @@ std::string no_program(const std::string& name);
 
 /// What `program --describe` prints, at most 1 MiB, within 10 s.
 ///
-/// Errors: NotFound (no such program), System (it failed), Stopped (`stop` is readable).
+/// Errors: System (it cannot be executed, or failed), Stopped (`stop` is readable).
 Result<std::string> describe_program(const std::string& program, int stop = -1);
 
 }  // namespace hc

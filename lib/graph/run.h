@@ -69,7 +69,7 @@ struct RunOptions {
 /// Runs a loaded graph, which has a plan, to its end: until all modules have ended, one fails that
 /// is never restarted, or `stop` is readable. Nothing that it started is left then.
 ///
-/// Errors: NotFound (a program), System; Closed when a module failed, with its name and status.
+/// Errors: System; Closed when a module failed, with its name and status.
 Result<RunReport> run_graph(LoadedGraph graph, const RunOptions& options);
 
 }  // namespace hc

@@ -417,7 +417,7 @@ void Connection::send_heartbeat() {
 std::string Connection::reason_of(const std::string& noticed) const {
   std::string said = last_line(error_text_);
   auto is_said = [&](std::string_view words) { return said.find(words) != std::string::npos; };
-  const bool has_ssh = !said.starts_with("exec(");  // that could not be executed here
+  const bool has_ssh = !said.starts_with("exec(");  // else it could not be executed here
   if (!is_greeted_ && has_ssh && (is_said("not found") || is_said("No such file")))
     return said + std::string(kHowToInstall);
   if (!said.empty()) return said;

@@ -53,7 +53,7 @@ class Supervised {
                                                   const SupervisionLimits& limits,
                                                   Callbacks callbacks, Hosts* hosts = nullptr);
 
-  /// Starts it. Errors: NotFound, System; of later starts they are events.
+  /// Starts it. Errors: System; of later starts they are events.
   Status start();
   /// Ends it for good: SIGTERM, and SIGKILL when it has had its time.
   void end();
