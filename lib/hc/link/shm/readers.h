@@ -26,7 +26,7 @@ struct ShmReader {
   std::uint64_t begin = 0;  ///< position of its first message
   std::uint64_t seen = 0;   ///< how far it said that it is, at most; of the publisher's thread
   std::uint32_t woken = 0;  ///< what `armed` said when it was woken last
-  Patience patience{{}};    ///< of a publisher that waits for it, on whose thread it is used
+  Patience patience;        ///< of a publisher that waits for it, on whose thread it is used
   Watch watch;              ///< last, so that it ends first
 
   /// Whether it has said what it is; a stranger has not.
@@ -107,7 +107,7 @@ class ShmReaders {
   Remarks remarks_;
   const Head* head_ = nullptr;
   std::uint64_t bytes_ = 0, keep_ = 0;
-  Patience patience_{{}};
+  Patience patience_;
   std::vector<std::shared_ptr<ShmReader>> current_;
   std::atomic<bool> changed_{false};
 

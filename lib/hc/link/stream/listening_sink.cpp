@@ -219,8 +219,8 @@ Result<std::unique_ptr<Sink>> listening_sink(ListeningSocket socket, const Uri& 
   auto policy = HC_TRY(parse_policy(uri));
   auto audience = HC_TRY(Audience::make(uri, kMaxPeers, policy, options));
   auto loop = HC_TRY(Loop::make());
-  auto sink = std::make_unique<ListeningSink>(std::move(socket), std::move(loop), audience, policy,
-                                              options);
+  auto sink = std::make_unique<ListeningSink>(std::move(socket), std::move(loop),
+                                              std::move(audience), policy, options);
   HC_TRY(sink->begin());
   return std::unique_ptr<Sink>(std::move(sink));
 }
