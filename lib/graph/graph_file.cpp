@@ -163,7 +163,8 @@ class GraphReader {
     if (read_file_) text = read_file_(path);
     if (!text && text.error().code == Code::NotFound && file.value.find('/') == std::string::npos) {
       const std::string shipped = graph_folder() / file.value;
-      if (auto found = read_file_ ? read_file_(shipped) : text) {
+      auto found = read_file_ ? read_file_(shipped) : text;
+      if (found || found.error().code != Code::NotFound) {
         path = shipped;
         text = std::move(found);
         if (includes_itself()) return refuse(path + " includes itself");

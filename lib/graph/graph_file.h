@@ -127,7 +127,8 @@ struct Graph {
 /// Looks a variable of the environment up; null where it is not set.
 using Environment = std::function<const char*(const char* name)>;
 
-/// Gives the text of a file, at most a byte more than kMaxGraphBytes of it. Errors: NotFound.
+/// Gives the text of a file, at most a byte more than kMaxGraphBytes of it. Errors: NotFound
+/// (there is none), System.
 using ReadFile = std::function<Result<std::string>(const std::string& file)>;
 
 /// Largest graph file that is read. [byte]

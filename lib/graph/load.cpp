@@ -26,28 +26,31 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds kMorePatience{1};  // with the others, when a host has failed
 
+Error cannot_read(const std::string& name, std::error_code why) {
+  const bool is_missing = why == std::errc::no_such_file_or_directory;
+  return {is_missing ? Code::NotFound : Code::System, name + ": cannot be read: " + why.message()};
+}
+
 Result<std::string> read_text(const std::string& name) {
   std::error_code missing;
   if (fs::is_directory(name, missing))
-    return Error{Code::NotFound, name + ": is a folder, not a file"};
-  std::ifstream file(name, std::ios::binary);
-  if (!file)
-    return Error{Code::NotFound,
-                 name + ": cannot be read: " + std::generic_category().message(errno)};
+    return Error{Code::System, name + ": is a folder, not a file"};
   std::string text(kMaxGraphBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  std::ifstream file(name, std::ios::binary);
+  if (file) file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!file.is_open() || file.bad()) return cannot_read(name, {errno, std::generic_category()});
   text.resize(static_cast<std::size_t>(file.gcount()));
   return text;
 }
 
 /// Only files, so that nothing is waited for, as a pipe would be. Errors have the whole path.
 Result<std::string> read_file(const std::string& name) {
-  std::error_code missing;
-  const std::string path = fs::absolute(name, missing).lexically_normal().string();
-  if (!fs::is_regular_file(path, missing) && !fs::is_directory(path, missing))
-    return Error{Code::NotFound,
-                 path + ": cannot be read: " +
-                     (fs::exists(path, missing) ? "not a file" : "No such file or directory")};
+  std::error_code why;
+  const std::string path = fs::absolute(name, why).lexically_normal().string();
+  const auto type = fs::status(path, why).type();
+  if (why) return cannot_read(path, why);
+  if (type != fs::file_type::regular && type != fs::file_type::directory)
+    return Error{Code::System, path + ": cannot be read: not a file"};
   return read_text(path);
 }
 
@@ -58,6 +61,16 @@ std::string why_no_program(const std::string& program, const std::string& path) 
   if (fs::is_directory(path, missing)) return path + " is a folder, not a program";
   if (fs::exists(path, missing)) return path + " is not executable";
   return "no program \"" + program + "\"";
+}
+
+/// The path of a program; an error says why there is none.
+/// @param path  as above.
+Result<std::string> path_of(const std::string& program, const std::string& path, int stop) {
+  return unless_stopped(stop, [=]() -> Result<std::string> {
+    auto found = find_program(path);
+    if (found.empty()) return Error{Code::NotFound, why_no_program(program, path)};
+    return found;
+  });
 }
 
 /// Has a graph serve a page: by its module `web`, or by a new one, which can stop the robot and
@@ -168,11 +181,10 @@ class FileLoader : public GraphLoader {
     find_programs(graph, elsewhere, problems, stop);
     Answers described;  // here; a failure is not tried twice
     LoadedGraph loaded{graph, {}, {}, {}};
-    const bool has_recorder = !options_.recorder.empty();
     std::string recorder;
-    if (has_recorder) {
-      const auto found =
-          unless_stopped(stop, []() -> Result<std::string> { return find_program("recorder"); });
+    if (!options_.recorder.empty()) {
+      const auto found = path_of("recorder", "recorder", stop);
+      if (!found) problems.add({}, "--record: " + found.error().detail);
       recorder = found.value_or("");
     }
     std::vector<std::string> recorded;
@@ -185,9 +197,7 @@ class FileLoader : public GraphLoader {
       if (program == recorder && known->second) return with_inputs(*known->second, recorded);
       return known->second;
     };
-    if (has_recorder && recorder.empty()) {
-      problems.add({}, "--record: " + why_no_program("recorder", "recorder"));
-    } else if (has_recorder) {
+    if (!recorder.empty()) {
       recorded = add_recorder(graph, traced_modules(graph, describe), recorder, options_.recorder);
       loaded.recorder = graph.modules.back().name;
     }
@@ -218,11 +228,7 @@ class FileLoader : public GraphLoader {
         std::string name = given;
         if (name.find('/') != std::string::npos && !name.starts_with('/'))
           name = (fs::path(problems.file(place.file)).parent_path() / name).string();
-        const auto path = unless_stopped(stop, [=]() -> Result<std::string> {
-          auto found = find_program(name);
-          if (found.empty()) return Error{Code::NotFound, why_no_program(given, name)};
-          return found;
-        });
+        const auto path = path_of(given, name, stop);
         if (!path) problems.add(place, path.error().detail);
         program = path.value_or("");
       }

@@ -47,8 +47,8 @@ class GraphLoader {
   /// it is called on the thread of the hosts' loop and turns that; else on another one.
   /// @param stop  descriptor that is readable when no program is to be waited for any more.
   ///
-  /// Errors: NotFound (the file), Stopped, System (no descriptor or thread to be had). All else
-  /// that is wrong is in LoadedGraph::problems.
+  /// Errors: NotFound (the file), Stopped, System (it cannot be read; no descriptor or thread to be
+  /// had). All else that is wrong is in LoadedGraph::problems.
   virtual Result<LoadedGraph> load(const Plan* running, int stop) = 0;
 
   /// Plans a graph that was loaded and has been changed.

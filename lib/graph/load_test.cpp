@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@
 #include <hc/os/descriptor.h>
 #include <hc/os/event.h>
 #include <hc/os/loop.h>
+#include <hc/testing/must.h>
 
 namespace hc {
 namespace {
@@ -57,7 +59,8 @@ class Load : public ::testing::Test {
   }
 
   FakeHosts hosts_;
-  const Event stop_ = Event::must_make();
+  const Plan running_;
+  const Event stop_ = must(Event::make());
   LoadOptions options_ = [this] {
     LoadOptions options;
     options.token = graph_token();
@@ -77,6 +80,19 @@ TEST_F(Load, AFileThatHangsIsNotWaitedForWhenStopped) {
   const Descriptor writer(::open(options_.file.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
 }
 
+TEST_F(Load, AFileThatIsThereAndCannotBeReadIsNotMissing) {
+  auto code = [&] { return refused(make_loader(options_)->load(&running_, -1)).code; };
+  EXPECT_EQ(code(), Code::NotFound);
+  ASSERT_EQ(::symlink("/", options_.file.c_str()), 0);
+  EXPECT_EQ(code(), Code::System);
+  ::unlink(options_.file.c_str());
+  ASSERT_EQ(::symlink("/proc/self/mem", options_.file.c_str()), 0);  // reading it fails
+  EXPECT_EQ(code(), Code::System);
+  ::unlink(options_.file.c_str());
+  ASSERT_EQ(::mkfifo(options_.file.c_str(), S_IRUSR | S_IWUSR), 0);
+  EXPECT_EQ(code(), Code::System);
+}
+
 TEST_F(Load, AHostThatFailsIsSaidThoughAnotherDoesNotAnswer) {
   write({"a", "b"});
   const auto loaded = load();
@@ -90,6 +106,24 @@ TEST_F(Load, AHostThatDoesNotAnswerIsNotWaitedForWhenStopped) {
   const auto loaded = load();
   ASSERT_TRUE(loaded);
   EXPECT_EQ(loaded->problems, std::vector<std::string>{"Stopped: asked to stop"});
+}
+
+TEST_F(Load, ARecorderThatIsNotLookedForIsNotMissing) {
+  write({"b"});
+  options_.recorder = {{"to", "kept"}};
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  hosts_.asked = [&] {
+    const rlimit none_more{3, before.rlim_max};
+    ::setrlimit(RLIMIT_NOFILE, &none_more);
+    stop_.raise();
+  };
+  const auto loaded = load();
+  ::setrlimit(RLIMIT_NOFILE, &before);
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->problems,
+            (std::vector<std::string>{"Stopped: asked to stop",
+                                      "--record: eventfd(): Too many open files"}));
 }
 
 }  // namespace

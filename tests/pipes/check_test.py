@@ -130,7 +130,7 @@ class Check(Pipes):
     def test_what_is_no_text_file_is_reported_in_one_line(self):
         for verb in "check", "run":
             self.shell("hc %s ." % verb, 1)
-            self.assertEqual(self.err, "hc %s: NotFound: .: is a folder, not a file\n" % verb)
+            self.assertEqual(self.err, "hc %s: System: .: is a folder, not a file\n" % verb)
             self.write("latin.toml", b"[modules.camera]\n# \xe4\n")
             self.shell("hc %s latin.toml" % verb, 2)
             self.assertEqual(

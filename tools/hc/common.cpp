@@ -146,7 +146,9 @@ void say(std::string_view lines) {
 
 std::string find_graph(const std::string& name) {
   std::error_code missing;
-  if (name.find('/') != std::string::npos || fs::exists(name, missing)) return name;
+  if (name.find('/') != std::string::npos ||
+      fs::status(name, missing).type() != fs::file_type::not_found)
+    return name;
   const fs::path folder = hc::graph_folder();
   for (const char* suffix : {"", ".toml"})
     if (fs::is_regular_file(folder / (name + suffix), missing)) return folder / (name + suffix);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph.h"
 
-#include <filesystem>
-
 #include <hc/base/format.h>
 #include <hosts/hosts.h>
 
@@ -23,11 +21,9 @@ std::unique_ptr<hc::Hosts> make_hosts() {
   return value_or_fail(hc::hosts::make_hosts(HC_VERSION), "the key of this host");
 }
 
-hc::LoadedGraph load_graph(std::string_view verb, const std::string& file,
-                           hc::GraphLoader& loader) {
+hc::LoadedGraph load_graph(std::string_view verb, hc::GraphLoader& loader) {
   auto loaded = loader.load(nullptr, -1);
-  std::error_code unknown;
-  if (!loaded && !std::filesystem::exists(file, unknown))
+  if (!loaded && loaded.error().code == hc::Code::NotFound)
     throw Failure(loaded.error().code,
                   loaded.error().detail + "; shipped graphs: " + joined(shipped_graphs()));
   if (!loaded) throw Failure(loaded.error());
@@ -40,7 +36,7 @@ hc::Plan load_plan(std::string_view verb, const hc::LoadOptions& options, hc::Ho
   const auto own = hosts == nullptr ? make_hosts() : nullptr;
   hc::LoadOptions with_hosts = options;
   with_hosts.hosts = hosts == nullptr ? own.get() : hosts;
-  return std::move(*load_graph(verb, options.file, *hc::make_loader(with_hosts)).plan);
+  return std::move(*load_graph(verb, *hc::make_loader(with_hosts)).plan);
 }
 
 }  // namespace tool

@@ -18,7 +18,7 @@ std::unique_ptr<hc::Hosts> make_hosts();
 
 /// Loads a graph that does not run yet. Where something is wrong it prints all of that, a line
 /// each, and fails with status 2; where there is no such file, it names the shipped graphs.
-hc::LoadedGraph load_graph(std::string_view verb, const std::string& file, hc::GraphLoader& loader);
+hc::LoadedGraph load_graph(std::string_view verb, hc::GraphLoader& loader);
 /// The same of a plan that is only looked at.
 /// @param hosts  that it is checked with; null: its own.
 hc::Plan load_plan(std::string_view verb, const hc::LoadOptions& options,

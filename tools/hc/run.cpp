@@ -154,7 +154,7 @@ void run(RunOptions options) {
   const auto hosts = make_hosts();
   load_options.hosts = hosts.get();
   auto loader = hc::make_loader(load_options);
-  auto graph = load_graph("run", options.graph.file, *loader);
+  auto graph = load_graph("run", *loader);
   Outbox lines(STDERR_FILENO);
   const bool has_status = !options.quiet && ::isatty(STDERR_FILENO) == 1;
   if (const auto& unlinked = graph.plan->unlinked; !options.record.empty() && !unlinked.empty()) {

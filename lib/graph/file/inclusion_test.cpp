@@ -114,6 +114,21 @@ file = "head.toml"
   EXPECT_EQ(planned->workspaces, (std::set<std::string>{"a_judge", "b_judge", "judge"}));
 }
 
+TEST(Inclusion, AFileThatCannotBeReadIsNotMissing) {
+  for (const bool is_shipped : {false, true}) {
+    Problems problems("g.toml");
+    parse_graph(
+        "version = 1\n[graphs.a]\nfile = \"b.toml\"\n",
+        [](const char*) -> const char* { return nullptr; }, problems,
+        [&](const std::string& name) -> Result<std::string> {
+          if ((name != "b.toml") == is_shipped) return Error{Code::System, "too many open files"};
+          if (is_shipped) return Error{Code::NotFound, "missing"};
+          return std::string("version = 1\n");
+        });
+    EXPECT_EQ(problems.lines(), std::vector<std::string>{"g.toml:3: too many open files"});
+  }
+}
+
 TEST(Inclusion, ErrorsNameTheFileAndTheLineInIt) {
   EXPECT_EQ(wrong("[graphs.a]\nfile = \"b.toml\"\n",
                   {{"b.toml", "[modules.source]\nparameters.rat = 3\nx = 1\n"}}),
