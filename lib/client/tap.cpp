@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <stdexcept>
 #include <utility>
 
 #include <client/graph_client.h>
@@ -66,6 +67,12 @@ void yield_to_robot() {
   static_cast<void>(::sched_setscheduler(0, SCHED_BATCH, &none));
 }
 
+Event make_event() {
+  auto made = Event::make();
+  if (!made) throw std::runtime_error(made.error().text());
+  return std::move(*made);
+}
+
 }  // namespace
 
 Result<Uri> tap_uri(const RunningGraph& graph, const std::string& port, int stop) {
@@ -88,6 +95,7 @@ Tap::Tap(RunningGraph graph, std::string port, Callbacks callbacks)
     : graph_(std::move(graph)),
       port_(std::move(port)),
       callbacks_(std::move(callbacks)),
+      wake_(make_event()),
       thread_([this] { run(); }) {}
 
 Tap::~Tap() {

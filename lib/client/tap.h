@@ -48,6 +48,9 @@ class Tap {
     std::function<void(const std::string& why, bool is_error)> end;
   };
 
+  /// Throws std::runtime_error, as the constructor of a thread does, where there is no descriptor
+  /// or thread to be had.
+  ///
   /// @param port  as of open_tap().
   Tap(RunningGraph graph, std::string port, Callbacks callbacks);
   ~Tap();
@@ -64,7 +67,7 @@ class Tap {
   const RunningGraph graph_;
   const std::string port_;
   const Callbacks callbacks_;
-  Event wake_ = Event::must_make();
+  const Event wake_;
   std::atomic<bool> is_open_{false}, is_stopped_{false};
   std::thread thread_;
 };

@@ -7,6 +7,7 @@
 #include <string>
 
 #include <hc/os/event.h>
+#include <hc/testing/must.h>
 
 namespace hc::hosts {
 namespace {
@@ -49,7 +50,7 @@ TEST_F(AnswerTest, ComesAtOnceOrLater) {
 }
 
 TEST_F(AnswerTest, IsNotAwaitedForEver) {
-  const auto stop = Event::must_make();
+  const auto stop = must(Event::make());
   Give<std::string> late;
   auto asked = [&](const auto& give) {
     late = give;

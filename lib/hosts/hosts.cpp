@@ -18,8 +18,8 @@ namespace {
 
 class AllHosts final : public Hosts {
  public:
-  AllHosts(std::string version, std::unique_ptr<Loop> loop)
-      : version_(std::move(version)), loop_(std::move(loop)) {}
+  AllHosts(std::string version, std::unique_ptr<Loop> loop, Event changed)
+      : version_(std::move(version)), loop_(std::move(loop)), changed_(std::move(changed)) {}
   AllHosts(const AllHosts&) = delete;
   AllHosts& operator=(const AllHosts&) = delete;
   ~AllHosts() override {
@@ -117,7 +117,7 @@ class AllHosts final : public Hosts {
   std::string fingerprint_;
   Descriptor key_;
   const std::unique_ptr<Loop> loop_;
-  Event changed_ = Event::must_make();
+  const Event changed_;
   std::vector<std::string> events_;
   std::map<std::string, std::shared_ptr<Connection>> hosts_;
   std::set<std::shared_ptr<Connection>> opening_;
@@ -129,7 +129,8 @@ class AllHosts final : public Hosts {
 
 Result<std::unique_ptr<Hosts>> make_hosts(std::string version) {
   auto loop = HC_TRY(Loop::make());
-  auto hosts = std::make_unique<AllHosts>(std::move(version), std::move(loop));
+  auto changed = HC_TRY(Event::make());
+  auto hosts = std::make_unique<AllHosts>(std::move(version), std::move(loop), std::move(changed));
   HC_TRY(hosts->make_key());
   return std::unique_ptr<Hosts>(std::move(hosts));
 }

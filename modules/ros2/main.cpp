@@ -124,7 +124,7 @@ int main(int argc, char** argv) {
   const std::function<void(std::string_view)> warn = [&](std::string_view line) {
     log("warnings of Cyclone DDS", "Cyclone DDS: " + std::string(line));
   };
-  const auto arrived = hc::Event::must_make();
+  const auto arrived = hc::value_or_end(hc::Event::make());
   const std::function<void()> wake = [&] { arrived.raise(); };
 
   std::optional<hc::ros::GraphJoints> joints;

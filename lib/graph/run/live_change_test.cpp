@@ -31,7 +31,7 @@ TEST_F(LiveChange, WrongCommandsAreAnsweredAndChangeNothing) {
 
 TEST_F(LiveChange, TheGraphGoesOnWhileAChangeIsPlanned) {
   add("a");
-  const auto again = Event::must_make();
+  const auto again = must(Event::make());
   std::atomic<int> plans = 0;
   plans_ = [&](int) {
     if (++plans == 1) await(again.descriptor());

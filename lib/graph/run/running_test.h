@@ -69,7 +69,7 @@ class Run : public ::testing::Test {
   RunOptions options_;
   std::function<void(std::string_view line)> heard_;
   std::string stop_at_;  // the line at which the graph is asked to end
-  Event stop_ = Event::must_make();
+  Event stop_ = must(Event::make());
   std::vector<std::string> lines_;
 };
 

@@ -4,7 +4,6 @@
 
 #include <sys/eventfd.h>
 
-#include <stdexcept>
 #include <utility>
 
 #include <hc/os/descriptor.h>
@@ -20,13 +19,6 @@ class Event {
     auto made = HC_TRY(
         open_descriptor("eventfd", "", [] { return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC); }));
     return Event(std::move(made));
-  }
-
-  /// The same for a constructor: throws std::runtime_error, as that of a thread does.
-  static Event must_make() {
-    auto made = make();
-    if (!made) throw std::runtime_error(made.error().text());
-    return std::move(*made);
   }
 
   [[nodiscard]] int descriptor() const { return descriptor_.get(); }

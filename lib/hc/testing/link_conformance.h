@@ -15,6 +15,7 @@
 
 #include <hc/link/link.h>
 #include <hc/os/event.h>
+#include <hc/testing/must.h>
 #include <hc/testing/next.h>
 
 namespace hc::testing {
@@ -50,7 +51,7 @@ class Stop {
   }
 
  private:
-  Event event_ = Event::must_make();
+  Event event_ = must(Event::make());
 };
 
 /// Sends a message by another thread, as the sink may wait for its reader; gives what comes.
