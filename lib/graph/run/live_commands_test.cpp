@@ -41,8 +41,8 @@ TEST_F(LiveCommands, ReachAModuleThatListens) {
     EXPECT_EQ(ask({"add x p"}), Lines{"ok"});
     EXPECT_EQ(first.next(), "unlink out left=shm:t.left?readers=1");
     EXPECT_EQ(first.next(), "set rate=10");
-    EXPECT_EQ(first.next(), "link out left=shm:t.own?readers=1&rate=5&wait=1");
-    EXPECT_EQ(first.next(), "route left=shm:t.own?readers=1&rate=5&wait=1 to=5");
+    EXPECT_EQ(first.next(), "link out left=shm:t.own?readers=1&rate=5");
+    EXPECT_EQ(first.next(), "route left=shm:t.own?readers=1&rate=5 to=5");
     EXPECT_EQ(second.next(), "unlink in image=shm:t.left?reconnect=86400");
     EXPECT_EQ(second.next(), "link in image=shm:t.own?reconnect=86400");
   });

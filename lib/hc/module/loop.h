@@ -174,6 +174,7 @@ struct Module::Loop {
 
   Module& module_;
   LinkOptions options_;
+  bool joins_ = false;  // the graph runs already: see --join
   std::vector<internal::Inlet> sources_;
   std::vector<std::shared_ptr<internal::LinkedSink>> sinks_;     // in the order of the command line
   std::vector<std::shared_ptr<internal::LinkedSink>> unlinked_;  // one may still be in send()
