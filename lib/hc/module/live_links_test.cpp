@@ -1,7 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The links of a module that runs: what it reports of them, and how they come and go.
+#include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <thread>
+
+#include <hc/base/check.h>
 #include <hc/module/running_module_test.h>
 
 namespace hc {
@@ -314,21 +322,57 @@ TEST_F(RunningModule, AWriterThatHasEndedForGoodIsNoNews) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
-TEST_F(RunningModule, AGeneratorReadsTheWriterThatFollowsAnother) {
-  const std::string name = "shm:generator-" + std::to_string(::getpid());
-  Module module{"generator", "Reads, and never waits for it."};
-  int come = 0;
-  module.on(module.input("in", table<double>(), ""), [&](const auto&) { ++come; });
-  module.generate([&] {
-    module.keep_rate(1000);
-    return come < 2;
-  });
-  start(module, {"--in=" + name + "?reconnect=60"});
-  for (int writers = 0; writers < 2; ++writers) {
-    auto writer = sink_of(name);  // it leaves without closing, as who is killed does
+/// The name of the link that DISABLED_SendsOnce writes to.
+constexpr const char* kWritten = "HC_TEST_WRITTEN";
+
+/// A program, which is to be killed.
+TEST(Writer, DISABLED_SendsOnce) {
+  const auto sink = sink_of(std::getenv(kWritten));
+  ASSERT_TRUE(sink->send(table({1.0})));
+  while (true) ::pause();
+}
+
+pid_t start_writer(const std::string& link) {
+  ::setenv(kWritten, link.c_str(), 1);
+  const char* words[] = {"module_test", "--gtest_also_run_disabled_tests",
+                         "--gtest_filter=Writer.DISABLED_SendsOnce", nullptr};
+  pid_t started = 0;
+  HC_CHECK(::posix_spawn(&started, "/proc/self/exe", nullptr, nullptr,
+                         const_cast<char* const*>(words), environ) == 0,
+           errno);
+  return started;
+}
+
+TEST_F(RunningModule, WhoNeverWaitsReadsTheWriterThatFollowsOneThatWasKilled) {
+  const std::string name = "shm:killed-" + std::to_string(::getpid());
+  for (const bool generates : {false, true}) {
+    SCOPED_TRACE(generates);
+    Module module{"busy", "Has always something to do."};
+    std::atomic<int> come = 0;
+    auto feed = sink_of(uri("feed"));
+    module.on(module.input("feed", table<double>(), ""), [&](const auto&) {
+      ASSERT_TRUE(come < 2 && !generates ? feed->send(table({1.0})) : feed->close());
+    });
+    module.on(module.input("in", table<double>(), ""), [&](const auto&) { ++come; });
+    if (generates) module.generate([&] { return come < 2; });
+    start_managed(module, {"--in=feed=" + uri("feed"), "--in=in=" + name + "?reconnect=60"});
+    ASSERT_TRUE(feed->send(table({1.0})));
+    const pid_t killed = start_writer(name);
+    while (come < 1) std::this_thread::yield();
+    ASSERT_EQ(::kill(killed, SIGKILL), 0);
+    ASSERT_EQ(::waitpid(killed, nullptr, 0), killed);
+    auto writer = sink_of(name);
     ASSERT_TRUE(writer->send(table({1.0})));
+    while (come < 2) std::this_thread::yield();
+    if (!generates) {
+      ASSERT_TRUE(send_command(*control_, "finish in=" + name + "?reconnect=60"));
+    }
+    ASSERT_TRUE(control_->close());
+    writer.reset();
+    EXPECT_EQ(join(), 0);
+    control_.reset();
+    reports_.reset();
   }
-  EXPECT_EQ(join(), 0);
 }
 
 TEST_F(RunningModule, ALinkOfAGraphIsNamedByItsPort) {

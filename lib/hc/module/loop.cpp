@@ -277,8 +277,6 @@ void Module::Loop::run() {
     read_watched();
     if (any) continue;
     if (is_generators_turn()) {
-      // Notices that a publisher has died, whose messages such a module never waits for.
-      if (!sources_.empty() && !module_.message_time_) wait(true, now_);
       note(TraceEvent::What::Began, kNoPort, {}, TraceEvent::kGenerator);
       const bool goes_on = generate();
       note(TraceEvent::What::Ended, kNoPort, {}, TraceEvent::kGenerator);

@@ -154,6 +154,7 @@ struct Module::Loop {
   // loop_control.cpp
   void attend();
   void serve();
+  void look_at_silent();
   void receive_focus();
   void set_focus(internal::Inlet& link, const Message& message);
   void expire_focus();
