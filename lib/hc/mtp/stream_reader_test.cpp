@@ -54,6 +54,15 @@ std::atomic<std::size_t> allocated = 0;  // bytes that operator new has given
 namespace hc {
 namespace {
 
+/// Gives a reader what it has space for, but no more than `most`; the rest stays.
+void feed(StreamReader& reader, std::string_view& bytes, std::size_t most = SIZE_MAX) {
+  const auto space = reader.space();
+  const std::size_t size = std::min({most, space.size(), bytes.size()});
+  std::memcpy(space.data(), bytes.data(), size);
+  reader.commit(size);
+  bytes.remove_prefix(size);
+}
+
 /// Feeds a stream in pieces; takes all messages there are, and the error or end behind them.
 struct Reading {
   std::vector<Message> messages;
@@ -74,11 +83,7 @@ Reading read_all(std::string_view bytes, std::size_t piece, StreamReader& reader
       continue;
     }
     if (bytes.empty()) break;
-    auto space = reader.space();
-    std::size_t size = std::min({piece, space.size(), bytes.size()});
-    std::memcpy(space.data(), bytes.data(), size);
-    reader.commit(size);
-    bytes.remove_prefix(size);
+    feed(reader, bytes, piece);
   }
   reading.end = reader.finish();
   return reading;
@@ -182,13 +187,7 @@ TEST(StreamReader, MemoryIsUsedAgainWhenNobodyHoldsIt) {
   std::size_t after_first = 0;
   for (int i = 0; i < 20; ++i) {
     std::string_view rest = bytes;
-    while (!*reader.next(message)) {
-      auto space = reader.space();
-      std::size_t size = std::min(space.size(), rest.size());
-      std::memcpy(space.data(), rest.data(), size);
-      reader.commit(size);
-      rest.remove_prefix(size);
-    }
+    while (!*reader.next(message)) feed(reader, rest);
     if (i == 1) after_first = allocated;
   }
   EXPECT_EQ(allocated, after_first);
@@ -203,16 +202,12 @@ TEST(StreamReader, ElementsOfALargeMessageAfterAnotherAreReadWhereTheyStay) {
     std::string_view rest = bytes;
     Message message;
     while (!*reader.next(message)) {
-      auto missing = reader.missing();
-      auto space = reader.space();
-      if (missing > 0) {
+      if (auto missing = reader.missing(); missing > 0) {
+        const auto space = reader.space();
         EXPECT_TRUE(is_first || space.size() == missing);
         in_place += std::min(space.size(), rest.size());
       }
-      std::size_t size = std::min(space.size(), rest.size());
-      std::memcpy(space.data(), rest.data(), size);
-      reader.commit(size);
-      rest.remove_prefix(size);
+      feed(reader, rest);
     }
     EXPECT_EQ(message.characters(), sent.characters());
     EXPECT_EQ(reader.missing(), 0U);
@@ -240,21 +235,7 @@ TEST(StreamReader, R24_PromisesCostNothing) {
     std::size_t before = allocated;
     {
       StreamReader reader;
-      Message message;
-      std::string_view rest = bytes;
-      Status end;
-      while (true) {
-        auto got = reader.next(message);
-        if (!got) end = got.error();
-        if (!got || rest.empty()) break;
-        auto space = reader.space();
-        std::size_t size = std::min(space.size(), rest.size());
-        std::memcpy(space.data(), rest.data(), size);
-        reader.commit(size);
-        rest.remove_prefix(size);
-      }
-      if (end) end = reader.finish();
-      EXPECT_FALSE(end) << bytes.substr(0, 60);
+      EXPECT_FALSE(read_all(bytes, SIZE_MAX, reader).end) << bytes.substr(0, 60);
     }
     EXPECT_LT(allocated - before, (std::size_t{1} << 20) + 100'000) << bytes.substr(0, 60);
   }
