@@ -603,18 +603,15 @@ TEST_F(Mcap, ARecordingIsSplitAndItsOldestFilesAreRemoved) {
 
 TEST_F(Mcap, OfEachStaticFrameTheLatestIsRepeated) {
   auto options = chunks_of();
-  std::vector<Place> places;
+  std::vector<std::string> files;
   for (const char* cup : {"1 2 3", "4 5 6", "7 8 9"}) {
     options.frames = "head 3 robot 1 2 3 0 0 0 1; cup 200 head " + std::string(cup) + " 0 0 0 1";
-    places.push_back(place_of(in(std::string(1, cup[0]) + ".mcap")));
-    record_images(places.back().path, cup[0] == '7' ? 20 : 1, options);
+    files.push_back(in(std::string(1, cup[0]) + ".mcap"));
+    record_images(files.back(), cup[0] == '7' ? 20 : 1, options);
   }
   options = chunks_of();
   options.split = 20000;
-  auto writer = writer_of(in("all.mcap"), options);
-  auto reader = *Reader::open(places, {}, writer->copied_topics());
-  for (auto copied = Result<bool>(true); copied && *copied;) copied = writer->copy(*reader);
-  const auto& written = writer->close();
+  const auto written = copied(files, "all.mcap", options);
   ASSERT_GT(written.files.size(), 1U);
   EXPECT_EQ(topics_of(summary_of(written.files.front()))["/tf_static"], 3U);
   EXPECT_EQ(topics_of(summary_of(written.files.back()))["/tf_static"], 1U);
@@ -632,11 +629,7 @@ TEST_F(Mcap, StaticFramesThatCannotBeReadAreAllRepeated) {
   record_images(in("x.mcap"), 20);
   auto options = chunks_of();
   options.split = 20000;
-  auto writer = writer_of(in("all.mcap"), options);
-  auto reader =
-      *Reader::open({place_of(in("tf.mcap")), place_of(in("x.mcap"))}, {}, writer->copied_topics());
-  for (auto copied = Result<bool>(true); copied && *copied;) copied = writer->copy(*reader);
-  const auto& written = writer->close();
+  const auto written = copied({in("tf.mcap"), in("x.mcap")}, "all.mcap", options);
   ASSERT_GT(written.files.size(), 1U);
   EXPECT_EQ(topics_of(summary_of(written.files.back()))["/tf_static"], 2U);
 }

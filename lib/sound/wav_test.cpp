@@ -6,12 +6,12 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <random>
 #include <span>
 #include <string>
 
 #include <gtest/gtest.h>
+#include <hc/testing/files.h>
 
 namespace {
 
@@ -88,9 +88,7 @@ TEST_F(Wav, the_header_is_as_specified) {
   auto writer = WavWriter::create(path, {8000, 1});
   const std::int16_t one = 0x0102;
   ASSERT_TRUE(writer && writer->write({&one, 1}));
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  EXPECT_EQ(bytes, riff(format(1, 1, 8000, 16) + chunk("data", "\x02\x01")));
+  EXPECT_EQ(hc::bytes_of(path), riff(format(1, 1, 8000, 16) + chunk("data", "\x02\x01")));
 }
 
 TEST_F(Wav, a_file_that_has_contents_stays) {
@@ -102,7 +100,6 @@ TEST_F(Wav, a_file_that_has_contents_stays) {
   EXPECT_EQ(samples(), some);
   std::filesystem::remove(beside->path());
   EXPECT_FALSE(WavWriter::create("/dev/full", {8000, 1}));
-  EXPECT_FALSE(WavWriter::create("/no/such.wav", {8000, 1}));
 }
 
 TEST_F(Wav, a_descriptor_by_name_is_written_behind_what_it_has) {
@@ -115,11 +112,9 @@ TEST_F(Wav, a_descriptor_by_name_is_written_behind_what_it_has) {
     for (const auto sample : some) ASSERT_TRUE(writer->write(std::span(&sample, 1)));
   }
   ::close(own);
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   const auto sound =
       riff(format(1, 1, 8000, 16) + chunk("data", std::string("\1\0\2\0\3\0\4\0", 8)));
-  EXPECT_EQ(bytes, "shell " + sound + sound);
+  EXPECT_EQ(hc::bytes_of(path), "shell " + sound + sound);
 }
 
 TEST_F(Wav, all_kinds_of_samples) {
@@ -209,8 +204,6 @@ TEST_F(Wav, says_what_cannot_be_opened) {
   EXPECT_EQ(WavReader::open("/tmp").error().detail, "/tmp: no regular file");
   EXPECT_EQ(WavWriter::create("/no/such.wav", {8000, 1}).error().text(),
             "NotFound: open(/no/such.wav): No such file or directory");
-  auto full = WavWriter::create("/dev/full", {8000, 1});
-  EXPECT_FALSE(full);
 }
 
 }  // namespace
