@@ -47,18 +47,18 @@ TEST_F(RunningModule, ObeysCommands) {
   const std::string commands =
       "a command is set NAME=VALUE, link or unlink in|out PORT=URI, finish PORT=URI, route "
       "PORT=URI WORDS, or wall_offset NANOSECONDS";
-  for (const auto& [line, wrong] : std::initializer_list<std::pair<std::string, std::string>>{
-           {"set factor=-1", "parameter factor: \"-1\" is not from 0 to 10"},
-           {"set factor", commands},
-           {"set colour=1", "no parameter \"colour\""},
-           {"set title=b", "parameter title is fixed while the module runs"},
-           {"link up", commands},
-           {"unlink out out=inproc:nowhere", "there is no such link"},
-           {"route out=x via=y", "a route is to=ADDRESS,… and peer=NAME, not \"via\""},
-           {"jump", commands}}) {
-    command(line);
-    EXPECT_EQ(read_log(next(*reports_, Report::Log))->text, "command \"" + line + "\": " + wrong);
-  }
+  const std::pair<std::string, std::string> wrong[] = {
+      {"set factor=-1", "parameter factor: \"-1\" is not from 0 to 10"},
+      {"set factor", commands},
+      {"set colour=1", "no parameter \"colour\""},
+      {"set title=b", "parameter title is fixed while the module runs"},
+      {"link up", commands},
+      {"unlink out out=inproc:nowhere", "there is no such link"},
+      {"route out=x via=y", "a route is to=ADDRESS,… and peer=NAME, not \"via\""},
+      {"jump", commands}};
+  for (const auto& [line, why] : wrong) command(line);
+  for (const auto& [line, why] : wrong)
+    EXPECT_EQ(read_log(next(*reports_, Report::Log))->text, "command \"" + line + "\": " + why);
   command("set factor=7");
   EXPECT_EQ(rows_of(next(*reports_, Report::Parameters)),
             (std::vector<std::string>{"factor=7", "title=a"}));
