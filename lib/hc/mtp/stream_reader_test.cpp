@@ -4,52 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
-#include <cstdlib>
 #include <cstring>
-#include <new>
 #include <vector>
 
 #include <hc/mtp/codec.h>
-
-namespace {
-
-std::atomic<std::size_t> allocated = 0;  // bytes that operator new has given
-
-[[maybe_unused]] void* counted(std::size_t size, std::size_t alignment) {
-  allocated += size;
-  void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-  if (memory == nullptr) std::abort();
-  return memory;
-}
-
-}  // namespace
-
-// Out of line, since GCC takes an inlined std::free() for the wrong end of what `new` gave.
-// ThreadSanitizer has these itself and lets nobody put others in; nothing is counted there.
-#if !defined(__has_feature)
-#define __has_feature(feature) 0
-#endif
-#if !__has_feature(thread_sanitizer)
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  return counted(size, 16);
-}
-[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-  return counted(size, static_cast<std::size_t>(alignment));
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
-#endif
+#include <hc/testing/allocations.h>
 
 namespace hc {
 namespace {
@@ -184,13 +143,13 @@ TEST(StreamReader, MemoryIsUsedAgainWhenNobodyHoldsIt) {
   std::string bytes = encode(filled(kPicture, 800, 600));
   StreamReader reader;
   Message message;
-  std::size_t after_first = 0;
+  std::int64_t after_first = 0;
   for (int i = 0; i < 20; ++i) {
     std::string_view rest = bytes;
     while (!*reader.next(message)) feed(reader, rest);
-    if (i == 1) after_first = allocated;
+    if (i == 1) after_first = allocations.bytes;
   }
-  EXPECT_EQ(allocated, after_first);
+  EXPECT_EQ(allocations.bytes, after_first);
 }
 
 TEST(StreamReader, ElementsOfALargeMessageAfterAnotherAreReadWhereTheyStay) {
@@ -232,12 +191,12 @@ TEST(StreamReader, R24_PromisesCostNothing) {
       "1 7 0 0 8 0 40102 1 7 1 1\n268435456\nabc",
   };
   for (const auto& bytes : hostile) {
-    std::size_t before = allocated;
+    const auto before = allocations.bytes;
     {
       StreamReader reader;
       EXPECT_FALSE(read_all(bytes, SIZE_MAX, reader).end) << bytes.substr(0, 60);
     }
-    EXPECT_LT(allocated - before, (std::size_t{1} << 20) + 100'000) << bytes.substr(0, 60);
+    EXPECT_LT(allocations.bytes - before, (1 << 20) + 100'000) << bytes.substr(0, 60);
   }
 }
 
