@@ -4,33 +4,10 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <new>
 
 #include <hc/contract/trace.h>
 #include <hc/module/running_module_test.h>
-
-namespace {
-thread_local std::int64_t allocations = 0;  // of this thread
-}  // namespace
-
-// Not inlined: compilers then take malloc() and free() for no pair of these. ThreadSanitizer has
-// its own and lets nobody replace them; nothing is counted there.
-#if !defined(__has_feature)
-#define __has_feature(feature) 0
-#endif
-#if !__has_feature(thread_sanitizer)
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size); memory != nullptr) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-#endif
+#include <hc/testing/allocations.h>
 
 namespace hc {
 namespace {
@@ -182,8 +159,8 @@ class TracedEffort : public RunningModule {
     int handled = 0;
     module.on(in, [&](const Doubles& message) {
       ++handled;
-      if (handled == kBegin) begin = {allocations, clock.looks, 0};
-      if (handled == kEnd) end = {allocations, clock.looks, 0};
+      if (handled == kBegin) begin = {hc::allocations.count, clock.looks, 0};
+      if (handled == kEnd) end = {hc::allocations.count, clock.looks, 0};
       out.send(table({2 * message.numbers()[0]}));
     });
     std::filesystem::remove(trace_);
