@@ -12,6 +12,7 @@
 
 #include <gtest/gtest.h>
 #include <hc/testing/files.h>
+#include <hc/testing/must.h>
 
 namespace {
 
@@ -72,13 +73,12 @@ TEST_F(Wav, what_was_written_is_read) {
   std::vector<std::int16_t> some;
   std::mt19937 random(3);
   for (int i = 0; i < 2000; ++i) some.push_back(static_cast<std::int16_t>(random()));
-  auto writer = WavWriter::create(path, {22050, 2});
-  ASSERT_TRUE(writer);
+  auto writer = hc::must(WavWriter::create(path, {22050, 2}));
   EXPECT_TRUE(samples().empty());
-  ASSERT_TRUE(writer->write(std::span(some).first(600)));
+  ASSERT_TRUE(writer.write(std::span(some).first(600)));
   // Whole at this moment too, with the writer still at it.
   EXPECT_EQ(samples(), std::vector<std::int16_t>(some.begin(), some.begin() + 600));
-  ASSERT_TRUE(writer->write(std::span(some).subspan(600)));
+  ASSERT_TRUE(writer.write(std::span(some).subspan(600)));
   EXPECT_EQ(samples(7), some);  // three frames at once, and half a frame of room
   EXPECT_EQ(WavReader::open(path)->format(), (Format{22050, 2}));
   EXPECT_EQ(WavReader::open(path)->frames(), 1000);
@@ -107,9 +107,8 @@ TEST_F(Wav, a_descriptor_by_name_is_written_behind_what_it_has) {
   const int own = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   const std::vector<std::int16_t> some = {1, 2, 3, 4};
   for (int i = 0; i < 2; ++i) {
-    auto writer = WavWriter::create("/proc/self/fd/" + std::to_string(own), {8000, 1});
-    ASSERT_TRUE(writer) << writer.error().text();
-    for (const auto sample : some) ASSERT_TRUE(writer->write(std::span(&sample, 1)));
+    auto writer = hc::must(WavWriter::create("/proc/self/fd/" + std::to_string(own), {8000, 1}));
+    for (const auto sample : some) ASSERT_TRUE(writer.write(std::span(&sample, 1)));
   }
   ::close(own);
   const auto sound =
@@ -192,9 +191,8 @@ TEST_F(Wav, no_cut_and_no_flipped_bit_does_harm) {
     auto reader = WavReader::open(path);
     if (!reader) continue;
     std::vector<std::int16_t> room(1024);
-    auto frames = reader->read(room);
-    ASSERT_TRUE(frames);
-    EXPECT_LE(*frames, whole.size());
+    auto frames = hc::must(reader->read(room));
+    EXPECT_LE(frames, whole.size());
   }
 }
 
