@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <hc/testing/files.h>
+#include <hc/testing/must.h>
 
 namespace hc::web {
 namespace {
@@ -21,10 +22,9 @@ namespace fs = std::filesystem;
 
 TEST(Identity, is_made_once_and_kept_for_its_user_alone) {
   const Folder folder;
-  const auto made = load_identity(folder / "deeper");
-  ASSERT_TRUE(made) << made.error().text();
-  EXPECT_EQ(fingerprint(*made).size(), 32U * 3 - 1);
-  EXPECT_EQ(*load_identity(folder / "deeper"), *made);
+  const auto made = must(load_identity(folder / "deeper"));
+  EXPECT_EQ(fingerprint(made).size(), 32U * 3 - 1);
+  EXPECT_EQ(*load_identity(folder / "deeper"), made);
   struct stat status {};
   ASSERT_EQ(::stat((folder / "deeper/page_key.pem").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777U, 0600U);
@@ -37,11 +37,7 @@ TEST(Identity, is_the_same_for_all_that_start_at_once) {
     while (all.size() < 8)
       all.push_back(std::async(std::launch::async, [&] { return load_identity(folder.path()); }));
     std::set<std::string> found;
-    for (auto& each : all) {
-      auto loaded = each.get();
-      ASSERT_TRUE(loaded) << loaded.error().text();
-      found.insert(*loaded);
-    }
+    for (auto& each : all) found.insert(must(each.get()));
     EXPECT_EQ(found.size(), 1U);
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1)
         << "nothing else is left";
