@@ -31,7 +31,7 @@ inline thread_local Allocations allocations;
   throw std::bad_alloc();
 }
 [[gnu::noinline]] void* operator new(std::size_t size) {
-  return operator new(size, std::align_val_t{16});
+  return operator new (size, std::align_val_t{16});
 }
 [[gnu::noinline]] void operator delete(void* memory) noexcept {
   std::free(memory);
