@@ -23,15 +23,12 @@ TEST_F(RunningModule, SaysWhatItIsLinkedToAndHowItIsSet) {
   module.parameter("title", "a b", "", "", {.fixed = true});
   module.on(in, [](const auto&) {});
   auto sink = sink_of(uri("in"));
-  auto reports = source_of(uri("reports"));
-  start(module, {"--in=" + uri("in"), "--out=" + uri("out"), "--manage=" + uri("reports"),
-                 "--mode=3", "--factor=4"});
-  Message parameters;  // first: a module that is seen to run has parameters
-  ASSERT_TRUE(*receive(*reports, parameters));
+  start_managed(module, {"--in=" + uri("in"), "--out=" + uri("out"), "--mode=3", "--factor=4"});
+  const Message parameters = next(*reports_);  // first: a module that is seen to run has them
   EXPECT_EQ(parameters.header.src, static_cast<int>(Report::Parameters));
   EXPECT_EQ(rows_of(parameters), (std::vector<std::string>{"factor=4", "title=a b"}));
-  auto state = next(*reports, Report::State);
-  EXPECT_EQ(rows_of(next(*reports, Report::Links)),
+  auto state = next(*reports_, Report::State);
+  EXPECT_EQ(next_links(),
             (std::vector<std::string>{"in in " + uri("in"), "out out " + uri("out")}));
   auto numbers = state.view<std::int64_t>()->row(0);
   EXPECT_EQ(std::vector(numbers.begin(), numbers.end()), (std::vector<std::int64_t>{3, 0, 1, 0}));
@@ -76,9 +73,9 @@ TEST_F(RunningModule, ObeysWhileItWaitsForAReader) {
   start_managed(module, {"--out=" + link});
   while (next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 3) == 0) {
   }
-  ASSERT_TRUE(send_command(*control_, "set factor=4"));
+  command("set factor=4");
   EXPECT_EQ(rows_of(next(*reports_, Report::Parameters)).front(), "factor=4");
-  ASSERT_TRUE(send_command(*control_, "unlink out out=" + link));
+  command("unlink out out=" + link);
   EXPECT_EQ(join(), 0);
 }
 
@@ -96,23 +93,10 @@ TEST_F(RunningModule, ObeysWhileItWaitsForRoom) {
   start_managed(module, {"--out=" + link, "--out=" + other});
   auto slow = source_of("shm:" + name + "?wait=10");  // and is not read
   auto quick = source_of(other);
-  Message message;
-  int received = 0;
-  auto take_all = [&] {
-    while (*quick->take(message) == Got::Message) {
-      // Every message, also the one that was being sent when the other link went.
-      EXPECT_EQ(message.view<double>()->at(0, 0), received);
-      ++received;
-    }
-  };
-  while (received < 2000) {
-    ASSERT_TRUE(quick->wait());
-    take_all();
-  }
-  ASSERT_TRUE(send_command(*control_, "unlink out out=" + link));
-  while (received < kCount) {
-    ASSERT_TRUE(quick->wait());
-    take_all();
+  for (int received = 0; received < kCount; ++received) {
+    if (received == 2000) command("unlink out out=" + link);
+    // Every message, also the one that was being sent when the other link went.
+    EXPECT_EQ(number_of(next(*quick)), received);
   }
   EXPECT_EQ(join(), 0);
 }
@@ -128,8 +112,7 @@ TEST_F(RunningModule, ReportsAgesAndGaps) {
     ASSERT_TRUE(sink->send(message));
   }
   ASSERT_TRUE(sink->close());
-  start(module, {"--in=" + uri("in"), "--manage=" + uri("reports")});
-  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(run(module, {"--in=" + uri("in"), "--manage=" + uri("reports")}), 0);
   const auto row = last_counters(*reports).at(0);
   ASSERT_EQ(row.size(), kCounterColumns.size());
   EXPECT_EQ(row[0], 3);
@@ -145,13 +128,13 @@ TEST_F(RunningModule, HasOnlyTheLinksOfItsCommands) {
   Relay module{"relay"};
   start_managed(module);
   // Neither standard input, which may have ended, nor standard output.
-  EXPECT_TRUE(rows_of(next(*reports_, Report::Links)).empty());
+  EXPECT_TRUE(next_links().empty());
   auto first = sink_of(uri("first"));
   auto from = source_of(uri("out"));
-  ASSERT_TRUE(send_command(*control_, "link out out=" + uri("out")));
-  ASSERT_TRUE(send_command(*control_, "link in in=" + uri("first")));
+  command("link out out=" + uri("out"));
+  command("link in in=" + uri("first"));
   ASSERT_TRUE(first->send(table({2.0})));
-  EXPECT_EQ(next(*from).view<double>()->at(0, 0), 2);
+  EXPECT_EQ(number_of(next(*from)), 2);
   ASSERT_TRUE(first->close());
   EXPECT_EQ(join(), 0);
 }
@@ -160,8 +143,7 @@ TEST_F(RunningModule, ReportsWithoutLinksToo) {
   Taker module{"idle"};
   start_managed(module);
   for (int i = 0; i < 2; ++i) EXPECT_EQ(next(*reports_, Report::Counters).header.height, 0);
-  ASSERT_TRUE(control_->close());
-  EXPECT_EQ(join(), 0);
+  end();
 }
 
 TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
@@ -172,7 +154,7 @@ TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
   for (double i : {1, 2, 3}) {
     auto sink = open_sink(*parse_uri(uri("in")));
     while (!sink) sink = open_sink(*parse_uri(uri("in")));  // until the end before has closed
-    ASSERT_TRUE(send_command(*control_, "link in in=" + uri("in")));
+    command("link in in=" + uri("in"));
     ASSERT_TRUE((*sink)->send(table({i})));
     next(*handled);
     ASSERT_TRUE((*sink)->close());
@@ -181,9 +163,9 @@ TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
   while (rows.back()[0] < 3) rows = next_counters(*reports_);
   ASSERT_EQ(rows.size(), 3U) << "the other, this one, and that out";
   EXPECT_EQ(rows[1][0], 3);
-  ASSERT_TRUE(send_command(*control_, "unlink in in=" + uri("in")));
+  command("unlink in in=" + uri("in"));
   std::vector<std::string> links;
-  while (links.size() != 2) links = rows_of(next(*reports_, Report::Links));
+  while (links.size() != 2) links = next_links();
   EXPECT_EQ(links, (std::vector{"in in " + uri("other"), "out out " + uri("out")}));
   ASSERT_TRUE(other->close());
   EXPECT_EQ(join(), 0);
@@ -198,34 +180,30 @@ TEST_F(RunningModule, ALinkThatIsTakenAwayHasItsLastNumbersReported) {
   ASSERT_TRUE(sink->send(table({1.0})));
   next(*from);
   for (const auto& end : {"in in=" + uri("in"), "out out=" + uri("out")}) {
-    ASSERT_TRUE(send_command(*control_, "unlink " + end));
+    command("unlink " + end);
     EXPECT_EQ(next_counters(*reports_).back()[0], 1);
     next(*reports_, Report::Links);
   }
-  ASSERT_TRUE(control_->close());
-  EXPECT_EQ(join(), 0);
+  end();
 }
 
 TEST_F(RunningModule, WhatWaitsAtALinkThatIsTakenAwayIsAmongTheLost) {
   Relay module{"relay"};
   const std::string name = "@waits-" + std::to_string(::getpid()), place = "unix-listen:" + name;
-  auto sink = sink_of(uri("in")), control = sink_of(uri("control"));
-  auto reports = source_of(uri("reports"));
+  auto sink = sink_of(uri("in"));
   ::testing::internal::CaptureStderr();
-  start(module, {"--in=" + uri("in"), "--out=" + place + "?keep=100&rate=1",
-                 "--manage=" + uri("reports"), "--control=" + uri("control")});
+  start_managed(module, {"--in=" + uri("in"), "--out=" + place + "?keep=100&rate=1"});
   auto from = source_of("unix:" + name + "?wait=60");
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(sink->send(table({static_cast<double>(i)})));
-  while (next_counters(*reports).back()[0] < 100) {
+  while (next_counters(*reports_).back()[0] < 100) {
   }
-  ASSERT_TRUE(send_command(*control, "unlink out out=" + place + "?keep=100&rate=1"));
-  auto row = next_counters(*reports).back();
-  while (row[6] == 0) row = next_counters(*reports).back();
+  command("unlink out out=" + place + "?keep=100&rate=1");
+  auto row = next_counters(*reports_).back();
+  while (row[6] == 0) row = next_counters(*reports_).back();
   EXPECT_EQ(row[0], 100);
   EXPECT_GT(row[6], 0);
-  ASSERT_TRUE(control->close());
   ASSERT_TRUE(sink->close());
-  EXPECT_EQ(join(), 0);
+  end();
   EXPECT_EQ(::testing::internal::GetCapturedStderr(),
             "relay: out: " + std::to_string(row[6]) + " waiting, lost with the link\n");
 }
@@ -273,20 +251,16 @@ TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
   next(*reports_, Report::Links);
   std::string place = uri("left");
   auto l = sink_of(place), r = sink_of(uri("right"));
-  auto obeyed = [&](const std::string& command) {
-    ASSERT_TRUE(send_command(*control_, command));
-    next(*reports_, Report::Links);
-  };
-  obeyed("link in right=" + uri("right"));
-  obeyed("link in left=" + place);
+  relink("link in right=" + uri("right"));
+  relink("link in left=" + place);
   for (double i : {1, 2}) {
     ASSERT_TRUE(l->send(table({i})));
     ASSERT_TRUE(r->send(table({i})));
-    EXPECT_EQ(next(*sums).view<double>()->at(0, 0), 2 * i);
-    obeyed("unlink in left=" + place);
+    EXPECT_EQ(number_of(next(*sums)), 2 * i);
+    relink("unlink in left=" + place);
     place += "_anew";
     l = sink_of(place);
-    obeyed("link in left=" + place);
+    relink("link in left=" + place);
   }
   ASSERT_TRUE(l->close());
   EXPECT_EQ(join(), 0);
@@ -297,15 +271,13 @@ TEST_F(RunningModule, AFocusLinkIsTakenAwayAlone) {
   auto one = sink_of(uri("one")), other = sink_of(uri("other"));
   start_managed(module, {"--in", "focus=" + uri("one"), "--in", "focus=" + uri("other")});
   next(*reports_, Report::State);
-  ASSERT_TRUE(send_command(*control_, "unlink in focus=" + uri("one")));
-  ASSERT_TRUE(send_command(*control_, "unlink in focus=" + uri("one")));
-  next(*reports_, Report::Links);
+  command("unlink in focus=" + uri("one"));
+  relink("unlink in focus=" + uri("one"));
   EXPECT_EQ(read_log(next(*reports_, Report::Log))->text,
             "command \"unlink in focus=" + uri("one") + "\": there is no such link");
   ASSERT_TRUE(other->send(table<std::int32_t>({7})));
   EXPECT_EQ(next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 1), 7);
-  ASSERT_TRUE(control_->close());
-  EXPECT_EQ(join(), 0);
+  end();
 }
 
 TEST_F(RunningModule, AWriterThatHasEndedForGoodIsNoNews) {
@@ -317,7 +289,7 @@ TEST_F(RunningModule, AWriterThatHasEndedForGoodIsNoNews) {
   ASSERT_TRUE(writer->send(table({1.0})));
   ASSERT_TRUE(writer->close());
   writer.reset();
-  ASSERT_TRUE(send_command(*control_, "finish in=" + name + "?reconnect=60"));
+  command("finish in=" + name + "?reconnect=60");
   EXPECT_EQ(join(), 0);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
@@ -379,12 +351,11 @@ TEST_F(RunningModule, ALinkOfAGraphIsNamedByItsPort) {
   const std::string nowhere = "unix:@nowhere-" + std::to_string(::getpid());
   Taker module{"reader"};
   start_managed(module);
-  ASSERT_TRUE(send_command(*control_, "link in in=" + nowhere));
+  command("link in in=" + nowhere);
   const auto refusal = read_log(next(*reports_, Report::Log))->text;
   EXPECT_TRUE(refusal.starts_with("command \"link in in=" + nowhere + "\": Closed: in: "))
       << refusal;
-  ASSERT_TRUE(control_->close());
-  EXPECT_EQ(join(), 0);
+  end();
 }
 
 }  // namespace
