@@ -26,17 +26,6 @@ INSTANTIATE_TEST_SUITE_P(Dds, LinkConformance,
                                                        return std::pair{uri, uri + "&readers=1"};
                                                      }}));
 
-/// What is logged.
-class Lines {
- public:
-  [[nodiscard]] LinkOptions options() {
-    LinkOptions options;
-    options.log = [this](Level, std::string_view line) { lines.emplace_back(line); };
-    return options;
-  }
-  std::vector<std::string> lines;
-};
-
 /// This program as another process that reads a link, or writes it, for as long as it can.
 class Child {
  public:
@@ -75,16 +64,12 @@ TEST(Dds, AllReadersGetEachMessage) {
   std::vector<std::unique_ptr<Source>> sources;
   for (int i = 0; i < 3; ++i) sources.push_back(source_of(uri));
   const auto sink = sink_of(uri + "&readers=3");
-  std::thread sender([&] {
-    for (int i = 0; i < kCount; ++i)
-      ASSERT_TRUE(sink->send(numbered(i, i % 10 == 9 ? 100'000 : i)));
-    ASSERT_TRUE(sink->close());
-  });
-  Message message;
+  const auto size = [](int i) { return i % 10 == 9 ? 100'000 : i; };
+  auto sender = send_all(*sink, kCount, size);
   for (int i = 0; i < kCount; ++i)
-    for (const auto& source : sources) {
-      EXPECT_EQ(next(*source).characters(), numbered(i, i % 10 == 9 ? 100'000 : i).characters());
-    }
+    for (const auto& source : sources)
+      EXPECT_EQ(next(*source).characters(), numbered(i, size(i)).characters());
+  Message message;
   for (const auto& source : sources) EXPECT_FALSE(*receive(*source, message));
   sender.join();
 }
@@ -103,16 +88,11 @@ TEST(Dds, WhatSharesASampleArrivesThoughNoMoreFollows) {
   const auto source = source_of(uri);
   SampleCounter samples(uri);
   const auto sink = sink_of(uri + "&readers=2");
-  Message message;
   int sent = 0;
   for (const int count : {1, 2, 10, 1000, 1}) {
     send_together(*sink, count, [](int i) { return i % 500; });
     sent += count;
-    for (int i = 0; i < count; ++i) {
-      ASSERT_TRUE(*receive(*source, message));
-      EXPECT_EQ(message.header.seq, i);
-      EXPECT_EQ(message.characters(), numbered(i, i % 500).characters());
-    }
+    for (int i = 0; i < count; ++i) EXPECT_EQ(encode(next(*source)), encode(numbered(i, i % 500)));
   }
   ASSERT_TRUE(sink->close());
   const int count = samples.count();
@@ -220,9 +200,7 @@ TEST(Dds, WhoComesLateGetsWhatIsSentFromThenOn) {
     if (begin < 0 && late && *late->take(message) == Got::Message) begin = message.header.seq;
   }
   EXPECT_GT(begin, 5);
-  for (auto seq = begin + 1; seq < begin + 10; ++seq) {
-    EXPECT_EQ(next(*late).header.seq, seq);
-  }
+  for (auto seq = begin + 1; seq < begin + 10; ++seq) EXPECT_EQ(next(*late).header.seq, seq);
 }
 
 TEST(Dds, AReaderMayLeaveAndComeBack) {
@@ -279,15 +257,13 @@ TEST(Dds, AKilledWriterIsTheEnd) {
   const auto source = source_of(uri), stays = source_of(uri + "&reconnect=86400");
   Message message;
   Child child("write", uri + "&readers=2");
-  ASSERT_TRUE(*receive(*source, message));
-  ASSERT_TRUE(*receive(*stays, message));
+  next(*source);
+  next(*stays);
   child.kill();
   while (*receive(*source, message)) continue;
   const auto sink = sink_of(uri + "&readers=2");
   ASSERT_TRUE(sink->send(numbered(7, 1)));
-  do {
-    ASSERT_TRUE(*receive(*stays, message));
-  } while (message.elements.size() != 1);
+  while (next(*stays).elements.size() != 1) continue;
 }
 
 TEST(Dds, ASlowReaderThatKeepsTheLatestHoldsUpNobody) {
@@ -296,14 +272,9 @@ TEST(Dds, ASlowReaderThatKeepsTheLatestHoldsUpNobody) {
   const auto slow = source_of(uri + "&keep=latest"), some = source_of(uri + "&keep=1000&memory=1M");
   const auto fast = source_of(uri);
   const auto sink = sink_of(uri + "&readers=3");
-  std::thread sender([&] {
-    for (int i = 0; i < kCount; ++i) ASSERT_TRUE(sink->send(numbered(i, 10'000)));
-    ASSERT_TRUE(sink->close());
-  });
+  auto sender = send_all(*sink, kCount, 10'000);
   Message message;
-  for (int i = 0; i < kCount; ++i) {
-    EXPECT_EQ(next(*fast).header.seq, i);
-  }
+  for (int i = 0; i < kCount; ++i) EXPECT_EQ(next(*fast).header.seq, i);
   sender.join();
   EXPECT_EQ(next(*slow).header.seq, kCount - 1);
   EXPECT_FALSE(*receive(*slow, message));
@@ -338,7 +309,7 @@ TEST(Dds, ARateIsKeptByEitherEnd) {
 
 TEST(Dds, WhatIsNoMessageIsDroppedAndDisturbsNobody) {
   const auto uri = fresh_topic();
-  Lines log;
+  Warnings log;
   const auto source = source_of(uri, log.options());
   const auto sink = sink_of(uri + "&readers=1");
   Stranger text(uri), raw(uri);
@@ -363,14 +334,12 @@ TEST(Dds, WhatIsNoMessageIsDroppedAndDisturbsNobody) {
 
 TEST(Dds, OfASampleWhatIsBeforeAFaultIsTaken) {
   const auto uri = fresh_topic();
-  Lines log;
+  Warnings log;
   const auto source = source_of(uri, log.options());
   Stranger stranger(uri);
   stranger.send(encode(numbered(0, 3)) + encode(numbered(1, 3)) + "GET / HTTP/1.1\r\n");
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(next(*source).header.seq, i);
   Message message;
-  for (int i = 0; i < 2; ++i) {
-    EXPECT_EQ(next(*source).header.seq, i);
-  }
   ASSERT_TRUE(source->take(message));
   EXPECT_EQ(log.lines,
             std::vector<std::string>{
@@ -381,7 +350,7 @@ TEST(Dds, OfASampleWhatIsBeforeAFaultIsTaken) {
 
 TEST(Dds, AnOversizedSampleIsDroppedAndDisturbsNobody) {
   const auto uri = fresh_topic();
-  Lines log;
+  Warnings log;
   auto options = log.options();
   options.limits.element_bytes = 1000;
   const auto source = source_of(uri, options);
@@ -434,9 +403,7 @@ TEST(Dds, WithNoReadersToWaitForItNeverWaits) {
 TEST(Dds, AWriterThatNeverComesIsNotFound) {
   const auto source = source_of(fresh_topic() + "&wait=1");
   Message message;
-  auto got = receive(*source, message);
-  ASSERT_FALSE(got);
-  EXPECT_EQ(got.error().code, Code::NotFound);
+  EXPECT_EQ(refused(receive(*source, message)).code, Code::NotFound);
 }
 
 TEST(Dds, ASourceThatOutlivesItsWritersEndsWhenItIsFinished) {

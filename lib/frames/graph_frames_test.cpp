@@ -58,42 +58,35 @@ TEST(GraphFrames, MessagesTellWhomTheyMove) {
 }
 
 TEST(GraphFrames, ErrorsNameTheFrameAndWhatWouldBeRight) {
-  EXPECT_EQ(refusal("hello"),
-            "Malformed: frames: frame 1: \"hello\" has 1 words, not 5 (moved) or 10 (fixed)");
-  EXPECT_EQ(refusal("a 0 b c.d 1; ; e 0 a f.g 2"),
-            "Malformed: frames: frame 2: \"\" has 0 words, not 5 (moved) or 10 (fixed)");
-  EXPECT_EQ(refusal("a 0 b\n 0 0 0 0 0 0 1"),
-            "Malformed: frames: frame 1: \"b\\n\" is no word of it");
-  EXPECT_EQ(refusal("a x b c.d 1"),
-            "Malformed: frames: frame 1, a: a frame's number is from 0 (none) to 999, not \"x\"");
-  EXPECT_EQ(refusal("a 1000 b c.d 1"),
-            "Malformed: frames: frame 1, a: a frame's number is from 0 (none) to 999, not "
-            "\"1000\"");
-  EXPECT_EQ(refusal("head 5 b c.d 1"), "Malformed: frames: frame 1, head: its number is 3, not 5");
-  EXPECT_EQ(refusal("nose 3 b c.d 1"),
-            "Malformed: frames: frame 1, nose: the number 3 is that of head");
-  EXPECT_EQ(refusal("a 0 b 1 2 3 0 0 0 x"), "Malformed: frames: frame 1, a: \"x\" is no number");
-  EXPECT_EQ(refusal("a 0 b 1 2 inf 0 0 0 1"),
-            "Malformed: frames: frame 1, a: \"inf\" is no number");
-  EXPECT_EQ(refusal("a 0 b 1 2 3 0 0 1 1"),
-            "Malformed: frames: frame 1, a: its quaternion is not of length 1");
-  for (const char* output : {"c", "c.", ".d", "c.d.e"})
-    EXPECT_EQ(refusal("a 0 b " + std::string(output) + " 1"),
-              "Malformed: frames: frame 1, a: \"" + std::string(output) + "\" is not MODULE.PORT");
-  EXPECT_EQ(refusal("a 0 b c.d -1"), "Malformed: frames: frame 1, a: \"-1\" is no src of messages");
-  EXPECT_EQ(refusal("a 0 b c.d 1; a 0 b c.e 2"),
-            "Invalid: frames: frame 2, a: there is a frame a already");
-  EXPECT_EQ(refusal("a 100 b c.d 1; c 100 b c.e 2"),
-            "Invalid: frames: frame 2, c: frame 100 is a already");
-  EXPECT_EQ(refusal("a 0 a c.d 1"), "Invalid: frames: frame 1, a: a in a would close a cycle");
-  EXPECT_EQ(refusal("a 0 b c.d 1; b 0 a c.e 2"),
-            "Invalid: frames: frame 2, b: b in a would close a cycle");
-  EXPECT_EQ(refusal("head 3 robot c.d 1; nose 0 haed c.e 2"),
-            "Malformed: frames: frame 2, nose: there is no frame \"haed\", did you mean \"head\"?; "
-            "the root is robot");
-  EXPECT_EQ(refusal("a 0 b c.d 1; e 0 b c.d 1"),
-            "Malformed: frames: a and e are moved by messages of the src 1, so they and their "
-            "parents need numbers");
+  const std::pair<const char*, const char*> malformed[] = {
+      {"hello", "frame 1: \"hello\" has 1 words, not 5 (moved) or 10 (fixed)"},
+      {"a 0 b c.d 1; ; e 0 a f.g 2", "frame 2: \"\" has 0 words, not 5 (moved) or 10 (fixed)"},
+      {"a 0 b\n 0 0 0 0 0 0 1", "frame 1: \"b\\n\" is no word of it"},
+      {"a x b c.d 1", "frame 1, a: a frame's number is from 0 (none) to 999, not \"x\""},
+      {"a 1000 b c.d 1", "frame 1, a: a frame's number is from 0 (none) to 999, not \"1000\""},
+      {"head 5 b c.d 1", "frame 1, head: its number is 3, not 5"},
+      {"nose 3 b c.d 1", "frame 1, nose: the number 3 is that of head"},
+      {"a 0 b 1 2 3 0 0 0 x", "frame 1, a: \"x\" is no number"},
+      {"a 0 b 1 2 inf 0 0 0 1", "frame 1, a: \"inf\" is no number"},
+      {"a 0 b 1 2 3 0 0 1 1", "frame 1, a: its quaternion is not of length 1"},
+      {"a 0 b c 1", "frame 1, a: \"c\" is not MODULE.PORT"},
+      {"a 0 b c. 1", "frame 1, a: \"c.\" is not MODULE.PORT"},
+      {"a 0 b .d 1", "frame 1, a: \".d\" is not MODULE.PORT"},
+      {"a 0 b c.d.e 1", "frame 1, a: \"c.d.e\" is not MODULE.PORT"},
+      {"a 0 b c.d -1", "frame 1, a: \"-1\" is no src of messages"},
+      {"head 3 robot c.d 1; nose 0 haed c.e 2",
+       "frame 2, nose: there is no frame \"haed\", did you mean \"head\"?; the root is robot"},
+      {"a 0 b c.d 1; e 0 b c.d 1",
+       "a and e are moved by messages of the src 1, so they and their parents need numbers"}};
+  for (const auto& [text, wrong] : malformed)
+    EXPECT_EQ(refusal(text), "Malformed: frames: " + std::string(wrong));
+  const std::pair<const char*, const char*> invalid[] = {
+      {"a 0 b c.d 1; a 0 b c.e 2", "frame 2, a: there is a frame a already"},
+      {"a 100 b c.d 1; c 100 b c.e 2", "frame 2, c: frame 100 is a already"},
+      {"a 0 a c.d 1", "frame 1, a: a in a would close a cycle"},
+      {"a 0 b c.d 1; b 0 a c.e 2", "frame 2, b: b in a would close a cycle"}};
+  for (const auto& [text, wrong] : invalid)
+    EXPECT_EQ(refusal(text), "Invalid: frames: " + std::string(wrong));
   std::string many;
   for (int i = 0; i < 1001; ++i)
     many += "; f" + std::to_string(i) + " 0 root a.b " + std::to_string(i);

@@ -73,9 +73,7 @@ class Load : public ::testing::Test {
 TEST_F(Load, AFileThatHangsIsNotWaitedForWhenStopped) {
   ASSERT_EQ(::mkfifo(options_.file.c_str(), S_IRUSR | S_IWUSR), 0);
   stop_.raise();
-  const auto loaded = load();
-  ASSERT_FALSE(loaded);
-  EXPECT_EQ(loaded.error().code, Code::Stopped);
+  EXPECT_EQ(refused(load()).code, Code::Stopped);
   // Lets the thread that was left behind go on.
   const Descriptor writer(::open(options_.file.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
 }
@@ -95,17 +93,15 @@ TEST_F(Load, AFileThatIsThereAndCannotBeReadIsNotMissing) {
 
 TEST_F(Load, AHostThatFailsIsSaidThoughAnotherDoesNotAnswer) {
   write({"a", "b"});
-  const auto loaded = load();
-  ASSERT_TRUE(loaded);
-  EXPECT_EQ(loaded->problems, std::vector<std::string>{options_.file + ":2: host a: no route"});
+  const auto loaded = must(load());
+  EXPECT_EQ(loaded.problems, std::vector<std::string>{options_.file + ":2: host a: no route"});
 }
 
 TEST_F(Load, AHostThatDoesNotAnswerIsNotWaitedForWhenStopped) {
   write({"b"});
   hosts_.asked = [this] { stop_.raise(); };
-  const auto loaded = load();
-  ASSERT_TRUE(loaded);
-  EXPECT_EQ(loaded->problems, std::vector<std::string>{"Stopped: asked to stop"});
+  const auto loaded = must(load());
+  EXPECT_EQ(loaded.problems, std::vector<std::string>{"Stopped: asked to stop"});
 }
 
 TEST_F(Load, ARecorderThatIsNotLookedForIsNotMissing) {

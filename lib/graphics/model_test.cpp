@@ -3,32 +3,23 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 
 #include <opencv2/imgcodecs.hpp>
 
+#include <hc/testing/files.h>
+
 namespace hc::graphics {
 namespace {
 
-namespace fs = std::filesystem;
-
-class Models : public testing::Test {
+class Models : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "modelXXXXXX").string();
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    folder = pattern;
-  }
-  void TearDown() override { fs::remove_all(folder); }
-
   std::string write(const std::string& name, const std::string& text) {
     std::ofstream(folder / name) << text;
-    return (folder / name).string();
+    return folder / name;
   }
 
-  fs::path folder;
+  Folder folder;
 };
 
 constexpr const char* kSquare =
@@ -51,20 +42,20 @@ TEST_F(Models, a_file_gives_its_triangles_and_colours) {
 }
 
 TEST_F(Models, a_texture_lies_beside_the_file) {
-  cv::imwrite((folder / "blue.png").string(), cv::Mat(4, 4, CV_8UC3, cv::Scalar(255, 0, 0)));
+  cv::imwrite(folder / "blue.png", cv::Mat(4, 4, CV_8UC3, cv::Scalar(255, 0, 0)));
   write("square.mtl", "newmtl paint\nmap_Kd blue.png\n");
   auto parts = read_model(write("square.obj", kSquare));
   ASSERT_TRUE(parts) << parts.error().text();
   EXPECT_EQ(parts->front().texture.at<cv::Vec3b>(0, 0), cv::Vec3b(0, 0, 255));
   write("square.mtl", "newmtl paint\nmap_Kd none.png\n");
-  parts = read_model((folder / "square.obj").string());
+  parts = read_model(folder / "square.obj");
   ASSERT_FALSE(parts);
   EXPECT_NE(parts.error().detail.find("none.png: is no image"), std::string::npos);
 }
 
 TEST_F(Models, what_is_no_model_is_refused) {
-  EXPECT_EQ(read_model((folder / "none.obj").string()).error().code, Code::NotFound);
-  EXPECT_EQ(read_model(folder.string()).error().code, Code::NotFound);
+  EXPECT_EQ(read_model(folder / "none.obj").error().code, Code::NotFound);
+  EXPECT_EQ(read_model(folder.path()).error().code, Code::NotFound);
   for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
            {"empty.obj", ""},
            {"points.obj", "v 0 0 0\nv 1 0 0\np 1 2\n"},

@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include <hc/testing/must.h>
 #include <record/recording_test.h>
 #include <ros/cdr.h>
 #include <ros/messages.h>
@@ -213,13 +214,12 @@ TEST_F(Mcap, FilesThatAreCutOffAreMergedByTimeAndSaidOnce) {
 TEST_F(Mcap, AFileThatIsCutOffEndsOnce) {
   record_images(in("x.mcap"), 3);
   write("cut.mcap", without_end(bytes_of(in("x.mcap"))));
-  auto source = open_source(in("cut.mcap"), {});
-  ASSERT_TRUE(source);
+  auto source = must(open_source(in("cut.mcap"), {}));
   Message message;
-  for (int i = 0; i < 3; ++i) ASSERT_EQ(*(*source)->take(message), Got::Message);
-  EXPECT_EQ((*source)->take(message).error().code, Code::Truncated);
-  ASSERT_TRUE((*source)->resume());
-  EXPECT_EQ(*(*source)->take(message), Got::End);
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(*source->take(message), Got::Message);
+  EXPECT_EQ(source->take(message).error().code, Code::Truncated);
+  ASSERT_TRUE(source->resume());
+  EXPECT_EQ(*source->take(message), Got::End);
 }
 
 TEST_F(Mcap, AMessageIsInTheChunkOfItsCompanion) {
@@ -253,20 +253,18 @@ TEST_F(Mcap, DamageIsFoundAndPassedOver) {
   for (const std::size_t at : {whole.size() / 2, offset_of(Opcode::Chunk, 1, whole) + 4}) {
     std::string damaged = whole;
     damaged[at] ^= 1;
-    auto source = open_source(write("damaged.mcap", damaged), {});
-    ASSERT_TRUE(source);
+    auto source = must(open_source(write("damaged.mcap", damaged), {}));
     Message message;
     std::vector<std::string> messages;
     int errors = 0;
-    for (auto got = (*source)->take(message); !got || *got != Got::End;
-         got = (*source)->take(message)) {
+    for (auto got = source->take(message); !got || *got != Got::End; got = source->take(message)) {
       if (got) {
         messages.push_back(encode(message));
         continue;
       }
       EXPECT_EQ(got.error().code, Code::Malformed);
       ++errors;
-      ASSERT_TRUE((*source)->resume());
+      ASSERT_TRUE(source->resume());
     }
     EXPECT_EQ(errors, 1);
     EXPECT_GE(messages.size(), 8U);
@@ -348,13 +346,11 @@ TEST_F(Mcap, RecordsThatNoChunkHasAreNotKept) {
   ForeignFile file;
   file.add_chunk(plain, 0, 0, "");
   write("x.mcap", file.bytes());
-  auto reader = mcap::Reader::open(in("x.mcap"));
-  ASSERT_TRUE(reader);
-  const auto end = reader->next();
-  ASSERT_TRUE(end) << end.error().text();
-  EXPECT_FALSE(*end);
-  EXPECT_EQ(reader->summary().chunks, 1U);
-  EXPECT_TRUE(reader->summary().metadata.empty());
+  auto reader = must(mcap::Reader::open(in("x.mcap")));
+  const auto end = must(reader.next());
+  EXPECT_FALSE(end);
+  EXPECT_EQ(reader.summary().chunks, 1U);
+  EXPECT_TRUE(reader.summary().metadata.empty());
 }
 
 TEST_F(Mcap, FilesOfOthersAreReadWholeAndByTime) {
@@ -603,18 +599,15 @@ TEST_F(Mcap, ARecordingIsSplitAndItsOldestFilesAreRemoved) {
 
 TEST_F(Mcap, OfEachStaticFrameTheLatestIsRepeated) {
   auto options = chunks_of();
-  std::vector<Place> places;
+  std::vector<std::string> files;
   for (const char* cup : {"1 2 3", "4 5 6", "7 8 9"}) {
     options.frames = "head 3 robot 1 2 3 0 0 0 1; cup 200 head " + std::string(cup) + " 0 0 0 1";
-    places.push_back(place_of(in(std::string(1, cup[0]) + ".mcap")));
-    record_images(places.back().path, cup[0] == '7' ? 20 : 1, options);
+    files.push_back(in(std::string(1, cup[0]) + ".mcap"));
+    record_images(files.back(), cup[0] == '7' ? 20 : 1, options);
   }
   options = chunks_of();
   options.split = 20000;
-  auto writer = writer_of(in("all.mcap"), options);
-  auto reader = *Reader::open(places, {}, writer->copied_topics());
-  for (auto copied = Result<bool>(true); copied && *copied;) copied = writer->copy(*reader);
-  const auto& written = writer->close();
+  const auto written = copied(files, "all.mcap", options);
   ASSERT_GT(written.files.size(), 1U);
   EXPECT_EQ(topics_of(summary_of(written.files.front()))["/tf_static"], 3U);
   EXPECT_EQ(topics_of(summary_of(written.files.back()))["/tf_static"], 1U);
@@ -632,11 +625,7 @@ TEST_F(Mcap, StaticFramesThatCannotBeReadAreAllRepeated) {
   record_images(in("x.mcap"), 20);
   auto options = chunks_of();
   options.split = 20000;
-  auto writer = writer_of(in("all.mcap"), options);
-  auto reader =
-      *Reader::open({place_of(in("tf.mcap")), place_of(in("x.mcap"))}, {}, writer->copied_topics());
-  for (auto copied = Result<bool>(true); copied && *copied;) copied = writer->copy(*reader);
-  const auto& written = writer->close();
+  const auto written = copied({in("tf.mcap"), in("x.mcap")}, "all.mcap", options);
   ASSERT_GT(written.files.size(), 1U);
   EXPECT_EQ(topics_of(summary_of(written.files.back()))["/tf_static"], 2U);
 }
@@ -664,14 +653,12 @@ TEST_F(Mcap, EachJointThatAnOutputMovesIsOnTf) {
   ASSERT_TRUE(writer->add(stream, pose(7, 9), 3));    // of no joint
   ASSERT_TRUE(writer->add(other, pose(2003, 9), 4));  // moves none
   ASSERT_TRUE(writer->close().status);
-  auto reader = mcap::Reader::open(in("x.mcap"));
-  ASSERT_TRUE(reader);
+  auto reader = must(mcap::Reader::open(in("x.mcap")));
   std::vector<std::string> joints;
-  for (auto message = reader->next(); message && *message; message = reader->next()) {
+  for (auto message = reader.next(); message && *message; message = reader.next()) {
     if ((*message)->channel->topic != "/tf") continue;
-    const auto tf = ros::CdrReader::read<ros::TfMessage>((*message)->data);
-    ASSERT_TRUE(tf) << tf.error().detail;
-    for (const auto& each : tf->transforms)
+    const auto tf = must(ros::CdrReader::read<ros::TfMessage>((*message)->data));
+    for (const auto& each : tf.transforms)
       joints.push_back(each.header.frame_id + " " + each.child_frame_id + " " +
                        std::to_string(each.transform.position.x) + " " +
                        std::to_string(each.header.stamp.nanosec));

@@ -39,15 +39,11 @@ std::size_t count(const std::string& path) {
 
 class Recorded : public Recordings {
  protected:
-  void SetUp() override {
-    Recordings::SetUp();
-    kept = in("kept");
-  }
   [[nodiscard]] Error refusal(const std::vector<std::string>& streams) const {
     return open_folder(kept, streams).error();
   }
 
-  std::string kept;
+  const std::string kept = in("kept");
 };
 
 TEST_F(Recorded, AnErrorLeavesNothingBehind) {

@@ -3,14 +3,9 @@
 // What tests of recordings share.
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <algorithm>
-#include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -19,6 +14,7 @@
 #include <vector>
 
 #include <hc/mtp/codec.h>
+#include <hc/testing/files.h>
 #include <record/writer.h>
 
 namespace hc::record {
@@ -78,42 +74,11 @@ inline std::map<std::string, std::uint64_t> topics_of(const mcap::Summary& summa
   return counts;
 }
 
-inline std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// Limits the size of files as long as it exists, as if the disk were full.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
-    EXPECT_EQ(::getrlimit(RLIMIT_FSIZE, &before_), 0);
-    const rlimit limit{bytes, before_.rlim_max};
-    EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, signal_);
-  }
-
- private:
-  rlimit before_{};
-  void (*signal_)(int);
-};
-
 /// Has a folder that is removed after the test.
-class Recordings : public testing::Test {
+class Recordings : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (std::filesystem::temp_directory_path() / "hc-test-XXXXXX").string();
-    root_ = ::mkdtemp(name.data());
-  }
-  void TearDown() override { std::filesystem::remove_all(root_); }
-
   /// A path in it.
-  [[nodiscard]] std::string in(const std::string& name) const { return (root_ / name).string(); }
+  [[nodiscard]] std::string in(const std::string& name) const { return folder_ / name; }
   /// Writes a file; gives its path.
   std::string write(const std::string& name, const std::string& bytes) const {
     const auto path = in(name);
@@ -121,21 +86,26 @@ class Recordings : public testing::Test {
     std::ofstream(path, std::ios::binary) << bytes;
     return path;
   }
-  /// Copies recordings into another, as `hc record` does; where that is.
-  [[nodiscard]] std::string copy(const std::vector<std::string>& words,
-                                 const std::string& name) const {
+  /// Copies recordings into another, as `hc record` does; what was written.
+  [[nodiscard]] Written copied(const std::vector<std::string>& words, const std::string& name,
+                               const WriterOptions& options = {}) const {
     std::vector<Place> places;
     for (const auto& word : words) places.push_back(place_of(word));
-    auto writer = writer_of(in(name));
+    auto writer = writer_of(in(name), options);
     auto reader = Reader::open(places, {}, writer->copied_topics());
     EXPECT_TRUE(reader) << reader.error().text();
     for (auto copied = Result<bool>(true); copied && *copied;) copied = writer->copy(**reader);
     EXPECT_TRUE(writer->close().status);
-    return writer->written().place;
+    return writer->written();
+  }
+  /// The same; where that is.
+  [[nodiscard]] std::string copy(const std::vector<std::string>& words,
+                                 const std::string& name) const {
+    return copied(words, name).place;
   }
 
  private:
-  std::filesystem::path root_;
+  Folder folder_;
 };
 
 }  // namespace hc::record

@@ -9,10 +9,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <hc/testing/files.h>
 #include <hc/testing/must.h>
 #include <sound/capture.h>
 #include <sound/playback.h>
@@ -45,8 +45,7 @@ TEST_F(Device, what_is_played_arrives) {
   EXPECT_GT(playback->waiting(), 0);
   while (playback->waiting() > 0) std::this_thread::yield();
   playback.reset();  // writes what the device has
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string bytes = hc::bytes_of(path);
   const std::string sent(reinterpret_cast<const char*>(samples.data()), 2 * samples.size());
   EXPECT_NE(bytes.find(sent), std::string::npos) << bytes.size();
 }

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -20,6 +19,7 @@
 
 #include <hc/base/uri.h>
 #include <hc/os/descriptor.h>
+#include <hc/testing/files.h>
 #include <hc/testing/link_conformance.h>
 #include <hc/testing/loopback.h>
 #include <tls/context.h>
@@ -33,29 +33,14 @@ inline const bool kHasTls = [] {
   return true;
 }();
 
-/// Keys in a folder of their own, each made when it is first asked for.
-class Keys {
- public:
-  Keys() { EXPECT_NE(::mkdtemp(folder_.data()), nullptr); }
-  ~Keys() { std::filesystem::remove_all(folder_); }
-  Keys(const Keys&) = delete;
-  Keys& operator=(const Keys&) = delete;
-
-  [[nodiscard]] std::string file(const std::string& name) const {
-    std::string path = folder_ + "/" + name + ".pem";
-    if (!std::filesystem::exists(path)) {
-      EXPECT_TRUE(tls::make_key(path));
-    }
-    return path;
-  }
-
- private:
-  std::string folder_ = (std::filesystem::temp_directory_path() / "hc_tls_XXXXXX").string();
-};
-
+/// A key in a folder of this process, made when it is first asked for.
 inline std::string key_file(const std::string& name) {
-  static const Keys kKeys;
-  return kKeys.file(name);
+  static const Folder kKeys;
+  std::string path = kKeys / (name + ".pem");
+  if (!std::filesystem::exists(path)) {
+    EXPECT_TRUE(tls::make_key(path));
+  }
+  return path;
 }
 
 /// Options of an end that has one key, and lets in who has the other.

@@ -58,18 +58,16 @@ TEST_F(TlsRefusal, NoKey) {
 }
 
 TEST_F(TlsRefusal, TheWrongKey) {
-  EXPECT_EQ(
-      refusal("tls:" + place_ + options("c", "a")),
-      "Closed: connect(" + place_ + "): the peer has refused our key; its peer= has to name it");
-  EXPECT_EQ(await_line(), "the peer's key is " + *tls::fingerprint_of(key_file("c")) +
-                              ", which is not the one of peer=");
+  const auto uri = *parse_uri("tls:" + place_ + options("c", "a"));
+  const std::string line = "the peer's key is " + *tls::fingerprint_of(key_file("c")) +
+                           ", which is not the one of peer=";
+  const std::string why =
+      "Closed: connect(" + place_ + "): the peer has refused our key; its peer= has to name it";
+  EXPECT_EQ(refused(open_source(uri)).text(), why);
+  EXPECT_EQ(await_line(), line);
+  EXPECT_EQ(refused(open_sink(uri)).text(), why);  // before it sends
+  EXPECT_EQ(await_line(), line);
   serves_others();
-}
-
-TEST_F(TlsRefusal, AWriterWithTheWrongKeyIsRefusedBeforeItSends) {
-  EXPECT_EQ(
-      refused(open_sink(*parse_uri("tls:" + place_ + options("c", "a")))).text(),
-      "Closed: connect(" + place_ + "): the peer has refused our key; its peer= has to name it");
 }
 
 TEST_F(TlsRefusal, AListenerWithTheWrongKey) {

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
+#include <string>
 
 #include <opencv2/imgproc.hpp>
 
@@ -142,29 +144,12 @@ int follow(const std::function<void(cv::Mat&)>& behind,
 }
 
 TEST(Blob, IsFollowedBesideLargerThingsOfItsColour) {
-  const auto nothing = [](cv::Mat&, cv::Point2d) {};
-  EXPECT_EQ(follow([](cv::Mat&) {}, nothing), 60);
-  EXPECT_EQ(follow(
-                [](cv::Mat& image) {
-                  cv::rectangle(image, {0, 480, 800, 120}, kRed, -1);
-                },
-                nothing),
-            60)
-      << "floor";
-  EXPECT_EQ(follow(
-                [](cv::Mat& image) {
-                  cv::rectangle(image, {300, 20, 120, 120}, kRed, -1);
-                },
-                nothing),
-            60)
-      << "square";
-  EXPECT_GE(follow(
-                [](cv::Mat& image) {
-                  draw_disc(image, {600, 500}, 20, kRed);
-                },
-                nothing),
-            60)
-      << "another ball";
+  const auto floor = [](cv::Mat& image) { cv::rectangle(image, {0, 480, 800, 120}, kRed, -1); };
+  const auto square = [](cv::Mat& image) { cv::rectangle(image, {300, 20, 120, 120}, kRed, -1); };
+  const auto ball = [](cv::Mat& image) { draw_disc(image, {600, 500}, 20, kRed); };
+  for (const auto& [name, behind] : std::map<std::string, std::function<void(cv::Mat&)>>{
+           {"nothing", [](cv::Mat&) {}}, {"floor", floor}, {"square", square}, {"ball", ball}})
+    EXPECT_EQ(follow(behind, [](cv::Mat&, cv::Point2d) {}), 60) << name;
 }
 
 TEST(Blob, IsFollowedThoughALargerBallIsSeenLater) {

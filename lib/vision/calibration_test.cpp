@@ -18,6 +18,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <hc/testing/files.h>
 #include <hc/testing/must.h>
 
 namespace hc::vision {
@@ -250,8 +251,8 @@ TEST(CalibrationFile, ComesBackAsItWas) {
   EXPECT_EQ(read.Q, truth.Q);
   EXPECT_EQ(read.rms, 0.25);
   EXPECT_EQ(read.head, truth.head);
-  auto path = std::filesystem::temp_directory_path() /
-              ("calibration_test_" + std::to_string(getpid()) + ".yml");
+  const Folder folder;
+  const auto path = folder / "calibration.yml";
   ASSERT_TRUE(write_calibration(path, truth));
   EXPECT_EQ(read_calibration(path)->R1, truth.R1);
   std::filesystem::remove(path);

@@ -12,45 +12,40 @@
 
 #include <gtest/gtest.h>
 
+#include <hc/testing/files.h>
+#include <hc/testing/must.h>
+
 namespace hc::web {
 namespace {
 
 namespace fs = std::filesystem;
 
 TEST(Identity, is_made_once_and_kept_for_its_user_alone) {
-  const fs::path folder = fs::path(testing::TempDir()) / ("identity_" + std::to_string(::getpid()));
-  fs::remove_all(folder);
-  const auto made = load_identity(folder / "deeper");
-  ASSERT_TRUE(made) << made.error().text();
-  EXPECT_EQ(fingerprint(*made).size(), 32U * 3 - 1);
-  EXPECT_EQ(*load_identity(folder / "deeper"), *made);
+  const Folder folder;
+  const auto made = must(load_identity(folder / "deeper"));
+  EXPECT_EQ(fingerprint(made).size(), 32U * 3 - 1);
+  EXPECT_EQ(*load_identity(folder / "deeper"), made);
   struct stat status {};
   ASSERT_EQ(::stat((folder / "deeper/page_key.pem").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777U, 0600U);
-  fs::remove_all(folder);
 }
 
 TEST(Identity, is_the_same_for_all_that_start_at_once) {
-  const fs::path folder = fs::path(testing::TempDir()) / ("at_once_" + std::to_string(::getpid()));
   for (int round = 0; round < 10; ++round) {
-    fs::remove_all(folder);
+    const Folder folder;
     std::vector<std::future<Result<std::string>>> all;
     while (all.size() < 8)
-      all.push_back(std::async(std::launch::async, [&] { return load_identity(folder); }));
+      all.push_back(std::async(std::launch::async, [&] { return load_identity(folder.path()); }));
     std::set<std::string> found;
-    for (auto& each : all) {
-      auto loaded = each.get();
-      ASSERT_TRUE(loaded) << loaded.error().text();
-      found.insert(*loaded);
-    }
+    for (auto& each : all) found.insert(must(each.get()));
     EXPECT_EQ(found.size(), 1U);
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "nothing else is left";
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1)
+        << "nothing else is left";
   }
-  fs::remove_all(folder);
 }
 
 TEST(Identity, of_which_a_part_is_missing_or_another_says_what_to_do) {
-  const fs::path folder = fs::path(testing::TempDir()) / ("parts_" + std::to_string(::getpid()));
+  const Folder folder;
   const auto made = load_identity(folder / "a"), other = load_identity(folder / "b");
   ASSERT_TRUE(made && other);
   const auto key = [](const std::string& text) {
@@ -65,7 +60,6 @@ TEST(Identity, of_which_a_part_is_missing_or_another_says_what_to_do) {
     EXPECT_EQ(wrong.error().code, Code::Malformed);
     EXPECT_NE(wrong.error().detail.find("; delete it to have new ones made"), std::string::npos);
   }
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@
 #include <vector>
 
 #include <hc/testing/loopback.h>
+#include <hc/testing/must.h>
 
 namespace hc::web {
 namespace {
@@ -84,19 +85,34 @@ std::string answer(int socket) {
   return all;
 }
 
-TEST(Service, serves_a_site_and_closes_it_at_the_end) {
-  const auto loop = *Loop::make();
-  std::atomic<int> closed = 0;  // when the service ends, too
-  auto service = Service::open({}, *loop, [](std::string_view) {});
-  ASSERT_TRUE(service) << service.error().text();
-  (*service)->serve(std::make_unique<Hello>(closed));
-  const auto port = (*service)->server().port();
-  EXPECT_EQ((*service)->access().place().port, port);
-  EXPECT_EQ((*service)->fingerprint(), "");
-  EXPECT_TRUE(answer(ask(port, "/").get()).ends_with("\r\n\r\nhello"));
-  EXPECT_EQ(closed, 0);
-  service->reset();
-  EXPECT_EQ(closed, 1);
+class ServiceTest : public ::testing::Test {
+ protected:
+  Hello& serve() { return service_->serve(std::make_unique<Hello>(closed_)); }
+  [[nodiscard]] std::uint16_t port() const { return service_->server().port(); }
+  [[nodiscard]] std::string get(const std::string& path) const {
+    return answer(ask(port(), path).get());
+  }
+  /// Lets the loop take what has come for it.
+  void turn() {
+    ASSERT_TRUE(is_readable(loop_->descriptor()));
+    ASSERT_TRUE(loop_->turn(std::chrono::milliseconds(0)));
+  }
+
+  const std::unique_ptr<Loop> loop_ = must(Loop::make());
+  std::vector<std::string> logged_;
+  std::atomic<int> closed_ = 0;  // when the service ends, too
+  std::unique_ptr<Service> service_ = must(
+      Service::open({}, *loop_, [this](std::string_view line) { logged_.emplace_back(line); }));
+};
+
+TEST_F(ServiceTest, serves_a_site_and_closes_it_at_the_end) {
+  serve();
+  EXPECT_EQ(service_->access().place().port, port());
+  EXPECT_EQ(service_->fingerprint(), "");
+  EXPECT_TRUE(get("/").ends_with("\r\n\r\nhello"));
+  EXPECT_EQ(closed_, 0);
+  service_.reset();
+  EXPECT_EQ(closed_, 1);
 }
 
 constexpr int kSkipped = 77;
@@ -154,66 +170,44 @@ TEST(Server, hosts_of_ipv4_are_told_apart_at_a_socket_of_ipv6) {
   if (is_skipped) GTEST_SKIP() << "no network of its own, or no IPv6, here";
 }
 
-TEST(Service, logs_in_the_loop_alone) {
-  const auto loop = *Loop::make();
-  std::string logged;
-  std::atomic<int> closed = 0;  // when the service ends, too
-  auto service = Service::open({}, *loop, [&](std::string_view line) { logged = line; });
-  ASSERT_TRUE(service) << service.error().text();
-  (*service)->serve(std::make_unique<Hello>(closed));
-  const auto failed = ask((*service)->server().port(), "/fail");
-  ASSERT_TRUE(is_readable(loop->descriptor()));
-  EXPECT_EQ(logged, "");
-  ASSERT_TRUE(loop->turn(std::chrono::milliseconds(0)));
-  EXPECT_EQ(logged, "server: it fails");
+TEST_F(ServiceTest, logs_in_the_loop_alone) {
+  serve();
+  const auto failed = ask(port(), "/fail");
+  ASSERT_TRUE(is_readable(loop_->descriptor()));
+  EXPECT_TRUE(logged_.empty());
+  turn();
+  EXPECT_EQ(logged_, std::vector<std::string>{"server: it fails"});
 }
 
-TEST(Service, a_call_that_throws_is_logged_and_made_again) {
-  const auto loop = *Loop::make();
-  std::vector<std::string> logged;
-  std::atomic<int> closed = 0, calls = 0;
-  auto service =
-      Service::open({}, *loop, [&](std::string_view line) { logged.emplace_back(line); });
-  ASSERT_TRUE(service) << service.error().text();
-  (*service)->server().every(std::chrono::milliseconds(1), [&] {
+TEST_F(ServiceTest, a_call_that_throws_is_logged_and_made_again) {
+  std::atomic<int> calls = 0;
+  service_->server().every(std::chrono::milliseconds(1), [&] {
     if (++calls < 3) throw std::runtime_error("it fails");
   });
-  (*service)->serve(std::make_unique<Hello>(closed));
-  while (logged.size() < 2) {
-    ASSERT_TRUE(is_readable(loop->descriptor()));
-    ASSERT_TRUE(loop->turn(std::chrono::milliseconds(0)));
-  }
-  EXPECT_EQ(logged[1], "server: it fails");
-  EXPECT_TRUE(answer(ask((*service)->server().port(), "/").get()).ends_with("\r\n\r\nhello"));
+  serve();
+  while (logged_.size() < 2) turn();
+  EXPECT_EQ(logged_[1], "server: it fails");
+  EXPECT_TRUE(get("/").ends_with("\r\n\r\nhello"));
+  service_.reset();  // which calls
 }
 
-TEST(Service, what_waits_for_a_disk_holds_nobody_up) {
-  const auto loop = *Loop::make();
-  std::atomic<int> closed = 0;
-  auto service = Service::open({}, *loop, [](std::string_view) {});
-  ASSERT_TRUE(service) << service.error().text();
+TEST_F(ServiceTest, what_waits_for_a_disk_holds_nobody_up) {
   std::array<int, 2> ends;  // of a pipe, in the place of a slow disk
   ASSERT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
   const Descriptor disk(ends[1]);
-  auto site = std::make_unique<Hello>(closed);
+  auto site = std::make_unique<Hello>(closed_);
   site->file = Descriptor(ends[0]);
-  Hello& hello = (*service)->serve(std::move(site));
-  const auto port = (*service)->server().port();
-  const auto slow = ask(port, "/aside"), file = ask(port, "/file");
-  EXPECT_TRUE(answer(ask(port, "/").get()).ends_with("\r\n\r\nhello"));
+  Hello& hello = service_->serve(std::move(site));
+  const auto slow = ask(port(), "/aside"), file = ask(port(), "/file");
+  EXPECT_TRUE(get("/").ends_with("\r\n\r\nhello"));
   hello.waiting.count_down();
   EXPECT_TRUE(answer(slow.get()).ends_with("\r\n\r\nat last\n"));
   EXPECT_EQ(::write(disk.get(), "12345", 5), 5);
   EXPECT_TRUE(answer(file.get()).ends_with("\r\n\r\nhello12345"));
 }
 
-TEST(Service, work_aside_goes_on_in_the_servers_thread_and_is_logged_where_it_throws) {
-  const auto loop = *Loop::make();
-  std::atomic<int> closed = 0;
-  std::string logged;
-  auto service = Service::open({}, *loop, [&](std::string_view line) { logged = line; });
-  ASSERT_TRUE(service) << service.error().text();
-  auto& server = (*service)->server();
+TEST_F(ServiceTest, work_aside_goes_on_in_the_servers_thread_and_is_logged_where_it_throws) {
+  auto& server = service_->server();
   std::promise<std::array<std::thread::id, 3>> threads;
   server.post([&] {
     EXPECT_TRUE(server.aside([&, here = std::this_thread::get_id()] {
@@ -222,41 +216,35 @@ TEST(Service, work_aside_goes_on_in_the_servers_thread_and_is_logged_where_it_th
       };
     }));
   });
-  (*service)->serve(std::make_unique<Hello>(closed));
+  serve();
   const auto [before, beside, after] = threads.get_future().get();
   EXPECT_EQ(before, after);
   EXPECT_NE(before, beside);
-  EXPECT_EQ(answer(ask(server.port(), "/aside/fail").get()), "");
-  ASSERT_TRUE(is_readable(loop->descriptor()));
-  ASSERT_TRUE(loop->turn(std::chrono::milliseconds(0)));
-  EXPECT_EQ(logged, "server: it fails aside");
+  EXPECT_EQ(get("/aside/fail"), "");
+  turn();
+  EXPECT_EQ(logged_, std::vector<std::string>{"server: it fails aside"});
 }
 
-TEST(Service, ends_after_the_work_aside) {
-  const auto loop = *Loop::make();
-  std::atomic<int> closed = 0;
+TEST_F(ServiceTest, ends_after_the_work_aside) {
   bool is_done = false;
-  auto service = Service::open({}, *loop, [](std::string_view) {});
-  ASSERT_TRUE(service) << service.error().text();
-  auto& server = (*service)->server();
+  auto& server = service_->server();
   std::latch begun(1);
   server.post([&] {
     EXPECT_TRUE(server.aside([&] {
       begun.count_down();
-      closed.wait(0);
+      closed_.wait(0);
       is_done = true;
       return [] {};
     }));
   });
-  (*service)->serve(std::make_unique<Hello>(closed));
+  serve();
   begun.wait();
-  service->reset();
+  service_.reset();
   EXPECT_TRUE(is_done);
 }
 
-TEST(Service, ends_though_it_served_nothing) {
-  const auto loop = *Loop::make();
-  EXPECT_TRUE(Service::open({}, *loop, [](std::string_view) {}));
+TEST_F(ServiceTest, ends_though_it_served_nothing) {
+  service_.reset();
 }
 
 }  // namespace

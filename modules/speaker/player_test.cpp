@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "player.h"
 
-#include <unistd.h>
-
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <hc/module/kind.h>
+#include <hc/testing/files.h>
 
 namespace {
 
@@ -18,16 +14,10 @@ using hc::audio::Format;
 
 class PlayerTest : public testing::Test {
  protected:
-  PlayerTest()
-      : folder(std::filesystem::temp_directory_path() /
-               ("hc_player_" + std::to_string(::getpid()))),
-        wav(folder / "out.wav"),
-        raw(folder / "out.raw") {
-    std::filesystem::create_directory(folder);
+  PlayerTest() {
     ::setenv("SDL_AUDIODRIVER", "disk", 1);
     ::setenv("SDL_DISKAUDIOFILE", raw.c_str(), 1);
   }
-  ~PlayerTest() override { std::filesystem::remove_all(folder); }
 
   Player player(PlayerOptions options) {
     return {std::move(options),
@@ -44,8 +34,8 @@ class PlayerTest : public testing::Test {
     samples.resize(*frames * static_cast<std::size_t>(format.channels));
     return samples;
   }
-  std::filesystem::path folder;
-  std::string wav, raw;
+  hc::Folder folder;
+  const std::string wav = folder / "out.wav", raw = folder / "out.raw";
   std::vector<std::string> log;
 };
 
@@ -114,8 +104,7 @@ TEST_F(PlayerTest, what_is_played_plays_and_written) {
   ASSERT_TRUE(both.play<std::int16_t>(samples, {16000, 1}));
   ASSERT_TRUE(both.play<std::int16_t>(samples, {16000, 1}));
   ASSERT_TRUE(both.finish());
-  std::ifstream file(raw, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string bytes = hc::bytes_of(raw);
   const std::string sent(reinterpret_cast<const char*>(samples.data()), 2 * samples.size());
   EXPECT_NE(bytes.find(sent + sent), std::string::npos);
   EXPECT_EQ(written({16000, 1}).size(), 8000);

@@ -15,14 +15,14 @@ struct Robot {
   hc::MonotonicTime now{milliseconds(5000)};
   std::map<std::int32_t, std::int64_t> seq;
 
-  bool say(std::int32_t source, int word) {
+  bool takes(std::int32_t source, int word) {
     return brake.take({source, static_cast<std::uint8_t>(word), seq[source]++, now}, now)
         .has_value();
   }
+  void say(std::int32_t source, int word) { ASSERT_TRUE(takes(source, word)); }
   /// Says a word again and again for so long.
   void repeat(std::int32_t source, int word, milliseconds duration) {
-    for (const auto end = now + duration; now < end; now += milliseconds(50))
-      ASSERT_TRUE(say(source, word));
+    for (const auto end = now + duration; now < end; now += milliseconds(50)) say(source, word);
   }
   [[nodiscard]] std::string reason() const { return brake.reason(now); }
 };
@@ -30,44 +30,44 @@ struct Robot {
 TEST(Brake, a_stop_holds_until_its_own_source_clears_it) {
   Robot robot;
   EXPECT_EQ(robot.reason(), "");
-  ASSERT_TRUE(robot.say(kButton, 1));
+  robot.say(kButton, 1);
   EXPECT_EQ(robot.reason(), "stopped by source 7");
   robot.repeat(kPage, 0, milliseconds(500));
   EXPECT_EQ(robot.reason(), "stopped by source 7");
-  ASSERT_TRUE(robot.say(kPage, 3));
+  robot.say(kPage, 3);
   robot.now += std::chrono::hours(1);
   EXPECT_TRUE(robot.brake.is_stopped());
-  ASSERT_TRUE(robot.say(kButton, 0));
+  robot.say(kButton, 0);
   EXPECT_EQ(robot.reason(), "");
 }
 
 TEST(Brake, of_two_stops_each_holds) {
   Robot robot;
-  for (auto source : {kButton, kPage}) ASSERT_TRUE(robot.say(source, 1));
-  ASSERT_TRUE(robot.say(kButton, 0));
+  for (auto source : {kButton, kPage}) robot.say(source, 1);
+  robot.say(kButton, 0);
   EXPECT_EQ(robot.reason(), "stopped by source 12");
-  ASSERT_TRUE(robot.say(kPage, 0));
+  robot.say(kPage, 0);
   EXPECT_FALSE(robot.brake.is_stopped());
 }
 
 TEST(Brake, a_person_clears_all_stops) {
   Robot robot;
-  for (auto source : {kButton, kPage, 99}) ASSERT_TRUE(robot.say(source, 1));
-  ASSERT_TRUE(robot.say(kPage, 2));
+  for (auto source : {kButton, kPage, 99}) robot.say(source, 1);
+  robot.say(kPage, 2);
   EXPECT_EQ(robot.reason(), "");
 }
 
 TEST(Brake, a_stop_that_is_newer_than_what_clears_all_holds) {
   Robot robot;
-  ASSERT_TRUE(robot.say(99, 1));
+  robot.say(99, 1);
   const auto said = robot.now += milliseconds(500);
   robot.now += milliseconds(100);
-  ASSERT_TRUE(robot.say(kButton, 1));
+  robot.say(kButton, 1);
   robot.now += milliseconds(100);  // for which it was on its way
   ASSERT_TRUE(robot.brake.take({kPage, Brake::kClearAll, 0, said}, robot.now));
   EXPECT_EQ(robot.reason(), "stopped by source 7");
   EXPECT_FALSE(robot.brake.stops_robot(99));
-  ASSERT_TRUE(robot.say(kPage, 2));
+  robot.say(kPage, 2);
   EXPECT_EQ(robot.reason(), "");
 }
 
@@ -80,7 +80,7 @@ TEST(Brake, a_guard_that_is_silent_halts_the_robot_and_its_word_frees_it) {
   EXPECT_EQ(robot.reason(), "source 12 is silent: its stop could not arrive");
   EXPECT_FALSE(robot.brake.is_stopped());
   robot.seq.clear();  // its process has been restarted
-  ASSERT_TRUE(robot.say(kPage, 0));
+  robot.say(kPage, 0);
   EXPECT_EQ(robot.reason(), "");
   robot.now += std::chrono::hours(1);
   EXPECT_EQ(robot.reason(), "source 12 is silent: its stop could not arrive");
@@ -90,19 +90,15 @@ TEST(Brake, a_guard_may_leave_or_be_dismissed_while_it_is_silent) {
   for (int word : {3, 2}) {
     Robot robot;
     robot.repeat(kPage, 0, milliseconds(200));
-    if (word == 3) {
-      EXPECT_TRUE(robot.say(kPage, word));
-    }
+    if (word == 3) robot.say(kPage, word);
     robot.now += std::chrono::seconds(1);
     EXPECT_EQ(robot.reason().empty(), word == 3);
-    if (word == 2) {
-      EXPECT_TRUE(robot.say(kButton, word));
-    }
+    if (word == 2) robot.say(kButton, word);
     EXPECT_EQ(robot.reason(), "") << word;
   }
   Robot robot;  // one that speaks is not dismissed
   robot.repeat(kPage, 0, milliseconds(200));
-  ASSERT_TRUE(robot.say(kButton, 2));
+  robot.say(kButton, 2);
   robot.now += std::chrono::seconds(1);
   EXPECT_EQ(robot.reason(), "source 12 is silent: its stop could not arrive");
 }
@@ -110,9 +106,9 @@ TEST(Brake, a_guard_may_leave_or_be_dismissed_while_it_is_silent) {
 TEST(Brake, who_says_a_word_now_and_then_guards_nothing) {
   for (int word : {0, 1}) {
     Robot robot;
-    ASSERT_TRUE(robot.say(kButton, word));
+    robot.say(kButton, word);
     robot.now += Brake::kSilence + milliseconds(1);
-    ASSERT_TRUE(robot.say(kButton, 0));
+    robot.say(kButton, 0);
     robot.now += std::chrono::hours(1);
     EXPECT_EQ(robot.reason(), "") << word;
   }
@@ -125,19 +121,14 @@ TEST(Brake, who_may_have_forgotten_that_it_stopped_does_not_clear_by_guarding) {
     robot.repeat(kPage, 1, milliseconds(200));
     if (how == 0) robot.now += Brake::kSilence;
     if (how == 1) robot.seq.clear();
-    if (how == 2) {
-      EXPECT_TRUE(robot.say(kPage, 3));
-    }
+    if (how == 2) robot.say(kPage, 3);
     robot.repeat(kPage, 0, milliseconds(500));
     EXPECT_EQ(robot.reason(), "stopped by source 12") << how;
     if (how == 0) {
-      EXPECT_TRUE(robot.say(kPage, 2));
-    }
-    if (how != 0) {
-      EXPECT_TRUE(robot.say(kPage, 1));
-    }
-    if (how != 0) {
-      EXPECT_TRUE(robot.say(kPage, 0));
+      robot.say(kPage, 2);
+    } else {
+      robot.say(kPage, 1);
+      robot.say(kPage, 0);
     }
     EXPECT_EQ(robot.reason(), "") << how;
   }
@@ -145,7 +136,7 @@ TEST(Brake, who_may_have_forgotten_that_it_stopped_does_not_clear_by_guarding) {
 
 TEST(Brake, stops_and_guards_outlive_the_process) {
   Robot before;
-  ASSERT_TRUE(before.say(kButton, 1));
+  before.say(kButton, 1);
   before.repeat(kPage, 0, milliseconds(200));
   Robot robot;
   robot.brake.restore(before.brake.stops());
@@ -153,13 +144,13 @@ TEST(Brake, stops_and_guards_outlive_the_process) {
   EXPECT_EQ(robot.reason(), "stopped by source 7");
   robot.repeat(kButton, 0, milliseconds(200));
   EXPECT_EQ(robot.reason(), "stopped by source 7");
-  ASSERT_TRUE(robot.say(kButton, 2));
-  ASSERT_TRUE(robot.say(kPage, 0));
+  robot.say(kButton, 2);
+  robot.say(kPage, 0);
   EXPECT_EQ(robot.reason(), "");
   Robot guarded;
   guarded.brake.restore({{kPage, false}});
   EXPECT_EQ(guarded.reason(), "source 12 is silent: its stop could not arrive");
-  ASSERT_TRUE(guarded.say(kPage, 0));
+  guarded.say(kPage, 0);
   EXPECT_EQ(guarded.reason(), "");
 }
 
@@ -182,7 +173,7 @@ TEST(Brake, only_a_stop_counts_whenever_it_was_said) {
 TEST(Brake, sources_are_called_by_their_names) {
   Robot robot;
   robot.brake.set_names({{kPage, "web.stop"}});
-  ASSERT_TRUE(robot.say(kPage, 1));
+  robot.say(kPage, 1);
   EXPECT_EQ(robot.reason(), "stopped by web.stop");
   EXPECT_EQ(robot.brake.name(3), "source 3");
 }
@@ -190,18 +181,18 @@ TEST(Brake, sources_are_called_by_their_names) {
 TEST(Brake, any_number_of_sources_is_borne_and_none_is_unheard) {
   Robot robot;
   for (std::int32_t source = 0; source < 1'000'000; ++source)
-    ASSERT_TRUE(robot.say(source, source % 2 == 0 ? 0 : 3));
+    robot.say(source, source % 2 == 0 ? 0 : 3);
   EXPECT_TRUE(robot.brake.stops().empty());
-  for (std::int32_t source = 0; source < 100; ++source) ASSERT_TRUE(robot.say(source, 1));
+  for (std::int32_t source = 0; source < 100; ++source) robot.say(source, 1);
   EXPECT_EQ(robot.brake.stops().size(), Brake::kMostSources + 1);
-  EXPECT_FALSE(robot.say(99, 0));
-  for (std::int32_t source = 0; source < 64; ++source) ASSERT_TRUE(robot.say(source, 0));
+  EXPECT_FALSE(robot.takes(99, 0));
+  for (std::int32_t source = 0; source < 64; ++source) robot.say(source, 0);
   EXPECT_EQ(robot.reason(), "stopped by one of too many sources");
   Robot restarted;
   restarted.brake.restore(*hc::parse_stops(hc::stops_text(robot.brake.stops())));
   EXPECT_EQ(restarted.reason(), "stopped by one of too many sources");
   for (Robot* each : {&robot, &restarted}) {
-    ASSERT_TRUE(each->say(99, 2));
+    each->say(99, 2);
     EXPECT_EQ(each->reason(), "");
   }
 }

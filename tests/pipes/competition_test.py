@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The demonstration graphs of routers, gateway and workspace, with what their modules recorded."""
 
-import json
 import os
 import re
 import signal
@@ -181,7 +180,7 @@ parameters.script = "0:0.1"
         self.wait_for(lambda: focus in self.shell("hc ps"), "errors")
 
         def modes():
-            focus = json.loads(self.shell("hc top --once --json %s" % name))["focus"]
+            focus = self.state_of(process, name)["focus"]
             return [(focus[which + "_judge"] or {}).get("mode") for which in ("left", "right")]
 
         self.wait_for(lambda: modes() == ["look", "rest"], "errors")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Graphs that run, as tests see them: what hc run prints, and what is asked of it."""
 
+import contextlib
 import json
 import os
 import re
@@ -120,6 +121,11 @@ class Graphs(Pipes):
             if src == 1 and condition(state := json.loads(rows[0])):
                 return state
         self.fail("no state is as wanted; the last: %s" % rows)
+
+    def state_of(self, process, name="g"):
+        """Its state now."""
+        with contextlib.closing(self.observed(process, name)) as messages:
+            return self.state(messages)
 
     def ask(self, process, *commands, name="g"):
         with socket.socket(socket.AF_UNIX) as listening, socket.socket(socket.AF_UNIX) as graph:

@@ -175,6 +175,11 @@ class JavaScript(Language, Graphs):
 class Java(Language, Graphs):
     language = "java"
 
+    def run_modules(self):
+        # Each start compiles the module anew, which takes less time where nothing is optimized.
+        self.environment["JDK_JAVA_OPTIONS"] = "-XX:TieredStopAtLevel=1 -XX:+UseSerialGC"
+        return super().run_modules()
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -3,7 +3,6 @@
 """Recordings in MCAP wherever a recording goes, those of the module recorder in folders, and a recorder
 that is killed, full or too slow. In full, with 200 kills, by HC_FULL=1."""
 
-import json
 import os
 import pathlib
 import random
@@ -15,7 +14,8 @@ import struct
 import subprocess
 import unittest
 
-from harness import BUILD, Pipes, WATCHDOG, wait_until
+from graphs import Graphs
+from harness import BUILD, WATCHDOG, wait_until
 from namespaces import UNSHARE
 
 KILLS = 200 if os.environ.get("HC_FULL") else 20
@@ -45,7 +45,7 @@ def whole_chunks(data):
     return end
 
 
-class Recordings(Pipes):
+class Recordings(Graphs):
     def noise(self, count, name="noise.mtp"):
         """A file of so many grey images of 16 kB, which do not get smaller."""
         head = "1 7 0 %d 8 %d 40101 0 7 128 128\n"
@@ -152,7 +152,8 @@ class Recordings(Pipes):
         for kill in range(4):
             module = ("camera", "recorder")[kill % 2]
             wait_until(lambda: size() > len(begin) + 100000)
-            os.kill(self.process_of("kept", module), signal.SIGKILL)
+            pid = self.module(self.state_of(runner, "kept"), module)["pid"]
+            os.kill(pid, signal.SIGKILL)
             starts = "%s: started" % module
             wait_until(lambda: self.read("log").count(starts) == kill // 2 + 2)
             # Of what was there nothing is lost but the message that was being written.
@@ -203,10 +204,6 @@ class Recordings(Pipes):
             self.assertEqual(self.err.count(error), 1, self.err)
             self.assertEqual(out.count(error), 1, out)
         self.assertIn(": 3 modules, 9 messages", out)
-
-    def process_of(self, graph, module):
-        state = json.loads(self.shell("hc top --json --once " + graph).split("\n")[0])
-        return next(each["pid"] for each in state["modules"] if each["name"] == module)
 
     def test_a_graph_is_recorded_into_one_file(self):
         self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 30))
@@ -270,7 +267,7 @@ class Recordings(Pipes):
             return "error: recording ended" in self.read("log")
 
         wait_until(limited)
-        sent = lambda: self.sent("full", "camera.left", "brightness.image")
+        sent = lambda: self.sent(runner, "full")
         before = sent()
         wait_until(lambda: sent() > before + 10)  # the robot continues
         runner.send_signal(signal.SIGTERM)
@@ -352,7 +349,7 @@ class Recordings(Pipes):
             text.replace("[modules.brightness]", '[modules.brightness]\nprogram = "./recorder"'),
         )
         runner = self.start("exec hc run g.toml --as one --record x.mcap --last 9s 2>log")
-        sent = lambda: self.sent("one", "camera.left", "brightness.image")
+        sent = lambda: self.sent(runner, "one")
         wait_until(lambda: "recorder: started" in self.read("log") and sent() > 10)
         runner.send_signal(signal.SIGUSR1)
         wait_until(lambda: "saved x_0001.mcap" in self.read("log"))
@@ -368,7 +365,7 @@ class Recordings(Pipes):
             "exec hc run g.toml --as slow --record x.mcap --set camera.count=0 2>log"
         )
 
-        sent = lambda: self.sent("slow", "camera.left", "brightness.image")
+        sent = lambda: self.sent(runner, "slow")
         wait_until(lambda: "recorder: started" in self.read("log") and sent() > 10)
         for pid in self.recorders():
             os.kill(pid, signal.SIGSTOP)
@@ -395,13 +392,10 @@ class Recordings(Pipes):
                 pass
         return found
 
-    def sent(self, graph, source, target):
-        """How many messages a link has carried."""
-        out = self.shell("hc top --json --once " + graph)
-        links = json.loads(out.split("\n")[0])["links"]
-        return next(
-            each["messages"] for each in links if (each["from"], each["to"]) == (source, target)
-        )
+    def sent(self, runner, graph):
+        """How many images the camera has sent."""
+        links = self.state_of(runner, graph)["links"]
+        return next(each["messages"] for each in links if each["to"] == "brightness.image")
 
     def test_info_of_a_file_without_its_end(self):
         self.noise(2000)

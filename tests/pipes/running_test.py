@@ -141,7 +141,8 @@ hc cat --raw "$in" | hc play --speed max --out "$out" /dev/stdin
         os.kill(pid, signal.SIGSTOP)
         os.kill(self.module(self.state(observed), "camera")["pid"], signal.SIGKILL)
         is_back = lambda state: self.module(state, "camera")["restarts"] == 1
-        count = lambda state: state["links"][0]["messages"]
+        link = lambda state: state["links"][0]  # to the other reader
+        count = lambda state: link(state)["messages"] - link(state)["dropped_disconnect"]
         before = count(self.state(observed, is_back))  # of the old process, or the new one
         self.state(observed, lambda state: is_back(state) and count(state) not in (0, before))
         os.kill(pid, signal.SIGCONT)

@@ -61,9 +61,9 @@ class SideBySide(Graphs):
         )
         self.await_lines(head, "head_tracker: listening on UDP")
         self.assert_right("telepresence", self.start_score("telepresence"))
-        state = self.state(self.observe(head, "head"))
+        links = self.state_of(head, "head")["links"]
         from_tracker = [
-            link["messages"] for link in state["links"] if link["from"] == "head_tracker.rotation"
+            link["messages"] for link in links if link["from"] == "head_tracker.rotation"
         ]
         self.assertEqual(from_tracker, [0])
         self.stop(head)

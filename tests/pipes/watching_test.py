@@ -66,7 +66,7 @@ class Watching(Graphs):
         self.assertIn("camera  (mode: look)", self.hc("graph g.toml"))
 
     def test_a_running_graph_is_changed(self):
-        name, _ = self.run_named("changed")
+        name, process = self.run_named("changed")
         of = " --of " + name
         self.hc("graph set camera.rate=20" + of)
         self.hc("graph add second brightness" + of)
@@ -92,8 +92,11 @@ class Watching(Graphs):
         self.assertIn("restarting camera", self.err)
         wait_until(lambda: re.search(r"camera .* 1 +running", self.hc("top " + name)))
         self.hc("graph restart camera second" + of)
-        wait_until(lambda: re.search(r"camera .* 2 +running", self.hc("top " + name)))
-        wait_until(lambda: re.search(r"second .* 1 +running", self.hc("top " + name)))
+        restarts = lambda state, each: self.module(state, each)["restarts"]
+        self.state(
+            self.observe(process, name),
+            lambda state: (restarts(state, "camera"), restarts(state, "second")) == (2, 1),
+        )
         self.shell("hc graph set camera.source=nosuch.ppm" + of)
         self.assertIn("restarting camera", self.err)
         wait_until(lambda: "given up" in self.hc("top " + name))
@@ -258,7 +261,7 @@ class Watching(Graphs):
         waiting = r"camera  \(has waited [0-9]+ s for %s\)\n" % end
         wait_until(lambda: re.search(waiting, self.hc("graph --of " + name)))
         self.assertRegex(self.hc("ps"), name + " .* 1/1 .* running\n")
-        camera = self.module(self.state(self.observe(process, name), lambda state: True), "camera")
+        camera = self.module(self.state_of(process, name), "camera")
         os.kill(camera["pid"], signal.SIGSTOP)
         wait_until(lambda: "stalled: stopped by a signal" in self.hc("top " + name))
         os.kill(camera["pid"], signal.SIGCONT)

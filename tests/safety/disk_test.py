@@ -12,7 +12,7 @@ import unittest
 from head import SMALL, Head, Rows
 from namespaces import UNSHARE
 
-DISKS = {"folder": 8, "file.mcap": 2}  # of their own, each full within some seconds [MB]
+DISKS = {"folder": 4, "file.mcap": 1}  # of their own, each full within some seconds [MB]
 ALONE = [*UNSHARE, "--mount"]
 MOUNT = "%s sh -c 'mount -t tmpfs -o size=%dm none disk && exec \"$@\"' -"
 AFTER = 3  # for which a head runs on a full disk [s]
@@ -108,7 +108,6 @@ class Disk(Rows):
                     len(recording.lost(killed + 1)),
                     "%s %s" % (name, recording.lost(killed)),
                 )
-                self.watch(recording, 1)
         self.hold()
 
 

@@ -31,9 +31,10 @@ from web_socket import BINARY, CLOSE, WebSocket, get  # noqa: E402
 IS_FULL = os.environ.get("HC_FULL") == "1"
 HEAD = ROOT / "graphs/head.toml"
 SETTINGS = {"head_tracker.listen": "127.0.0.1:0", "web.port": 0, "head_eyes.ball": "roll"}
-# Images that take little time, where these are no matter, and what they are to whom they matter;
-# with them it cannot be calibrated.
+# Few and small images, which take little time, where these are no matter, and what they are to whom
+# they matter; with them it cannot be calibrated.
 SMALL = {
+    "head_eyes.rate": 10,
     "head_eyes.width": 160,
     "head_eyes.height": 120,
     "head_eyes.focal": 120,

@@ -14,8 +14,10 @@ from harness import wait_until
 from streams import message, rotation
 from web_socket import BINARY
 
-FILLED = 2.5  # [s] in which the focus, at 1000 Hz, fills a queue of 2,048
-HUNG = 60 if IS_FULL else FILLED + 1  # before the stop [s]
+HUNG = 60 if IS_FULL else 0  # at least, before the stop [s]
+SLOW = 6  # in which a queue is full, or is left out [s]
+OLD = 0.5  # how old the state of the graph may be [s]
+RING = 2048  # messages that a queue without a number holds
 SOON = 10  # after which `hc run` restarts a module of the head, where the file says no other [s]
 MORE = 2100  # messages than a queue holds
 WAY = ("web", "workspace", "head_neck", "head_unit")  # of whatever a person drives by
@@ -26,6 +28,8 @@ DRIVES = (
 
 
 class Hung(Safety):
+    begin = {**Safety.begin, "head_eyes.rate": 20}  # with which queues are soon full
+
     def flows(self, seconds):
         """How many messages each output sends in such a time."""
         before = self.head.sent()
@@ -68,10 +72,20 @@ class Hung(Safety):
             for each in burst:
                 self.head.seat.socket.send_frame(BINARY, each)
 
-    def note_lost(self, name, is_driven):
-        """Which modules wait for one that hangs, or have stopped sending, and do not need it."""
-        time.sleep(FILLED)
-        flows = self.flows(HUNG - FILLED)
+    def seconds_to_fill(self, name):
+        """In which all queues of a module are full of what is sent to it anyway, but for slow ones."""
+        seconds = [
+            OLD + (int(link["keep"]) if link["keep"].isdigit() else RING) / link["per_second"]
+            for link in self.head.state_now()["links"]
+            if link["to"].split(".")[0] == name and link["per_second"]
+        ]
+        return max((each for each in seconds if each < SLOW), default=0)
+
+    def note_lost(self, name, is_driven, filled):
+        """Which modules wait for one that hangs, or have stopped sending, and do not need it: once
+        its queues are full."""
+        time.sleep(filled)
+        flows = self.flows(max(1, HUNG - filled))
         lost = {output.split(".")[0] for output in self.outputs if not flows.get(output)}
         lost |= {
             each["name"]
@@ -84,11 +98,12 @@ class Hung(Safety):
 
     def stop_beside(self, name):
         head, is_driven = self.head, self.drive(name)
+        filled = self.seconds_to_fill(name)
         with head.hung(name):
             if is_driven:
                 self.fill_queues()
                 head.sit(head.seat.says)
-            self.note_lost(name, is_driven)
+            self.note_lost(name, is_driven, filled)
             with head.waits() as waits:
                 stopped = head.press_stop()
                 if name == "head_unit":  # it says nothing, and moves on when it returns

@@ -18,7 +18,8 @@ HOUR = 3600 * 10**9  # [ns]
 
 
 class BadMessages(Safety):
-    begin = {}  # its own images are as large as bad ones, since memory is measured
+    # Its own images are as large as bad ones, since memory is measured.
+    begin = {"is_calibrated": False, "head_eyes.rate": 5, "calibrate.salience": 0}
 
     def inputs(self):
         """All inputs that have links, and their types."""
@@ -32,9 +33,9 @@ class BadMessages(Safety):
 
     def flood(self, end, types):
         """Sends 1,000 bad messages into an input, and waits until all have come."""
-        source = self.head.source(end)
+        source, bad = self.head.source(end), bad_messages(types, self.head.mode("point"))
         for _ in range(EACH):
-            for kind, data in bad_messages(types, self.head.mode("point")).items():
+            for kind, data in bad.items():
                 self.head.wait(lambda: source.send(data), "%s listens, beside %s" % (end, kind))
                 if kind in CLOSES:
                     source.end()
@@ -46,6 +47,8 @@ class BadMessages(Safety):
     def test_bad_messages(self):
         head = self.head
         head.quiet()
+        # Until then modules gain the memory that they work in.
+        head.wait(lambda: head.sent()["augment.left"] > 10, "images have come through all modules")
         for end, types in self.inputs():
             name = end.split(".")[0]
             ended, memory, begun = head.restarts(), self.memory(), time.time_ns()
@@ -58,60 +61,53 @@ class BadMessages(Safety):
 
 
 class Times(Safety):
-    bids = None  # of a person, while there are some
-
-    def moving(self, stamp):
+    def steering(self, stamp):
         """What would move the head, of a time [ns]: into which input, and what."""
-        mode = self.head.mode("point")
-        command = rotation(0.4, coord=13, mode=mode, stamp=stamp)
         return (
-            ("point.stick", [stick(1, stamp=stamp)]),
-            ("point.target", [message(10390, "100 100 0", coord=7, stamp=stamp)]),
-            ("telepresence.setpoint", [rotation(0.4, stamp=stamp)]),
-            ("workspace.person", [bid(1, mode, stamp=stamp)]),
-            ("head_neck.command", [command]),
+            ("point.stick", stick(1, stamp=stamp)),
+            ("point.target", message(10390, "100 100 0", coord=7, stamp=stamp)),
+            ("telepresence.setpoint", rotation(0.4, stamp=stamp)),
+            ("workspace.person", bid(1, self.head.mode("point"), stamp=stamp)),
         )
+
+    def command(self, stamp):
+        """The same, of the task in focus."""
+        sent = rotation(0.4, coord=13, mode=self.head.mode("point"), stamp=stamp)
+        return (("head_neck.command", sent),)
+
+    def note_motion(self, messages):
+        """While messages come, of the past and of the future."""
+        head, now = self.head, time.time_ns()
+        for what, stamp in (("1 h ago", now - HOUR), ("in 1 h", now + HOUR), ("1970", 10**9)):
+            begun, sent = time.time_ns(), messages(stamp)
+            for _ in range(50):
+                for port, data in sent:
+                    head.source(port).insist(data)
+                time.sleep(0.01)  # as often as they are sent
+            head.motion.rests_at(time.time_ns(), 0.2)
+            where = "%s %s" % (" ".join(port for port, _ in sent), what)
+            self.note("travelled", head.motion.travelled(begun), where)
 
     def test_old_and_future_messages(self):
         head = self.head
         head.quiet()
-        now = time.time_ns()
-        for what, stamp in (("1 h ago", now - HOUR), ("in 1 h", now + HOUR), ("1970", 10**9)):
-            for port, sent in self.moving(stamp):
-                if port == "head_neck.command":  # it is refused for its time alone
-                    self.keep_focus("point")
-                begun = time.time_ns()
-                for number in range(50):
-                    for data in sent:
-                        head.source(port).insist(data)
-                    time.sleep(0.01)  # as often as they are sent
-                head.motion.rests_at(time.time_ns(), 0.2)
-                self.note("travelled", head.motion.travelled(begun), "%s %s" % (port, what))
-                self.end_focus()
+        self.note_motion(self.steering)
+        # A person wants a task that nobody steers by: a command is refused for its time alone.
+        mode, person = head.mode("point"), head.source("workspace.person", 1)
+        feeder = Feeder(lambda _: person.send(bid(1, mode)), 0.1)
+        self.addCleanup(feeder.end)
+        head.wait_focus("point")
+        self.note_motion(self.command)
         self.hold()
-
-    def keep_focus(self, task):
-        """A person wants a task that nobody steers by."""
-        mode, person = self.head.mode(task), self.head.source("workspace.person", 1)
-        self.bids = Feeder(lambda _: person.send(bid(1, mode)), 0.1)
-        self.addCleanup(self.bids.end)
-        self.head.wait_focus(task)
-
-    def end_focus(self):
-        if self.bids:
-            self.bids.end()
-            self.bids = None
-            self.head.wait(lambda: self.head.focus() is None, "nobody wants a task")
 
     def test_commands_without_the_focus(self):
         head, chosen = self.head, random.Random(1)
+        head.quiet()
         modes = list(head.state_now()["modes"].values())
         for focus in (None, "point", "telepresence"):
             if focus:
                 head.sit({"point": head.pushing, "telepresence": head.turning}[focus]())
                 head.wait_moving()
-            else:
-                head.quiet()
             others = [m for m in modes + [0, 99] if not focus or m != head.mode(focus)]
             begun = time.time_ns()
             for number in range(2000):

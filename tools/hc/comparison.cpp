@@ -78,20 +78,22 @@ std::string difference(const hc::Message& recorded, const hc::Message& replayed,
 
 bool Comparison::is_same(const Tolerance& tolerance) const {
   const auto all = static_cast<double>(same + differing + missing + extra);
-  return static_cast<double>(same) >= tolerance.share * all;
+  return static_cast<double>(same) >= tolerance.share * all && (same > 0 || after_end == 0);
 }
 
 std::string Comparison::text() const {
   std::string text = hc::format("{} messages", recorded);
-  if (differing + missing + extra == 0) return text + ", the same";
-  for (const auto& [count, what] :
-       {std::pair(differing, "differ"), {missing, "missing"}, {extra, "more"}})
+  if (differing + missing + extra == 0 && (same > 0 || after_end == 0)) text += ", the same";
+  for (const auto& [count, what] : {std::pair(differing, "differ"),
+                                    {missing, "missing"},
+                                    {extra, "more"},
+                                    {after_end, "after the last whole step"}})
     if (count > 0) text += hc::format(", {} {}", count, what);
-  return text + "; first: " + first;
+  return first.empty() ? text : text + "; first: " + first;
 }
 
 Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
-                   const Tolerance& tolerance) {
+                   const Tolerance& tolerance, std::int64_t last) {
   Comparison result;
   Messages held;  // of the replay, a second either way of what is looked at
   std::int64_t time = 0, again_time = 0;
@@ -149,8 +151,8 @@ Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
       nearest->is_matched = true;
       ++result.differing;
       note(message.header, time, what);
-    } else if (message.header.seq > tolerance.last) {
-      --result.recorded;
+    } else if (message.header.seq > last) {
+      ++result.after_end;
     } else {
       ++result.missing;
       note(message.header, time, "recorded, and not replayed");

@@ -17,9 +17,6 @@ struct Tolerance {
   double number = 0;      ///< numbers, by so much
   std::int64_t time = 0;  ///< when a message is sent, either way [ns]
   double share = 1;       ///< of the messages, so many are the same
-  /// The `seq` of the last recorded message that has to be replayed; a later one that is not does
-  /// not count.
-  std::int64_t last = std::numeric_limits<std::int64_t>::max();
 };
 
 /// The first field in which two messages differ, with both values: "width: 4 recorded, 5 replayed";
@@ -33,6 +30,7 @@ struct Comparison {
   std::size_t differing = 0;               ///< another of that time was sent in their place
   std::size_t missing = 0;                 ///< recorded and not replayed
   std::size_t extra = 0;                   ///< replayed and not recorded
+  std::size_t after_end = 0;               ///< recorded behind what was to be replayed, and not
   std::string first;                       ///< where they first differ; empty: nowhere
 
   [[nodiscard]] bool is_same(const Tolerance& tolerance) const;
@@ -44,7 +42,9 @@ using NextMessage = std::function<bool(hc::Message&)>;
 
 /// Compares messages of equal times, or where a tolerance allows, with any that is so near; the
 /// times of a recording may go back by a second at most.
+/// @param last  the `seq` of the last recorded message that was to be replayed
 Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
-                   const Tolerance& tolerance);
+                   const Tolerance& tolerance,
+                   std::int64_t last = std::numeric_limits<std::int64_t>::max());
 
 }  // namespace tool

@@ -27,8 +27,9 @@ NextMessage from(const std::vector<hc::Message>& messages) {
 }
 
 Comparison compare_all(const std::vector<hc::Message>& recorded,
-                       const std::vector<hc::Message>& replayed, const Tolerance& tolerance = {}) {
-  return compare(from(recorded), from(replayed), tolerance);
+                       const std::vector<hc::Message>& replayed, const Tolerance& tolerance = {},
+                       std::int64_t last = 100) {
+  return compare(from(recorded), from(replayed), tolerance, last);
 }
 
 constexpr std::int64_t kSecond = 1'000'000'000;
@@ -95,9 +96,13 @@ TEST(Comparison, OfTheEndNotAllHasToBeReplayed) {
   std::vector<hc::Message> numbered = recorded;
   for (std::size_t i = 0; i < numbered.size(); ++i)
     numbered[i].header.seq = static_cast<std::int64_t>(i);
-  EXPECT_EQ(compare_all(numbered, {recorded[0]}, {.last = 0}).text(), "1 messages, the same");
-  EXPECT_EQ(compare_all(numbered, {recorded[0]}, {.last = 1}).missing, 1U);
-  EXPECT_EQ(compare_all(numbered, recorded, {.last = 0}).text(), "3 messages, the same");
+  EXPECT_EQ(compare_all(numbered, {recorded[0]}, {}, 0).text(),
+            "3 messages, the same, 2 after the last whole step");
+  EXPECT_TRUE(compare_all(numbered, {recorded[0]}, {}, 0).is_same({}));
+  EXPECT_EQ(compare_all(numbered, {recorded[0]}, {}, 1).missing, 1U);
+  EXPECT_EQ(compare_all(numbered, recorded, {}, 0).text(), "3 messages, the same");
+  EXPECT_EQ(compare_all(numbered, {}, {}, -1).text(), "3 messages, 3 after the last whole step");
+  EXPECT_FALSE(compare_all(numbered, {}, {}, -1).is_same({}));
 }
 
 TEST(Comparison, NothingIsTheSameAsNothing) {

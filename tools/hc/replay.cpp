@@ -383,10 +383,11 @@ class Replay {
     auto replayed = [&](hc::Message& message) {
       return receive(*made, message, again) && expand(message, again);
     };
-    Tolerance tolerance{numbers_.of(output), hc::duration(times_.of(output)).count(),
-                        shares_.of(output)};
-    if (const auto last = last_.find(output); last != last_.end()) tolerance.last = last->second;
-    const auto result = compare(recorded, replayed, tolerance);
+    const Tolerance tolerance{numbers_.of(output), hc::duration(times_.of(output)).count(),
+                              shares_.of(output)};
+    const auto last = last_.find(output);
+    const auto result = last == last_.end() ? compare(recorded, replayed, tolerance)
+                                            : compare(recorded, replayed, tolerance, last->second);
     const bool is_same = result.is_same(tolerance);
     print(hc::format("{}{}: {}\n", is_same ? "" : "DIFFERS ", output, result.text()));
     return is_same;

@@ -11,12 +11,13 @@ namespace {
 using hc::TraceEvent;
 using What = TraceEvent::What;
 
-constexpr std::int64_t kSeen = 1000;  // time of the message
+constexpr std::int64_t kSeen = 1000, kLater = 2000;  // times of messages
 
 /// Events of one module, of messages of one time; moments are counted from it on.
 class Events {
  public:
-  explicit Events(std::vector<TraceEvent>& events) : events_(events) {}
+  explicit Events(std::vector<TraceEvent>& events, std::int64_t seen)
+      : events_(events), seen_(seen) {}
   Events& took(const std::string& port, int src, std::int64_t at) {
     return add(What::Took, port, src, at);
   }
@@ -35,22 +36,37 @@ class Events {
   }
   /// A handler of something else.
   Events& busy(std::int64_t begin, std::int64_t end) {
-    events_.push_back({What::Began, "", 0, 0, 0, kSeen + begin});
-    events_.push_back({What::Ended, "", 0, 0, 0, kSeen + end});
+    events_.push_back({What::Began, "", 0, 0, 0, seen_ + begin});
+    events_.push_back({What::Ended, "", 0, 0, 0, seen_ + end});
     return *this;
   }
 
  private:
   Events& add(What what, const std::string& port, int src, std::int64_t at) {
-    events_.push_back({what, port, src, 5, kSeen, kSeen + at});
+    events_.push_back({what, port, src, 5, seen_, seen_ + at});
     return *this;
   }
   std::vector<TraceEvent>& events_;
+  std::int64_t seen_;
 };
 
 struct Chain : ::testing::Test {
   Traced traced;
-  Events of(const std::string& module) { return Events(traced.events[module]); }
+  Events of(const std::string& module, std::int64_t seen = kSeen) {
+    return Events(traced.events[module], seen);
+  }
+  /// An image that is taken, and the place in it that is sent on.
+  void blob_follows_eye(std::int64_t seen = kSeen) {
+    of("eye", seen).sent("left", 1, 100);
+    of("blob", seen).took("image", 1, 130).began("image", 1, 135).sent("target", 2, 180);
+    of("blob", seen).ended("image", 1, 190);
+  }
+  /// The only path to a port.
+  [[nodiscard]] MessagePath path_to(const std::string& port) const {
+    const auto paths = find_paths(traced, port);
+    EXPECT_EQ(paths.size(), 1U);
+    return paths.empty() ? MessagePath() : paths[0];
+  }
 };
 
 /// "module.out 30/0/100" …: link, waiting and processing of each step.
@@ -70,33 +86,21 @@ std::int64_t sum(const MessagePath& path) {
 }
 
 TEST_F(Chain, StepsAddUpToTheAge) {
-  of("eye").sent("left", 1, 100);
-  of("blob")
-      .took("image", 1, 130)
-      .began("image", 1, 135)
-      .sent("target", 2, 180)
-      .ended("image", 1, 190);
+  blob_follows_eye();
   of("neck").busy(150, 200).took("command", 2, 203).handled("command", 2, 204, 210);
-  const auto paths = find_paths(traced, "neck.command");
-  ASSERT_EQ(paths.size(), 1U);
-  EXPECT_EQ(words(paths[0]), "eye.left 0/0/100, blob: image → target 30/5/45, neck.command 3/21/6");
-  EXPECT_EQ(paths[0].age, 203);
-  EXPECT_TRUE(paths[0].is_critical);
-  EXPECT_EQ(sum(paths[0]) - 1 - 6, paths[0].age);  // what came after it was taken
+  const auto path = path_to("neck.command");
+  EXPECT_EQ(words(path), "eye.left 0/0/100, blob: image → target 30/5/45, neck.command 3/21/6");
+  EXPECT_EQ(path.age, 203);
+  EXPECT_TRUE(path.is_critical);
+  EXPECT_EQ(sum(path) - 1 - 6, path.age);  // what came after it was taken
 }
 
 TEST_F(Chain, OfAnOutputEndsWithItsSending) {
-  of("eye").sent("left", 1, 100);
-  of("blob")
-      .took("image", 1, 130)
-      .began("image", 1, 135)
-      .sent("target", 2, 180)
-      .ended("image", 1, 190);
-  const auto paths = find_paths(traced, "blob.target");
-  ASSERT_EQ(paths.size(), 1U);
-  EXPECT_EQ(words(paths[0]), "eye.left 0/0/100, blob: image → target 30/5/45");
-  EXPECT_EQ(paths[0].age, 180);
-  EXPECT_EQ(sum(paths[0]), paths[0].age);
+  blob_follows_eye();
+  const auto path = path_to("blob.target");
+  EXPECT_EQ(words(path), "eye.left 0/0/100, blob: image → target 30/5/45");
+  EXPECT_EQ(path.age, 180);
+  EXPECT_EQ(sum(path), path.age);
 }
 
 TEST_F(Chain, OfTwoInputsTheLaterOneIsCritical) {
@@ -121,22 +125,17 @@ TEST_F(Chain, WhatATimerSendsHasWaitedForIt) {
   of("eye").sent("left", 1, 10);
   of("gaze").took("target", 1, 20).handled("target", 1, 20, 30).busy(35, 36);
   of("gaze").began("", 0, 50).sent("command", 2, 52).ended("", 0, 53);
-  const auto paths = find_paths(traced, "gaze.command");
-  ASSERT_EQ(paths.size(), 1U);
-  EXPECT_EQ(words(paths[0]), "eye.left 0/0/10, gaze: target → command 10/19/13");
+  EXPECT_EQ(words(path_to("gaze.command")), "eye.left 0/0/10, gaze: target → command 10/19/13");
 }
 
 TEST_F(Chain, OfAControllersNewTimeThePathGoesOnAtWhatItHandledLast) {
   of("eye").sent("left", 1, 100);
   of("gaze").took("target", 1, 120).handled("target", 1, 130, 140);
-  auto& gaze = traced.events["gaze"];
   const auto again = kSeen + 300;  // a newer pose, and a command
-  gaze.push_back({What::Took, "pose", 5, 1, again, again + 5});
-  gaze.push_back({What::Began, "pose", 5, 1, again, again + 6});
-  gaze.push_back({What::Ended, "pose", 5, 1, again, again + 7});
-  gaze.push_back({What::Sent, "command", 2, 0, again + 20, again + 21});
-  traced.events["neck"] = {{What::Sent, "pose", 5, 1, again, again + 1},
-                           {What::Took, "command", 2, 0, again + 20, again + 31}};
+  of("neck", again).sent("pose", 3, 1);
+  of("gaze", again).took("pose", 3, 5).handled("pose", 3, 6, 7);
+  of("gaze", again + 20).sent("command", 2, 1);
+  of("neck", again + 20).took("command", 2, 11);
   const auto paths = find_paths(traced, "neck.command");
   ASSERT_EQ(paths.size(), 2U);
   EXPECT_EQ(words(paths[0]), "neck.pose 0/0/1, gaze: pose → command 4/15/1, neck.command 10/0/0");
@@ -152,26 +151,17 @@ TEST_F(Chain, OfAControllersNewTimeThePathGoesOnAtWhatItHandledLast) {
 
 TEST_F(Chain, ASensorBehindTheNextModuleBegins) {
   of("eye").took("gaze", 9, 5).handled("gaze", 9, 5, 6);
-  traced.events["eye"].push_back({What::Sent, "left", 1, 1, 2000, 2100});
-  traced.events["blob"] = {{What::Took, "image", 1, 1, 2000, 2110},
-                           {What::Began, "image", 1, 1, 2000, 2120},
-                           {What::Sent, "target", 2, 1, 2000, 2130}};
-  traced.events["gaze"] = {{What::Took, "target", 2, 1, 2000, 2140}};
-  const auto paths = find_paths(traced, "gaze.target");
-  ASSERT_EQ(paths.size(), 1U);
-  EXPECT_EQ(words(paths[0]), "eye.left 0/0/100, blob: image → target 10/10/10, gaze.target 10/0/0");
+  blob_follows_eye(kLater);
+  of("gaze", kLater).took("target", 2, 190);
+  EXPECT_EQ(words(path_to("gaze.target")),
+            "eye.left 0/0/100, blob: image → target 30/5/45, gaze.target 10/0/0");
 }
 
 TEST_F(Chain, ASensorThatFeedsTheModuleOfAnOutputBegins) {
   of("eye").took("gaze", 9, 5).handled("gaze", 9, 5, 6);
-  traced.events["neck"] = {{What::Sent, "pose", 9, 5, kSeen, kSeen + 1}};
-  traced.events["eye"].push_back({What::Sent, "left", 1, 1, 2000, 2100});
-  traced.events["blob"] = {{What::Took, "image", 1, 1, 2000, 2110},
-                           {What::Began, "image", 1, 1, 2000, 2120},
-                           {What::Sent, "target", 2, 1, 2000, 2130}};
-  const auto paths = find_paths(traced, "blob.target");
-  ASSERT_EQ(paths.size(), 1U);
-  EXPECT_EQ(words(paths[0]), "eye.left 0/0/100, blob: image → target 10/10/10");
+  of("neck").sent("pose", 9, 1);
+  blob_follows_eye(kLater);
+  EXPECT_EQ(words(path_to("blob.target")), "eye.left 0/0/100, blob: image → target 30/5/45");
 }
 
 TEST_F(Chain, OfANewTimeTheLastMessageAtEachInputCountsForASecond) {
@@ -192,32 +182,25 @@ TEST_F(Chain, OfANewTimeTheLastMessageAtEachInputCountsForASecond) {
                           {What::Sent, "out", 1, 2, 2 * kSecond - 100, 2 * kSecond - 100},
                           {What::Sent, "out", 1, 3, 2 * kSecond, 2 * kSecond},
                           {What::Sent, "out", 1, 4, 2 * kSecond + 2, 2 * kSecond + 2}};
-  const auto paths = find_paths(traced, "gaze.command");
-  ASSERT_EQ(paths.size(), 1U);
-  EXPECT_EQ(words(paths[0]), "eye.out 0/0/0, gaze: new → command 0/1/0");
+  EXPECT_EQ(words(path_to("gaze.command")), "eye.out 0/0/0, gaze: new → command 0/1/0");
 }
 
 TEST_F(Chain, GoesThroughARouterThatForwards) {
   of("joystick").sent("stick", 1, 10);
   of("router").took("in", 1, 15).began("in", 1, 16).sent("out", 1, 18).ended("in", 1, 19);
   of("neck").took("command", 1, 25).handled("command", 1, 25, 30);
-  const auto paths = find_paths(traced, "neck.command");
-  ASSERT_EQ(paths.size(), 1U);
-  EXPECT_EQ(words(paths[0]), "joystick.stick 0/0/10, router: in → out 5/1/2, neck.command 7/0/5");
+  EXPECT_EQ(words(path_to("neck.command")),
+            "joystick.stick 0/0/10, router: in → out 5/1/2, neck.command 7/0/5");
 }
 
 TEST_F(Chain, AModuleWithoutATraceIsOneStep) {
   of("eye").sent("left", 1, 10);
   of("neck").took("command", 7, 100).handled("command", 7, 100, 101);
   traced.links = {{"eye.left", "finder.image"}, {"finder.target", "neck.command"}};
-  auto paths = find_paths(traced, "neck.command");
-  ASSERT_EQ(paths.size(), 1U);
-  EXPECT_EQ(words(paths[0]),
+  EXPECT_EQ(words(path_to("neck.command")),
             "eye.left 0/0/10, finder: image → target 0/0/90 outside, neck.command 0/0/1");
   traced.links = {{"tcp:host:1", "neck.command"}};
-  paths = find_paths(traced, "neck.command");
-  ASSERT_EQ(paths.size(), 1U);
-  EXPECT_EQ(words(paths[0]), "tcp:host:1 0/0/100 outside, neck.command 0/0/1");
+  EXPECT_EQ(words(path_to("neck.command")), "tcp:host:1 0/0/100 outside, neck.command 0/0/1");
 }
 
 TEST_F(Chain, WhatWasSentBeforeTheTraceBeganIsLeftOut) {

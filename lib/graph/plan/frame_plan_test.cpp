@@ -43,36 +43,34 @@ parent = "head"
 )";
 
 TEST(Frames, OfAnIncludedFileHaveTheNamesThatItGivesThem) {
-  auto planned =
-      plan("[modules.framed]\n[graphs.one]\nfile = \"head.toml\"\n", {{"head.toml", kFramedHead}});
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->modules[0].parameters.at("frames"),
+  auto planned = must(
+      plan("[modules.framed]\n[graphs.one]\nfile = \"head.toml\"\n", {{"head.toml", kFramedHead}}));
+  EXPECT_EQ(planned.modules[0].parameters.at("frames"),
             "head 3 world 0 0 1 0 0 0 1; one_cup 0 head 0 0 0 0 0 0 1")
       << "outside of it, the standard ones";
-  EXPECT_EQ(planned->modules[1].parameters.at("frames"),
+  EXPECT_EQ(planned.modules[1].parameters.at("frames"),
             "head 3 world 0 0 1 0 0 0 1; cup 0 head 0 0 0 0 0 0 1");
 }
 
 TEST(Frames, OfTwoHeadsAreDistinguished) {
-  auto planned = plan(
-      "[modules.framed]\n[graphs.one]\nfile = \"head.toml\"\n"
-      "[graphs.two]\nfile = \"head.toml\"\n",
-      {{"head.toml", kFramedHead}});
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->modules[0].parameters.at("frames"),
+  auto planned =
+      must(plan("[modules.framed]\n[graphs.one]\nfile = \"head.toml\"\n"
+                "[graphs.two]\nfile = \"head.toml\"\n",
+                {{"head.toml", kFramedHead}}));
+  EXPECT_EQ(planned.modules[0].parameters.at("frames"),
             "one_head 0 world 0 0 1 0 0 0 1; one_cup 0 one_head 0 0 0 0 0 0 1; "
             "two_head 0 world 0 0 1 0 0 0 1; two_cup 0 two_head 0 0 0 0 0 0 1");
-  EXPECT_EQ(planned->modules[1].parameters.at("frames"),
+  EXPECT_EQ(planned.modules[1].parameters.at("frames"),
             "head 3 world 0 0 1 0 0 0 1; cup 0 head 0 0 0 0 0 0 1; "
             "two_head 0 world 0 0 1 0 0 0 1; two_cup 0 two_head 0 0 0 0 0 0 1");
 }
 
 TEST(Frames, OfTwoGraphsThatIncludeAHeadEachHasItsOwn) {
-  auto planned = plan("[graphs.one]\nfile = \"task.toml\"\n[graphs.two]\nfile = \"task.toml\"\n",
-                      {{"head.toml", kFramedHead},
-                       {"task.toml", "[modules.framed]\n[graphs.own]\nfile = \"head.toml\"\n"}});
-  ASSERT_TRUE(planned) << planned.error().detail;
-  for (const auto& module : planned->modules) {
+  auto planned =
+      must(plan("[graphs.one]\nfile = \"task.toml\"\n[graphs.two]\nfile = \"task.toml\"\n",
+                {{"head.toml", kFramedHead},
+                 {"task.toml", "[modules.framed]\n[graphs.own]\nfile = \"head.toml\"\n"}}));
+  for (const auto& module : planned.modules) {
     const std::string other = module.name.starts_with("one_") ? "two_own_head" : "one_own_head";
     const std::string& frames = module.parameters.at("frames");
     EXPECT_NE((" " + frames).find(" head 3 world"), std::string::npos) << frames;
@@ -94,14 +92,6 @@ parent = "gripper"
 coord = 101
 moved_by = "neck.pose"
 )";
-
-std::string links_of(const Result<Plan>& planned) {
-  if (!planned) return planned.error().detail;
-  std::string text;
-  for (const auto& link : planned->links)
-    text += link.from + " " + link.to + " " + link.keep + "\n";
-  return text;
-}
 
 TEST(Frames, WhatMovesThemIsLinkedToWhoAsksForThem) {
   auto planned = plan(kMoved);

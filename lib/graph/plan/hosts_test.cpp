@@ -121,18 +121,16 @@ TEST(HostsOfAGraph, HaveAddressesOfVersion4ForDds) {
 TEST(HostsOfAGraph, AreGivenToAllModulesOfAnIncludedGraph) {
   const std::string outer = kHosts + "[graphs.head]\nfile = \"head.toml\"\nhost = \"robot\"\n" +
                             "[graphs.head.modules.c]\nhost = \"lab\"\n";
-  auto planned = plan(outer, {{"head.toml", far("a", "") + far("b", "lab") + far("c", "")}},
-                      nullptr, {}, kPlaces);
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->modules[0].host, "robot");
-  EXPECT_EQ(planned->modules[1].host, "lab");
-  EXPECT_EQ(planned->modules[2].host, "lab");
+  auto planned = must(plan(outer, {{"head.toml", far("a", "") + far("b", "lab") + far("c", "")}},
+                           nullptr, {}, kPlaces));
+  EXPECT_EQ(planned.modules[0].host, "robot");
+  EXPECT_EQ(planned.modules[1].host, "lab");
+  EXPECT_EQ(planned.modules[2].host, "lab");
   // An empty one is the host of hc run.
-  planned =
-      plan(outer + "[graphs.head.modules.a]\nhost = \"\"\n",
-           {{"head.toml", far("a", "") + far("b", "lab") + far("c", "")}}, nullptr, {}, kPlaces);
-  ASSERT_TRUE(planned) << planned.error().detail;
-  EXPECT_EQ(planned->modules[0].host, "");
+  planned = must(plan(outer + "[graphs.head.modules.a]\nhost = \"\"\n",
+                      {{"head.toml", far("a", "") + far("b", "lab") + far("c", "")}}, nullptr, {},
+                      kPlaces));
+  EXPECT_EQ(planned.modules[0].host, "");
   // What the file around says of a host counts.
   const std::string inner = "[hosts.robot]\nssh = \"other\"\n";
   EXPECT_EQ(wrong(outer, {{"head.toml", inner + far("a", "robot") + far("c", "")}}), "");

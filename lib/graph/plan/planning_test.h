@@ -153,6 +153,15 @@ inline std::vector<std::string> values_of(const PlannedModule& module, const std
   return values;
 }
 
+/// The links of a plan, a line each, with what they keep; or else all that is wrong.
+inline std::string links_of(const Result<Plan>& planned) {
+  if (!planned) return planned.error().detail;
+  std::string text;
+  for (const auto& link : planned->links)
+    text += link.from + " " + link.to + " " + link.keep + "\n";
+  return text;
+}
+
 /// All that is wrong with a graph, a line each; empty: nothing.
 inline std::string wrong(const std::string& text,
                          const std::map<std::string, std::string>& files = {}) {

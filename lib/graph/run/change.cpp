@@ -16,14 +16,12 @@ const PlannedEnd* find_same(const std::vector<PlannedEnd>& ends, const PlannedEn
   return found == ends.end() ? nullptr : &*found;
 }
 
-/// The URI of an end without what is said to a writer alone before its first message: the same
-/// while readers come and go.
-std::string lasting_uri(const PlannedEnd& end) {
-  auto parsed = parse_uri(end.uri);
-  if (!parsed || end.is_input) return end.uri;
-  std::erase_if(parsed->options, [](const auto& option) {
-    return option.first == "readers" || option.first == "wait";
-  });
+/// A URI without what is said to a writer alone before its first message: the same while readers
+/// come and go.
+std::string without_readers(const std::string& uri) {
+  auto parsed = parse_uri(uri);
+  if (!parsed) return uri;
+  std::erase_if(parsed->options, [](const auto& option) { return option.first == "readers"; });
   return parsed->text();
 }
 
@@ -47,10 +45,10 @@ void add_links(const PlannedModule& before, const PlannedModule& after, ModuleCh
   for (const auto& end : after.ends) {
     auto& commands = end.is_input ? change.inputs : change.outputs;
     const PlannedEnd* old = find_same(before.ends, end);
-    const std::string link = old == nullptr ? end_of_running(end).text() : old->text();
-    if (old == nullptr) commands.push_back({Verb::Link, end.is_input, link, {}});
+    if (old == nullptr) commands.push_back({Verb::Link, end.is_input, end.text(), {}});
     if (end.route != (old == nullptr ? "" : old->route))
-      commands.push_back({Verb::Route, end.is_input, link, end.route.empty() ? "to=*" : end.route});
+      commands.push_back({Verb::Route, end.is_input, (old == nullptr ? end : *old).text(),
+                          end.route.empty() ? "to=*" : end.route});
   }
 }
 
@@ -58,17 +56,7 @@ void add_links(const PlannedModule& before, const PlannedModule& after, ModuleCh
 
 bool is_same_end(const PlannedEnd& one, const PlannedEnd& other) {
   return one.is_input == other.is_input && one.port == other.port &&
-         lasting_uri(one) == lasting_uri(other);
-}
-
-PlannedEnd end_of_running(PlannedEnd end) {
-  auto uri = parse_uri(end.uri);
-  if (end.is_input || !uri || uri->option("readers", "0") == "0" ||
-      !uri->option("wait", "").empty())
-    return end;
-  uri->options.emplace_back("wait", "1");
-  end.uri = uri->text();
-  return end;
+         without_readers(one.uri) == without_readers(other.uri);
 }
 
 ModuleChange change_between(const PlannedModule& before, const PlannedModule& after) {

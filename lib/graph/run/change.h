@@ -20,14 +20,8 @@ struct ModuleChange {
   }
 };
 
-/// Whether two ends are of the same link, however many readers a writer waits for at first, and how
-/// long.
+/// Whether two ends are of the same link, whatever number of readers a writer waits for at first.
 bool is_same_end(const PlannedEnd& one, const PlannedEnd& other);
-
-/// An end for a module that is started, or linked, while its graph runs: its first message waits
-/// for readers for a second at most. Those that do not hang connect at once, and one that hangs
-/// must not hold the others.
-PlannedEnd end_of_running(PlannedEnd end);
 
 /// @param before  with the ends as the process knows them.
 ModuleChange change_between(const PlannedModule& before, const PlannedModule& after);

@@ -68,9 +68,7 @@ TEST_F(LiveChange, ModulesComeAndGo) {
   Plan other = plan_;
   plan_.modules.pop_back();
   add("goes");
-  heard_ = [this](std::string_view) {
-    if (count("goes: started") == 2) stop();
-  };
+  stop_at("goes: started", 2);
   thread_ = std::thread([&] {
     plan_next(other);
     EXPECT_EQ(ask({"remove goes", "add comes program"}), Lines{"ok"});
@@ -87,7 +85,7 @@ TEST_F(LiveChange, ModulesComeAndGo) {
 
 TEST_F(LiveChange, AnotherProgramIsStartedInThePlaceOfTheFirst) {
   add("a");
-  stop_at_ = "a: other";
+  stop_at("a: other");
   thread_ = std::thread([&] {
     Plan other = plan_;
     other.modules[0].options = {"-c", "echo other >&2; exec sleep 1000"};
@@ -103,9 +101,7 @@ TEST_F(LiveChange, AParameterIsSetWithoutPlanning) {
   a.known = rate();
   a.known.emplace("fixed", a.known.at("rate")).first->second.options.fixed = true;
   plans_ = [](int) { HC_CHECK(false, "planned"); };
-  heard_ = [this](std::string_view) {
-    if (count("a: started") == 2) stop();
-  };
+  stop_at("a: started", 2);
   thread_ = std::thread([&] {
     EXPECT_EQ(ask({"set a.rate=3"}), Lines{"ok"});
     EXPECT_EQ(ask({"set a.fixed=3"}),
@@ -132,8 +128,7 @@ TEST_F(LiveChange, WhoHasEndedRestsUntilThereIsMoreToRead) {
     thread_ = std::thread([this] {
       Plan other = plan_;
       other.modules[0].ends.pop_back();
-      plan_next(other);
-      EXPECT_EQ(ask({"add x p"}), Lines{"ok"});
+      change_to(other);
       other.modules[0].ends.push_back({true, "in", "unix:@three?wait=1", ""});
       plan_next(other);
       EXPECT_EQ(ask({"link x.out reader.in"}), Lines{"ok"});

@@ -82,6 +82,11 @@ class LiveChange : public Run, private GraphLoader {
     std::lock_guard lock(mutex_);
     next_ = std::move(plan);
   }
+  /// Has the graph become a plan, by a command of no consequence.
+  void change_to(const Plan& next) {
+    plan_next(next);
+    EXPECT_EQ(ask({"add x p"}), Lines{"ok"});
+  }
   bool was_reloaded() {
     std::lock_guard lock(mutex_);
     return was_reloaded_;

@@ -37,12 +37,11 @@ TEST_F(LiveCommands, ReachAModuleThatListens) {
     other.modules[0].parameters["rate"] = "10";
     other.modules[0].ends = {{false, "left", "shm:t.own?readers=1&rate=5", "to=5"}};
     other.modules[1].ends = {{true, "image", "shm:t.own?reconnect=86400", ""}};
-    plan_next(other);
-    EXPECT_EQ(ask({"add x p"}), Lines{"ok"});
+    change_to(other);
     EXPECT_EQ(first.next(), "unlink out left=shm:t.left?readers=1");
     EXPECT_EQ(first.next(), "set rate=10");
-    EXPECT_EQ(first.next(), "link out left=shm:t.own?readers=1&rate=5&wait=1");
-    EXPECT_EQ(first.next(), "route left=shm:t.own?readers=1&rate=5&wait=1 to=5");
+    EXPECT_EQ(first.next(), "link out left=shm:t.own?readers=1&rate=5");
+    EXPECT_EQ(first.next(), "route left=shm:t.own?readers=1&rate=5 to=5");
     EXPECT_EQ(second.next(), "unlink in image=shm:t.left?reconnect=86400");
     EXPECT_EQ(second.next(), "link in image=shm:t.own?reconnect=86400");
   });
@@ -53,7 +52,7 @@ TEST_F(LiveCommands, ReachAModuleThatListens) {
 
 TEST_F(LiveCommands, AreReportedWhereAModuleRefusesOne) {
   add("camera");
-  stop_at_ = "camera: command \"set rate=-1\": too small";
+  stop_at("camera: command \"set rate=-1\": too small");
   thread_ = std::thread([&] {
     auto reports = open_sink(*parse_uri(peer_of(plan_.modules[0].manage_uri) + "?wait=60"));
     HC_CHECK(reports, reports.error().detail);
@@ -73,8 +72,7 @@ TEST_F(LiveCommands, WhoComesToListenGetsTheDifference) {
     for (int i = 1; i <= 1100; ++i) {
       other.modules[0].parameters["rate"] = std::to_string(i);
       other.modules[0].ends[0].uri = "unix:@" + std::to_string(i) + "?reconnect=1";
-      plan_next(other);
-      EXPECT_EQ(ask({"add x p"}), Lines{"ok"});
+      change_to(other);
     }
     EXPECT_EQ(ask({"add x p"}), Lines{"ok"});  // which makes no difference
     Listener module(plan_.modules[0]);
@@ -82,8 +80,7 @@ TEST_F(LiveCommands, WhoComesToListenGetsTheDifference) {
     EXPECT_EQ(module.next(), "set rate=1100");
     EXPECT_EQ(module.next(), "link in in=unix:@1100?reconnect=1");
     other.modules[0].parameters["rate"] = "0";
-    plan_next(other);
-    EXPECT_EQ(ask({"add x p"}), Lines{"ok"});
+    change_to(other);
     EXPECT_EQ(module.next(), "set rate=0");
   });
   ASSERT_TRUE(run());
@@ -97,15 +94,11 @@ TEST_F(LiveCommands, AnotherProgramMayTakeCommandsWhereTheFirstDidNot) {
   with.modules[0].parameters = {{"rate", "1"}};
   plan_.modules[0].control_uri.clear();
   const Plan without = plan_;
-  heard_ = [this](std::string_view) {
-    if (count("a: started") == 3) stop();
-  };
+  stop_at("a: started", 3);
   thread_ = std::thread([&] {
-    plan_next(with);
-    EXPECT_EQ(ask({"add x p"}), Lines{"ok"});
+    change_to(with);
     { Listener listener(with.modules[0]); }
-    plan_next(without);
-    EXPECT_EQ(ask({"add x p"}), Lines{"ok"});
+    change_to(without);
   });
   auto report = run();
   ASSERT_TRUE(report);

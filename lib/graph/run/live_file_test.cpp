@@ -60,7 +60,7 @@ TEST_F(LiveFile, AnotherEditTakesThePlaceOfTheOneThatIsRead) {
   heard_ = [&](std::string_view line) {
     if (line == "a: started") write();
   };
-  stop_at_ = "graph: unchanged";
+  stop_at("graph: unchanged");
   ASSERT_TRUE(run());
   EXPECT_EQ(plans, 2);
   EXPECT_FALSE(said("graph: keeping the running version"));
@@ -81,7 +81,7 @@ TEST_F(LiveFile, AFileThatIsTakenAwayIsLoggedOnce) {
     // By the second it has been noticed that the file was there, and has been removed again.
     if (said(is_gone) && ++states == 3) write();
   };
-  stop_at_ = "graph: unchanged";
+  stop_at("graph: unchanged");
   ASSERT_TRUE(run());
   EXPECT_EQ(lines_,
             (Lines{"a: started", is_gone, "graph: unchanged", "graph: stopping", "a: ended"}));

@@ -49,7 +49,7 @@ TEST_F(Run, AFloodOfLinesDoesNotKeepItFromStopping) {
   std::string path = ::testing::TempDir() + token_;
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   add("a", "echo flood >&2; exec 3>" + path + "; while echo flood >&2; do echo >&3; done");
-  stop_at_ = "a: flood";
+  stop_at("a: flood");
   Descriptor fifo;
   heard_ = [&](std::string_view line) {
     if (line != "a: flood") return;

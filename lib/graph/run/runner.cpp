@@ -90,6 +90,7 @@ Result<std::unique_ptr<Supervised>> Runner::make(const PlannedModule& module) {
   callbacks.interrupted = [this, name] {
     for (auto* each : cut_off_by(name)) each->note_interruption();
   };
+  callbacks.is_graph_running = [this] { return is_running_; };
   callbacks.has_work = [this, name] {
     bool has_writers = false, is_written_to = false, is_read = false;
     for (const auto& link : plan_.links) {
@@ -206,6 +207,9 @@ void Runner::settle() {
   if (!failures_.empty()) settle_failures();
   for (const auto& [name, module] : modules_)
     if (module->plan().ends_graph && module->status() == ModuleStatus::Ended) end_all();
+  is_running_ = is_running_ || std::ranges::all_of(modules_, [](const auto& entry) {
+                  return entry.second->has_run();
+                });
   while (std::exchange(is_unsettled_, false)) settle_links();
   std::erase_if(leaving_, [](const auto& entry) { return entry.second->is_over(); });
 }

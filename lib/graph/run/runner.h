@@ -96,6 +96,7 @@ class Runner {
   int ticks_ = 0;
   bool is_stopping_ = false, is_stopped_ = false;
   bool is_file_gone_ = false;  // the graph's own
+  bool is_running_ = false;    // all modules of its begin have run
   bool is_unsettled_ = false;  // a module has started or ended, or links have changed
   std::vector<Failure> failures_;
   std::vector<LogLine> results_;  // and errors

@@ -38,7 +38,7 @@ class Run : public ::testing::Test {
     options_.event = [this](const LogLine& said) {
       const std::string line = said.line();
       lines_.emplace_back(line);
-      if (line == stop_at_) stop();
+      if (line == stop_at_ && count(line) == stop_at_count_) stop();
       if (heard_) heard_(line);
     };
     return run_graph(loaded(plan_), options_);
@@ -57,6 +57,11 @@ class Run : public ::testing::Test {
   }
 
   void stop() const { stop_.raise(); }
+  /// Asks the graph to end when a line is said so often.
+  void stop_at(const std::string& line, int times = 1) {
+    stop_at_ = line;
+    stop_at_count_ = times;
+  }
 
   bool said(const std::string& line) const { return count(line) > 0; }
   std::ptrdiff_t count(const std::string& line) const {
@@ -68,7 +73,8 @@ class Run : public ::testing::Test {
   std::vector<std::string> files_;
   RunOptions options_;
   std::function<void(std::string_view line)> heard_;
-  std::string stop_at_;  // the line at which the graph is asked to end
+  std::string stop_at_;
+  int stop_at_count_ = 1;
   Event stop_ = must(Event::make());
   std::vector<std::string> lines_;
 };

@@ -2,7 +2,6 @@
 // From the start of a module to its end, and its commands.
 #include <graph/run/supervised.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <csignal>
@@ -103,11 +102,9 @@ std::vector<Message> Supervised::catch_up() {
 /// URIs that it has them by.
 void Supervised::set_told() {
   auto ends = std::exchange(told_, plan_).ends;
-  for (auto& end : told_.ends) {
-    end = end_of_running(end);
+  for (auto& end : told_.ends)
     for (const auto& before : ends)
       if (is_same_end(end, before)) end.uri = before.uri;
-  }
 }
 
 void Supervised::change(ModuleStatus status, const std::string& detail) {
@@ -156,15 +153,15 @@ Status Supervised::start() {
   restarts_.started(now());
   ++starts_;
   wall_offset_ = there && takes_commands() ? there->wall_offset() : 0;
-  told_ = plan_;
-  if (starts_ > 1) std::ranges::transform(plan_.ends, told_.ends.begin(), end_of_running);
-  PlannedModule plan = told_;
+  PlannedModule plan = plan_;
   // One that decides on the focus begins with the stops that its last process knew of.
   if (const auto& stops = reports_.state().stops; !stops.empty() && plan.known.contains(kStops))
     plan.parameters.try_emplace(kStops, stops_text(stops));
   if (there && takes_commands()) plan.add_option("--wall_offset", std::to_string(wall_offset_));
+  if (takes_commands() && callbacks_.is_graph_running()) plan.options.emplace_back("--join");
   if (auto started = process_->start(plan.command(), plan.control_uri); !started)
     return Error{started.error().code, plan_.name + ": " + started.error().detail};
+  told_ = plan_;
   callbacks_.event(Level::Info, "started");
   change(takes_commands() ? ModuleStatus::Starting : ModuleStatus::Running);
   return {};

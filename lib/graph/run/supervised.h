@@ -45,6 +45,7 @@ class Supervised {
     std::function<void()> interrupted;  ///< its process ends, and another will follow
     std::function<bool()> has_work;     ///< a writer of its inputs is not over; of one without,
                                         ///< a reader
+    std::function<bool()> is_graph_running;  ///< all its modules have run before
   };
 
   /// Listens to a module, which is not started yet. Errors: Invalid, System (a name is in use).
@@ -93,6 +94,10 @@ class Supervised {
 
   [[nodiscard]] const PlannedModule& plan() const { return plan_; }
   [[nodiscard]] ModuleStatus status() const { return status_; }
+  /// Whether it runs, or has run.
+  [[nodiscard]] bool has_run() const {
+    return starts_ > 1 || status_ == ModuleStatus::Running || is_over();
+  }
   [[nodiscard]] bool is_over() const {
     return status_ == ModuleStatus::Ended || status_ == ModuleStatus::GivenUp;
   }

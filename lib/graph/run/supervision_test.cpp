@@ -16,6 +16,30 @@ namespace {
 
 using namespace std::chrono_literals;
 
+/// Reports, as a module does, on the thread that hears of the graph.
+class Reporter {
+ public:
+  explicit Reporter(const PlannedModule& module)
+      : sink_(must(open_sink(*parse_uri(peer_of(module.manage_uri))))) {}
+  void report(std::int32_t src, Message message) {
+    message.header.src = src;
+    ASSERT_TRUE(sink_->send(message));
+  }
+  void count(std::int64_t messages) { report(1, std::array{messages, 10 * messages}); }
+  void publish_state(bool awaits_reader) {
+    report(4, std::array<std::int64_t, 4>{0, 0, 1, awaits_reader ? 1 : 0});
+  }
+  template <std::size_t kSize>
+  void report(std::int32_t src, const std::array<std::int64_t, kSize>& numbers) {
+    Draft draft = Draft::make({MatrixType::Table, kSize, Scalar::I64, Encoding::Binary}, 1, 1);
+    std::copy(numbers.begin(), numbers.end(), draft.view<std::int64_t>().numbers().begin());
+    report(src, std::move(draft).finish());
+  }
+
+ private:
+  std::unique_ptr<Sink> sink_;
+};
+
 /// Modules that end, or do nothing any more.
 class Supervision : public Run {
  protected:
@@ -24,26 +48,44 @@ class Supervision : public Run {
     options_.limits.restarts.longest_delay = 2ms;
   }
 
-  PlannedModule& add(const std::string& name, const std::string& script,
+  PlannedModule& add(const std::string& name, const std::string& script = "exec sleep 1000",
                      Restart restart = Restart::Failure) {
     auto& module = Run::add(name, script);
     module.restart = restart;
     return module;
   }
-  static const ModuleState& module(const RunReport& report, const std::string& name) {
-    return *std::find_if(report.state.modules.begin(), report.state.modules.end(),
-                         [&](const auto& each) { return each.name == name; });
+  void link(const std::string& from, const std::string& to, const std::string& sender = "",
+            const std::string& reader = "") {
+    plan_.links.push_back({from, to, sender, reader, "all", {}, false});
   }
+  /// The number that a module says of itself, as its process; 0: the line is another.
+  static pid_t process_in(std::string_view line) {
+    const std::string said(line.substr(std::min(line.size(), line.find(": ") + 2)));
+    return std::atoi(said.c_str());
+  }
+  /// What reports in the place of a module that has been started.
+  Reporter& reporter(const std::string& name) {
+    auto& reporter = reporters_[name];
+    if (!reporter)
+      reporter =
+          std::make_unique<Reporter>(*std::ranges::find(plan_.modules, name, &PlannedModule::name));
+    return *reporter;
+  }
+  static const ModuleState& module(const RunReport& report, const std::string& name) {
+    return *std::ranges::find(report.state.modules, name, &ModuleState::name);
+  }
+
+  std::map<std::string, std::unique_ptr<Reporter>> reporters_;
 };
 
 TEST_F(Supervision, OneThatIsKilledComesBackAndTheOthersGoOn) {
   add("a", "echo $$ >&2; exec sleep 1000");
-  add("b", "exec sleep 1000");
+  add("b");
   heard_ = [this](std::string_view line) {
-    if (line.starts_with("a: ") && line[3] >= '0' && line[3] <= '9') {
-      if (count("a: started") == 3) return stop();
-      ASSERT_EQ(::kill(std::stoi(std::string(line.substr(3))), SIGKILL), 0);
-    }
+    const pid_t process = process_in(line);
+    if (process == 0) return;
+    if (count("a: started") == 3) return stop();
+    ASSERT_EQ(::kill(process, SIGKILL), 0);
   };
   auto report = must(run());
   EXPECT_EQ(count("a: killed by signal 9; restarting"), 2);
@@ -54,15 +96,15 @@ TEST_F(Supervision, OneThatIsKilledComesBackAndTheOthersGoOn) {
 
 TEST_F(Supervision, OneThatEndsBeforeItsCutOffWriterDoesIsRestarted) {
   add("first", "echo $$ >&2; exec sleep 1000");
-  add("second", "exec sleep 1000");
+  add("second");
   add("third", "trap 'exit 0' USR1; echo $$ >&2; while :; do sleep 1000 & wait; done");
-  plan_.links = {{"first.out", "second.in", "", "", "all", {}, false},
-                 {"second.out", "third.in", "", "", "all", {}, false}};
+  link("first.out", "second.in");
+  link("second.out", "third.in");
   std::map<std::string, pid_t> pids;
   heard_ = [&](std::string_view line) {
     const auto name = std::string(line.substr(0, line.find(':')));
-    const auto number = std::atoi(std::string(line.substr(name.size() + 2)).c_str());
-    if (number > 0 && pids.emplace(name, number).second && pids.size() == 2)
+    const pid_t process = process_in(line);
+    if (process > 0 && pids.emplace(name, process).second && pids.size() == 2)
       ::kill(pids["first"], SIGKILL);
     if (line == "first: killed by signal 9; restarting") ::kill(pids["third"], SIGUSR1);
     if (line.starts_with("third: ended")) stop();
@@ -93,10 +135,7 @@ TEST_F(Supervision, OneThatSendsNoReportsIsSeenToBeStopped) {
   add("a", "echo $$ >&2; exec sleep 1000");
   pid_t process = 0;
   heard_ = [&](std::string_view line) {
-    if (line.starts_with("a: ") && line[3] >= '0' && line[3] <= '9') {
-      process = std::stoi(std::string(line.substr(3)));
-      ::kill(process, SIGSTOP);
-    }
+    if (process == 0 && (process = process_in(line)) > 0) ::kill(process, SIGSTOP);
     if (line == "a: unresponsive: stopped by a signal") ::kill(process, SIGCONT);
     if (line == "a: resumed") stop();
   };
@@ -106,9 +145,7 @@ TEST_F(Supervision, OneThatSendsNoReportsIsSeenToBeStopped) {
 
 TEST_F(Supervision, AlwaysIsAfterAGoodEndToo) {
   add("a", "exit 0", Restart::Always);
-  heard_ = [this](std::string_view) {
-    if (count("a: started") == 7) stop();
-  };
+  stop_at("a: started", 7);
   must(run());
   EXPECT_EQ(count("a: ended; restarting"), 4);
 }
@@ -116,7 +153,7 @@ TEST_F(Supervision, AlwaysIsAfterAGoodEndToo) {
 TEST_F(Supervision, AStoppingGraphStartsNothingAgain) {
   options_.limits.restarts.first_delay = options_.limits.restarts.longest_delay = 1h;
   add("a", "exit 3");
-  add("b", "exec sleep 1000");
+  add("b");
   heard_ = [this](std::string_view line) {
     if (line.find("restarting in") != std::string_view::npos) stop();
   };
@@ -128,7 +165,7 @@ TEST_F(Supervision, AStoppingGraphStartsNothingAgain) {
 TEST_F(Supervision, WhoDoesNotEndWhenAskedToIsKilled) {
   options_.limits.grace = 10ms;
   add("a", "trap '' TERM; echo ready >&2; while :; do sleep 1000; done");
-  stop_at_ = "a: ready";
+  stop_at("a: ready");
   must(run());
   EXPECT_TRUE(said("a: killed by signal 9"));
 }
@@ -142,42 +179,13 @@ TEST_F(Supervision, AQuietOnePrintsItsLastLinesWhenItFails) {
   EXPECT_EQ(lines_[20], "a: 30");
 }
 
-/// Reports, as a module does, on the thread that hears of the graph.
-class Reporter {
- public:
-  explicit Reporter(const std::string& manage_uri) {
-    sink_ = std::move(*open_sink(*parse_uri(peer_of(manage_uri))));
-  }
-  void report(std::int32_t src, Message message) {
-    message.header.src = src;
-    ASSERT_TRUE(sink_->send(message));
-  }
-  void count(std::int64_t messages) { report(1, std::array{messages, 10 * messages}); }
-  void publish_state(bool awaits_reader) {
-    report(4, std::array<std::int64_t, 4>{0, 0, 1, awaits_reader ? 1 : 0});
-  }
-  template <std::size_t kSize>
-  void report(std::int32_t src, const std::array<std::int64_t, kSize>& numbers) {
-    Draft draft = Draft::make({MatrixType::Table, kSize, Scalar::I64, Encoding::Binary}, 1, 1);
-    std::copy(numbers.begin(), numbers.end(), draft.view<std::int64_t>().numbers().begin());
-    report(src, std::move(draft).finish());
-  }
-
- private:
-  std::unique_ptr<Sink> sink_;
-};
-
 TEST_F(Supervision, OneThatIsStoppedIsShownAsStalledAndGoesOn) {
   options_.limits.stall = 50ms;
   add("a", "kill -STOP $$; exec sleep 1000");
-  std::unique_ptr<Reporter> reporter;
   heard_ = [&](std::string_view line) {
-    if (line == "a: started") {
-      reporter = std::make_unique<Reporter>(plan_.modules[0].manage_uri);
-      reporter->count(1);
-    }
+    if (line == "a: started") reporter("a").count(1);
     if (line == "a: unresponsive: stopped by a signal" || line == "a: unresponsive: busy")
-      reporter->count(2);
+      reporter("a").count(2);
     if (line == "a: resumed") stop();
   };
   must(run());
@@ -187,15 +195,10 @@ TEST_F(Supervision, OneThatIsStoppedIsShownAsStalledAndGoesOn) {
 TEST_F(Supervision, OneThatWaitsForAReaderIsNotStalledUnlessItIsStopped) {
   options_.limits.stall = 50ms;
   add("a", "echo $$ >&2; exec sleep 1000");
-  std::unique_ptr<Reporter> reporter;
   pid_t process = 0;
   heard_ = [&](std::string_view line) {
-    if (line == "a: started") {
-      reporter = std::make_unique<Reporter>(plan_.modules[0].manage_uri);
-      reporter->publish_state(true);
-    }
-    if (line.starts_with("a: ") && line[3] >= '0' && line[3] <= '9')
-      process = std::stoi(std::string(line.substr(3)));
+    if (line == "a: started") reporter("a").publish_state(true);
+    if (process == 0) process = process_in(line);
     if (line == "a: unresponsive: busy") stop();
   };
   std::vector<std::string> seen;
@@ -205,7 +208,7 @@ TEST_F(Supervision, OneThatWaitsForAReaderIsNotStalledUnlessItIsStopped) {
     seen.push_back(detail);
     const bool is_stopped = state.modules.at(0).status == ModuleStatus::Stalled;
     if (is_stopped || seen.size() == 1) ::kill(process, is_stopped ? SIGCONT : SIGSTOP);
-    if (seen.size() == 3) reporter->publish_state(false);
+    if (seen.size() == 3) reporter("a").publish_state(false);
   };
   must(run());
   EXPECT_EQ(seen, (std::vector<std::string>{"blocked: waits for its reader", "stopped by a signal",
@@ -213,19 +216,16 @@ TEST_F(Supervision, OneThatWaitsForAReaderIsNotStalledUnlessItIsStopped) {
 }
 
 TEST_F(Supervision, OneThatHangsIsKilledAndRestarted) {
-  add("hung", "exec sleep 1000").hang = 1s;
-  add("stopped", "exec sleep 1000").hang = 1s;
-  add("waits", "exec sleep 1000").hang = 1s;  // for a reader, which is not its fault
-  add("patient", "exec sleep 1000");
-  std::map<std::string, std::unique_ptr<Reporter>> reporters;
+  add("hung").hang = 1s;
+  add("stopped").hang = 1s;
+  add("waits").hang = 1s;  // for a reader, which is not its fault
+  add("patient");
   std::set<std::string> again;
   heard_ = [&](std::string_view line) {
     const std::string name(line.substr(0, line.find(':')));
     if (line.ends_with(": started")) {
-      const auto module = std::ranges::find(plan_.modules, name, &PlannedModule::name);
-      if (reporters.contains(name)) again.insert(name);
-      reporters[name] = std::make_unique<Reporter>(module->manage_uri);
-      reporters[name]->publish_state(name == "waits");
+      if (reporters_.erase(name) > 0) again.insert(name);
+      reporter(name).publish_state(name == "waits");
     }
     if (again == std::set<std::string>{"hung", "stopped"}) stop();
   };
@@ -245,7 +245,7 @@ TEST_F(Supervision, OneThatHangsIsKilledAndRestarted) {
 TEST_F(Supervision, OneThatHangsBeforeItsFirstReportIsKilledAndRestarted) {
   options_.limits.first_report = 1s;
   for (const std::string name : {"hung", "stopped", "silent", "stopped_silent"}) {
-    auto& module = add(name, "exec sleep 1000");
+    auto& module = add(name);
     module.hang = 1s;
     if (!name.ends_with("silent")) module.control_uri = "unix-listen:@" + token_ + "." + name;
   }
@@ -265,17 +265,14 @@ TEST_F(Supervision, OneThatHangsBeforeItsFirstReportIsKilledAndRestarted) {
 
 TEST_F(Supervision, OneThatLoadsForLongerThanItsHangIsLeftAlone) {
   options_.limits.first_report = 1h;
-  auto& slow = add("slow", "exec sleep 1000");
+  auto& slow = add("slow");
   slow.hang = 1s;
   slow.control_uri = "unix-listen:@" + token_ + ".slow";
-  add("hung", "exec sleep 1000").hang = 3s;
-  std::unique_ptr<Reporter> reporter;
+  add("hung").hang = 3s;
   heard_ = [&](std::string_view line) {
-    if (line == "hung: started") {
-      if (reporter) return stop();
-      reporter = std::make_unique<Reporter>(plan_.modules[1].manage_uri);
-      reporter->publish_state(false);
-    }
+    if (line != "hung: started") return;
+    if (!reporters_.empty()) return stop();
+    reporter("hung").publish_state(false);
   };
   auto report = must(run());
   EXPECT_TRUE(said("hung: hung for 3 s; restarting"));
@@ -284,14 +281,11 @@ TEST_F(Supervision, OneThatLoadsForLongerThanItsHangIsLeftAlone) {
 
 TEST_F(Supervision, OneThatWaitsSaysForWhomSinceWhen) {
   const std::string uri = "unix-listen:@" + token_ + ".a.out";
-  add("a", "exec sleep 1000").ends = {{false, "out", uri, ""}};
-  add("b", "exec sleep 1000").ends = {{true, "in", peer_of(uri), ""}};
-  plan_.links = {{"a.out", "b.in", uri, peer_of(uri), "all", {}, false}};
-  std::unique_ptr<Reporter> reporter;
+  add("a").ends = {{false, "out", uri, ""}};
+  add("b").ends = {{true, "in", peer_of(uri), ""}};
+  link("a.out", "b.in", uri, peer_of(uri));
   heard_ = [&](std::string_view line) {
-    if (line != "a: started") return;
-    reporter = std::make_unique<Reporter>(plan_.modules[0].manage_uri);
-    reporter->publish_state(true);
+    if (line == "a: started") reporter("a").publish_state(true);
   };
   std::optional<double> waits;
   options_.state = [&](const GraphState& state) {
@@ -308,9 +302,9 @@ TEST_F(Supervision, OneThatWaitsSaysForWhomSinceWhen) {
 TEST_F(Supervision, CountsAreThoseOfAllProcesses) {
   auto& module = add("a", "read line </dev/null; exit 1", Restart::Failure);
   module.ends = {{false, "out", "unix-listen:@" + token_ + ".a.out", ""}};
-  plan_.links = {{"a.out", "tcp:1", module.ends[0].uri, "", "all", {}, false}};
+  link("a.out", "tcp:1", module.ends[0].uri);
   heard_ = [&](std::string_view line) {
-    if (line == "a: started") Reporter(plan_.modules[0].manage_uri).count(5);
+    if (line == "a: started") Reporter(plan_.modules[0]).count(5);
   };
   auto report = must(run());
   EXPECT_EQ(report.state.links.at(0).traffic.messages, 65U);
@@ -318,24 +312,21 @@ TEST_F(Supervision, CountsAreThoseOfAllProcesses) {
 
 TEST_F(Supervision, TheRateOfALinkIsOfWhatItsReaderTakes) {
   const std::string uri = "unix-listen:@" + token_ + ".out";
-  add("writer", "exec sleep 1000").ends = {{false, "out", uri, ""}};
-  add("reader", "exec sleep 1000").ends = {{true, "in", peer_of(uri), ""}};
-  plan_.links = {{"writer.out", "reader.in", uri, peer_of(uri), "all", {}, false}};
-  std::vector<std::pair<Reporter, std::int64_t>> reporters;  // and the bytes of a message
+  add("writer").ends = {{false, "out", uri, ""}};
+  add("reader").ends = {{true, "in", peer_of(uri), ""}};
+  link("writer.out", "reader.in", uri, peer_of(uri));
   heard_ = [&](std::string_view line) {
-    if (line.ends_with(": started"))
-      reporters.emplace_back(plan_.modules[reporters.size()].manage_uri,
-                             line.starts_with("reader") ? 7 : 10);
+    if (line.ends_with(": started")) reporter(std::string(line.substr(0, line.find(':'))));
   };
   LinkState link;
   std::int64_t count = 0;
   options_.state = [&](const GraphState& state) {
     link = state.links.at(0);
     if (link.per_second > 0) return stop();
-    if (reporters.size() < 2) return;
+    if (reporters_.size() < 2) return;
     count += 9;
-    for (auto& [reporter, bytes] : reporters)
-      reporter.report(1, std::array<std::int64_t, 4>{count, count * bytes, 0, 1});
+    for (const auto& [name, bytes] : {std::pair("writer", 10), {"reader", 7}})
+      reporter(name).report(1, std::array<std::int64_t, 4>{count, count * bytes, 0, 1});
   };
   must(run());
   EXPECT_DOUBLE_EQ(link.bytes_per_second, 7 * link.per_second);
@@ -343,17 +334,17 @@ TEST_F(Supervision, TheRateOfALinkIsOfWhatItsReaderTakes) {
 }
 
 TEST_F(Supervision, AReportThatIsTooLargeIsNotTaken) {
-  add("a", "exec sleep 1000");
+  add("a");
   options_.limits.stall = 1ms;  // shows that the next one has been taken
   std::thread reporting;
   heard_ = [&](std::string_view line) {
     if (line == "a: started")
-      reporting = std::thread([uri = plan_.modules[0].manage_uri] {
+      reporting = std::thread([&module = plan_.modules[0]] {
         auto large = make_rows(std::array{"large=" + std::string(std::size_t{2} << 20, 'x')});
         large.header.src = 3;
         // Whether all of it can be sent before we are left is a matter of luck.
-        static_cast<void>((*open_sink(*parse_uri(peer_of(uri))))->send(large));
-        Reporter(uri).count(1);
+        static_cast<void>((*open_sink(*parse_uri(peer_of(module.manage_uri))))->send(large));
+        Reporter(module).count(1);
       });
     if (line == "a: unresponsive: busy") stop();
   };
@@ -363,36 +354,37 @@ TEST_F(Supervision, AReportThatIsTooLargeIsNotTaken) {
   EXPECT_TRUE(module(*report, "a").parameters.empty());
 }
 
-TEST_F(Supervision, AModuleAllOfWhoseReadersHaveEndedEnds) {
-  add("writer", "exec sleep 1000");
-  add("between", "exec sleep 1000");
-  add("reader", "exit 0");
-  plan_.links = {{"writer.out", "between.in", "", "", "", {}, false},
-                 {"between.out", "reader.in", "", "", "", {}, false}};
-  auto report = must(run());
+void expect_all_ended(const RunReport& report) {
   EXPECT_FALSE(report.stopped);
   for (const auto& each : report.state.modules) EXPECT_EQ(each.status, ModuleStatus::Ended);
 }
 
+TEST_F(Supervision, AModuleAllOfWhoseReadersHaveEndedEnds) {
+  add("writer");
+  add("between");
+  add("reader", "exit 0");
+  link("writer.out", "between.in");
+  link("between.out", "reader.in");
+  expect_all_ended(must(run()));
+}
+
 TEST_F(Supervision, AModuleThatEndsTheGraphTakesAllOthersWithIt) {
   add("score", "exit 0").ends_graph = true;
-  add("writer", "exec sleep 1000");
-  add("reader", "exec sleep 1000");
-  plan_.links = {{"writer.out", "reader.in", "", "", "", {}, false},
-                 {"reader.out", "writer.in", "", "", "", {}, false}};
-  auto report = must(run());
-  EXPECT_FALSE(report.stopped);
-  for (const auto& each : report.state.modules) EXPECT_EQ(each.status, ModuleStatus::Ended);
+  add("writer");
+  add("reader");
+  link("writer.out", "reader.in");
+  link("reader.out", "writer.in");
+  expect_all_ended(must(run()));
 }
 
 TEST_F(Supervision, WhoFailsThoughNobodyNeedsItHasFailed) {
   add("writer", "trap 'exit 7' TERM; echo ready >&2; while :; do sleep 0.01; done", Restart::Never);
   add("reader", "trap 'exit 0' TERM; echo $$ >&2; while :; do sleep 0.01; done");
-  plan_.links = {{"writer.out", "reader.in", "", "", "", {}, false}};
-  std::string reader;
+  link("writer.out", "reader.in");
+  pid_t reader = 0;
   heard_ = [&](std::string_view line) {
-    if (line.starts_with("reader: ") && line[8] >= '0' && line[8] <= '9') reader = line.substr(8);
-    if (!reader.empty() && said("writer: ready")) ::kill(std::stoi(reader), SIGTERM);
+    if (reader == 0) reader = process_in(line);
+    if (reader > 0 && said("writer: ready")) ::kill(reader, SIGTERM);
   };
   EXPECT_EQ(refused(run()).detail, "module writer: failed with status 7");
 }
@@ -402,7 +394,7 @@ TEST_F(Supervision, WhoFailsThoughNobodyNeedsItHasFailed) {
 class StandIns : public Supervision {
  protected:
   void write_for(const std::string& sender_uri) {
-    add("writer", "exec sleep 1000");
+    add("writer");
     heard_ = [this, sender_uri](std::string_view line) {
       failures_ += line.find(": failed") != std::string_view::npos ? 1 : 0;
       if (failures_ < static_cast<int>(plan_.links.size()) || thread_.joinable()) return;

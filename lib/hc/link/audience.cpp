@@ -25,7 +25,8 @@ Result<Audience> Audience::make(const Uri& uri, std::int64_t most, const Policy&
   made.readers_ = HC_TRY(number_option(uri, "readers", -1, {0, most}));
   made.stays_ = HC_TRY(number_option(uri, "stay", 0, {0, 1})) == 1;
   made.writer_waits_ = policy.writer_waits();
-  made.arrival_ = Patience(std::chrono::seconds(HC_TRY(number_option(uri, "wait", 0))));
+  made.arrival_ =
+      Patience(std::chrono::seconds(HC_TRY(number_option(uri, "wait", 0))), {}, options.log);
   made.absence_ = Patience(policy.timeout, {}, options.log);
   return made;
 }

@@ -19,9 +19,7 @@ Status wait_for_event(int descriptor, LinkOptions& options, TimePoint until = Ti
 
 class Audience {
  public:
-  /// @param most  of `readers`. @param policy  of the same URI.
-  ///
-  /// Errors: Invalid.
+  /// @param most  of `readers`. @param policy  of the same URI. Errors: Invalid.
   static Result<Audience> make(const Uri& uri, std::int64_t most, const Policy& policy,
                                const LinkOptions& options);
 
@@ -37,16 +35,16 @@ class Audience {
   void count_lost(Traffic& traffic) const;
 
   /// Whether the link ends when no reader is present.
-  [[nodiscard]] bool ends_with_readers() const { return has_begun_ && readers_ > 0 && !stays_; }
+  [[nodiscard]] bool ends_with_readers() const {
+    return has_begun_ && readers_ > 0 && !stays_ && !arrival_.is_over();
+  }
   /// Whether the link's end has to wait for its readers: nothing has been sent to them yet.
   [[nodiscard]] bool is_awaited() const { return !has_begun_ && readers_ > 0; }
 
   /// Waits for the readers of the next message, or the end: at first for `wait`, then for
   /// `timeout`.
   /// @param descriptor  readable when `present` may give another number
-  /// @param present  the number of readers; an error ends the wait.
-  ///
-  /// Errors: those of `present`; Stopped, System.
+  /// @param present  the number of readers. Errors: those of `present`; Stopped, System.
   Status await(int descriptor, LinkOptions& options,
                const std::function<Result<std::size_t>()>& present);
 

@@ -73,7 +73,7 @@ TEST(Open, AnOptionThatIsMisspeltIsGuessed) {
                     .detail.ends_with(", did you mean \"keep\"?"))
         << end;
   // One that another end has is spelled well.
-  EXPECT_TRUE(open_sink(*parse_uri("shm:x?wait=1")).error().detail.ends_with("\"timeout\""));
+  EXPECT_TRUE(open_sink(*parse_uri("shm:x?spin=1")).error().detail.ends_with("\"timeout\""));
 }
 
 TEST(Open, NumbersHaveARange) {

@@ -128,6 +128,10 @@ class Parser {
     return read_number(value, arguments_.wall_offset.emplace(),
                        "--wall_offset needs a number of nanoseconds, not \"" + value + "\"");
   }
+  Status join(const std::string&) {
+    arguments_.joins = true;
+    return {};
+  }
   Status manage(const std::string& value) { return read_uri(value, arguments_.manage); }
   Status control(const std::string& value) { return read_uri(value, arguments_.control); }
   Status describe(const std::string&) { return set_task(Arguments::Task::Describe); }
@@ -193,7 +197,7 @@ struct Option {
   enum { Always, Inputs, Outputs } needs = Always;
 };
 
-constexpr std::array<Option, 17> kOptions = {{
+constexpr std::array<Option, 18> kOptions = {{
     {"--in", "[PORT=]URI",
      "link an input, the first unless PORT is given; may be repeated; without any, inputs share "
      "standard input",
@@ -230,6 +234,10 @@ constexpr std::array<Option, 17> kOptions = {{
     {"--wall_offset", "NANOSECONDS",
      "times of its messages: so much more than the monotonic clock (default: the wall clock)",
      &Parser::wall_offset},
+    {"--join", "",
+     "its graph runs: a first message does not wait longer for its readers than those take that do "
+     "not hang",
+     &Parser::join},
     {"--manage", "URI", "link to send reports to", &Parser::manage},
     {"--control", "URI", "link to take commands from", &Parser::control},
     {"--describe", "", "print ports and parameters as one line of JSON, and end",

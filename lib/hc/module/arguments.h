@@ -28,6 +28,7 @@ struct Arguments {
   bool by_messages = false;                           ///< --clock messages, or a trace
   std::optional<Uri> clock;                           ///< --clock URI: of a trace
   std::optional<std::int64_t> wall_offset;            ///< --wall_offset
+  bool joins = false;                                 ///< --join
   std::optional<Uri> manage;                          ///< --manage
   std::optional<Uri> control;                         ///< --control
   Limits limits;                                      ///< --limit

@@ -24,56 +24,49 @@ TEST_F(RunningModule, ObeysCommands) {
   start_managed(module, {"--in=" + uri("first"), "--out=" + uri("out")});
   next(*reports_, Report::Parameters);
   ::testing::internal::CaptureStderr();
-  ASSERT_TRUE(send_command(*control_, "set factor=5"));
+  command("set factor=5");
   EXPECT_EQ(rows_of(next(*reports_, Report::Parameters))[0], "factor=5");
   auto from = source_of(uri("out"));
   ASSERT_TRUE(first->send(table({2.0})));
-  Message message;
-  EXPECT_EQ(next(*from).view<double>()->at(0, 0), 10);
+  EXPECT_EQ(number_of(next(*from)), 10);
 
   auto second = sink_of(uri("second"));
   auto other = source_of(uri("other"));
-  ASSERT_TRUE(send_command(*control_, "link in in=" + uri("second")));
-  next(*reports_, Report::Links);
-  ASSERT_TRUE(send_command(*control_, "link out out=" + uri("other")));
-  EXPECT_EQ(rows_of(next(*reports_, Report::Links)).size(), 4U);
+  relink("link in in=" + uri("second"));
+  EXPECT_EQ(relink("link out out=" + uri("other")).size(), 4U);
   ASSERT_TRUE(second->send(table({3.0})));
-  for (auto* each : {from.get(), other.get()}) {
-    EXPECT_EQ(next(*each).view<double>()->at(0, 0), 15);
-  }
-  ASSERT_TRUE(send_command(*control_, "unlink in in=" + uri("first")));
-  next(*reports_, Report::Links);
-  ASSERT_TRUE(send_command(*control_, "unlink out out=" + uri("out")));
-  EXPECT_EQ(rows_of(next(*reports_, Report::Links)),
+  for (auto* each : {from.get(), other.get()}) EXPECT_EQ(number_of(next(*each)), 15);
+  relink("unlink in in=" + uri("first"));
+  EXPECT_EQ(relink("unlink out out=" + uri("out")),
             (std::vector<std::string>{"in in " + uri("second"), "out out " + uri("other")}));
   ASSERT_TRUE(second->send(table({1.0})));
-  ASSERT_TRUE(*receive(*other, message));
+  Message message = next(*other);
   EXPECT_FALSE(*receive(*from, message));
 
   // What is wrong changes nothing, and is an error.
-  for (const char* line : {"set factor=-1", "set factor", "set colour=1", "set title=b", "link up",
-                           "unlink out out=inproc:nowhere", "route out=x via=y", "jump"})
-    ASSERT_TRUE(send_command(*control_, line));
   const std::string commands =
       "a command is set NAME=VALUE, link or unlink in|out PORT=URI, finish PORT=URI, route "
       "PORT=URI WORDS, or wall_offset NANOSECONDS";
-  for (const std::string& wrong : std::initializer_list<std::string>{
-           "\"set factor=-1\": parameter factor: \"-1\" is not from 0 to 10",
-           "\"set factor\": " + commands, "\"set colour=1\": no parameter \"colour\"",
-           "\"set title=b\": parameter title is fixed while the module runs",
-           "\"link up\": " + commands, "\"unlink out out=inproc:nowhere\": there is no such link",
-           "\"route out=x via=y\": a route is to=ADDRESS,… and peer=NAME, not \"via\"",
-           "\"jump\": " + commands})
-    EXPECT_EQ(read_log(next(*reports_, Report::Log))->text, "command " + wrong);
-  ASSERT_TRUE(send_command(*control_, "set factor=7"));
+  const std::pair<std::string, std::string> wrong[] = {
+      {"set factor=-1", "parameter factor: \"-1\" is not from 0 to 10"},
+      {"set factor", commands},
+      {"set colour=1", "no parameter \"colour\""},
+      {"set title=b", "parameter title is fixed while the module runs"},
+      {"link up", commands},
+      {"unlink out out=inproc:nowhere", "there is no such link"},
+      {"route out=x via=y", "a route is to=ADDRESS,… and peer=NAME, not \"via\""},
+      {"jump", commands}};
+  for (const auto& [line, why] : wrong) command(line);
+  for (const auto& [line, why] : wrong)
+    EXPECT_EQ(read_log(next(*reports_, Report::Log))->text, "command \"" + line + "\": " + why);
+  command("set factor=7");
   EXPECT_EQ(rows_of(next(*reports_, Report::Parameters)),
             (std::vector<std::string>{"factor=7", "title=a"}));
   // One whose inputs have all been unlinked waits for others.
-  ASSERT_TRUE(send_command(*control_, "unlink in in=" + uri("second")));
-  next(*reports_, Report::Links);
+  relink("unlink in in=" + uri("second"));
   auto third = sink_of(uri("third"));
   ASSERT_TRUE(third->close());
-  ASSERT_TRUE(send_command(*control_, "link in in=" + uri("third")));
+  command("link in in=" + uri("third"));
   EXPECT_EQ(join(), 0);
   EXPECT_EQ(*title, "a");
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
@@ -85,8 +78,7 @@ TEST_F(RunningModule, WhoReportsToNobodyLogsOnStandardErrorWhatIsWrong) {
   ::testing::internal::CaptureStderr();
   ASSERT_TRUE(send_command(*control, "set colour=1"));
   ASSERT_TRUE(sink->close());
-  start(module, {"--in=" + uri("in"), "--control=" + uri("control")});
-  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(run(module, {"--in=" + uri("in"), "--control=" + uri("control")}), 0);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(),
             "gauge: warning: command \"set colour=1\": no parameter \"colour\"\n");
 }
@@ -129,14 +121,13 @@ TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {
   set_focus(2);
   ASSERT_TRUE(commands->send(in_mode(table({1.0}), 1)));
   ASSERT_TRUE(commands->send(in_mode(table({2.0}), 2)));
-  Message message;
-  ASSERT_TRUE(*receive(*done, message));
-  EXPECT_EQ(message.view<double>()->at(0, 0), 2);
+  Message message = next(*done);
+  EXPECT_EQ(number_of(message), 2);
   EXPECT_EQ(message.header.mode, 2);
   set_focus(1);
   ASSERT_TRUE(commands->send(in_mode(table({3.0}), 2)));
   ASSERT_TRUE(commands->send(in_mode(table({4.0}), 1)));
-  EXPECT_EQ(next(*done).view<double>()->at(0, 0), 4);
+  EXPECT_EQ(number_of(next(*done)), 4);
   set_focus(0);  // nobody
   ASSERT_TRUE(commands->send(in_mode(table({5.0}), 0)));
   ASSERT_TRUE(commands->send(in_mode(table({6.0}), 1)));
@@ -164,25 +155,20 @@ TEST_F(RunningModule, AFocusThatIsNotRepeatedExpires) {
     while (read_state(next(*reports, Report::State))->focus != mode) {
     }
   };
-  auto next_done = [&] {
-    Message message;
-    EXPECT_TRUE(*receive(*done, message));
-    return message.view<double>()->at(0, 0);
-  };
   ASSERT_TRUE(focus->send(table<std::int32_t>({1})));
   await_focus(1);
   clock.advance(internal::kFocusExpiry);
   ASSERT_TRUE(commands->send(in_mode(table({1.0}), 1)));
-  EXPECT_EQ(next_done(), 1);
+  EXPECT_EQ(number_of(next(*done)), 1);
   clock.advance(std::chrono::milliseconds(1));
   ASSERT_TRUE(commands->send(in_mode(table({2.0}), 1)));
   await_focus(0);
   ASSERT_TRUE(person->send(in_mode(table({3.0}), 1)));
-  EXPECT_EQ(next_done(), 3);
+  EXPECT_EQ(number_of(next(*done)), 3);
   ASSERT_TRUE(focus->send(table<std::int32_t>({1})));
   await_focus(1);
   ASSERT_TRUE(commands->send(in_mode(table({4.0}), 1)));
-  EXPECT_EQ(next_done(), 4);
+  EXPECT_EQ(number_of(next(*done)), 4);
   ASSERT_TRUE(commands->close());
   ASSERT_TRUE(person->close());
   EXPECT_EQ(join(), 0);
@@ -201,8 +187,7 @@ TEST_F(RunningModule, KnowsWhetherItsModeHasTheFocus) {
     EXPECT_TRUE(sink->close());
     words.push_back("--in=" + name);
     if (mode >= 0) words.insert(words.end(), {"--in", "focus=" + name + "focus"});
-    start(module, words);
-    EXPECT_EQ(join(), 0);
+    EXPECT_EQ(run(module, words), 0);
     return has;
   };
   constexpr std::int32_t kNoFocus = -1;
@@ -226,8 +211,7 @@ TEST_F(RunningModule, ARateMayBeAsLowAsOneLikes) {
   auto sink = sink_of(uri("in"));
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(sink->send(table({1.0})));
   ASSERT_TRUE(sink->close());
-  start(module, {"--in=" + uri("in")});
-  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(run(module, {"--in=" + uri("in")}), 0);
   EXPECT_EQ(ticks, 0);
 }
 
@@ -250,10 +234,9 @@ TEST_F(RunningModule, ATasksMessagesAreOfItsModeAndGoToAnAddress) {
   auto source = source_of(uri("out"));
   ASSERT_TRUE(sink->send(in_mode(table({1.0}), 9)));
   ASSERT_TRUE(sink->close());
-  start(module, {"--in=" + uri("in"), "--out=" + uri("out"), "--mode=4", "--to=command=-5"});
-  EXPECT_EQ(join(), 0);
-  Message message;
-  ASSERT_TRUE(*receive(*source, message));
+  EXPECT_EQ(
+      run(module, {"--in=" + uri("in"), "--out=" + uri("out"), "--mode=4", "--to=command=-5"}), 0);
+  const Message message = next(*source);
   EXPECT_EQ(message.header.mode, 4);
   EXPECT_EQ(message.header.dst, -5);
 }
@@ -277,14 +260,13 @@ TEST_F(RunningModule, ForwardsByAddressButNeverBack) {
   ASSERT_TRUE(from_a->send(to(table({3.0}), 11)));
   ASSERT_TRUE(from_a->send(table({4.0})));
   ASSERT_TRUE(from_a->close());
-  start(module, {"--in", "in=" + uri("from-a"), "--out", "out=" + uri("to-a"), "--out",
-                 "out=" + uri("to-b"), "--route", "in=" + uri("from-a") + " peer=a", "--route",
-                 "out=" + uri("to-a") + " to=11,-1 peer=a", "--route",
-                 "out=" + uri("to-b") + " to=21,-1 peer=b"});
-  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(run(module, {"--in", "in=" + uri("from-a"), "--out", "out=" + uri("to-a"), "--out",
+                         "out=" + uri("to-b"), "--route", "in=" + uri("from-a") + " peer=a",
+                         "--route", "out=" + uri("to-a") + " to=11,-1 peer=a", "--route",
+                         "out=" + uri("to-b") + " to=21,-1 peer=b"}),
+            0);
   EXPECT_EQ(taken, (std::vector<std::size_t>{1, 1, 0, 0}));
-  Message message;
-  ASSERT_TRUE(*receive(*to_b, message));
+  Message message = next(*to_b);
   EXPECT_EQ(message.header.info.encoding, Encoding::Zstd);  // as it came
   EXPECT_EQ(message.header.src, 77);
   EXPECT_EQ(message.header.seq, 5);
@@ -304,8 +286,7 @@ TEST_F(RunningModule, TimersGoOnBetweenMessages) {
     }
   });
   module.every(std::chrono::hours(1), [&] { ++counted; });
-  start(module, {"--in=" + uri("in")});
-  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(run(module, {"--in=" + uri("in")}), 0);
   EXPECT_GE(ticks, 10);
   EXPECT_EQ(counted, 0);
 }

@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The links of a module that runs: what it reports of them, and how they come and go.
+#include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <thread>
+
+#include <hc/base/check.h>
 #include <hc/module/running_module_test.h>
 
 namespace hc {
@@ -15,15 +24,12 @@ TEST_F(RunningModule, SaysWhatItIsLinkedToAndHowItIsSet) {
   module.parameter("title", "a b", "", "", {.fixed = true});
   module.on(in, [](const auto&) {});
   auto sink = sink_of(uri("in"));
-  auto reports = source_of(uri("reports"));
-  start(module, {"--in=" + uri("in"), "--out=" + uri("out"), "--manage=" + uri("reports"),
-                 "--mode=3", "--factor=4"});
-  Message parameters;  // first: a module that is seen to run has parameters
-  ASSERT_TRUE(*receive(*reports, parameters));
+  start_managed(module, {"--in=" + uri("in"), "--out=" + uri("out"), "--mode=3", "--factor=4"});
+  const Message parameters = next(*reports_);  // first: a module that is seen to run has them
   EXPECT_EQ(parameters.header.src, static_cast<int>(Report::Parameters));
   EXPECT_EQ(rows_of(parameters), (std::vector<std::string>{"factor=4", "title=a b"}));
-  auto state = next(*reports, Report::State);
-  EXPECT_EQ(rows_of(next(*reports, Report::Links)),
+  auto state = next(*reports_, Report::State);
+  EXPECT_EQ(next_links(),
             (std::vector<std::string>{"in in " + uri("in"), "out out " + uri("out")}));
   auto numbers = state.view<std::int64_t>()->row(0);
   EXPECT_EQ(std::vector(numbers.begin(), numbers.end()), (std::vector<std::int64_t>{3, 0, 1, 0}));
@@ -68,9 +74,9 @@ TEST_F(RunningModule, ObeysWhileItWaitsForAReader) {
   start_managed(module, {"--out=" + link});
   while (next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 3) == 0) {
   }
-  ASSERT_TRUE(send_command(*control_, "set factor=4"));
+  command("set factor=4");
   EXPECT_EQ(rows_of(next(*reports_, Report::Parameters)).front(), "factor=4");
-  ASSERT_TRUE(send_command(*control_, "unlink out out=" + link));
+  command("unlink out out=" + link);
   EXPECT_EQ(join(), 0);
 }
 
@@ -88,23 +94,10 @@ TEST_F(RunningModule, ObeysWhileItWaitsForRoom) {
   start_managed(module, {"--out=" + link, "--out=" + other});
   auto slow = source_of("shm:" + name + "?wait=10");  // and is not read
   auto quick = source_of(other);
-  Message message;
-  int received = 0;
-  auto take_all = [&] {
-    while (*quick->take(message) == Got::Message) {
-      // Every message, also the one that was being sent when the other link went.
-      EXPECT_EQ(message.view<double>()->at(0, 0), received);
-      ++received;
-    }
-  };
-  while (received < 2000) {
-    ASSERT_TRUE(quick->wait());
-    take_all();
-  }
-  ASSERT_TRUE(send_command(*control_, "unlink out out=" + link));
-  while (received < kCount) {
-    ASSERT_TRUE(quick->wait());
-    take_all();
+  for (int received = 0; received < kCount; ++received) {
+    if (received == 2000) command("unlink out out=" + link);
+    // Every message, also the one that was being sent when the other link went.
+    EXPECT_EQ(number_of(next(*quick)), received);
   }
   EXPECT_EQ(join(), 0);
 }
@@ -120,8 +113,7 @@ TEST_F(RunningModule, ReportsAgesAndGaps) {
     ASSERT_TRUE(sink->send(message));
   }
   ASSERT_TRUE(sink->close());
-  start(module, {"--in=" + uri("in"), "--manage=" + uri("reports")});
-  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(run(module, {"--in=" + uri("in"), "--manage=" + uri("reports")}), 0);
   const auto row = last_counters(*reports).at(0);
   ASSERT_EQ(row.size(), kCounterColumns.size());
   EXPECT_EQ(row[0], 3);
@@ -137,13 +129,13 @@ TEST_F(RunningModule, HasOnlyTheLinksOfItsCommands) {
   Relay module{"relay"};
   start_managed(module);
   // Neither standard input, which may have ended, nor standard output.
-  EXPECT_TRUE(rows_of(next(*reports_, Report::Links)).empty());
+  EXPECT_TRUE(next_links().empty());
   auto first = sink_of(uri("first"));
   auto from = source_of(uri("out"));
-  ASSERT_TRUE(send_command(*control_, "link out out=" + uri("out")));
-  ASSERT_TRUE(send_command(*control_, "link in in=" + uri("first")));
+  command("link out out=" + uri("out"));
+  command("link in in=" + uri("first"));
   ASSERT_TRUE(first->send(table({2.0})));
-  EXPECT_EQ(next(*from).view<double>()->at(0, 0), 2);
+  EXPECT_EQ(number_of(next(*from)), 2);
   ASSERT_TRUE(first->close());
   EXPECT_EQ(join(), 0);
 }
@@ -152,8 +144,7 @@ TEST_F(RunningModule, ReportsWithoutLinksToo) {
   Taker module{"idle"};
   start_managed(module);
   for (int i = 0; i < 2; ++i) EXPECT_EQ(next(*reports_, Report::Counters).header.height, 0);
-  ASSERT_TRUE(control_->close());
-  EXPECT_EQ(join(), 0);
+  end();
 }
 
 TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
@@ -164,7 +155,7 @@ TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
   for (double i : {1, 2, 3}) {
     auto sink = open_sink(*parse_uri(uri("in")));
     while (!sink) sink = open_sink(*parse_uri(uri("in")));  // until the end before has closed
-    ASSERT_TRUE(send_command(*control_, "link in in=" + uri("in")));
+    command("link in in=" + uri("in"));
     ASSERT_TRUE((*sink)->send(table({i})));
     next(*handled);
     ASSERT_TRUE((*sink)->close());
@@ -173,9 +164,9 @@ TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
   while (rows.back()[0] < 3) rows = next_counters(*reports_);
   ASSERT_EQ(rows.size(), 3U) << "the other, this one, and that out";
   EXPECT_EQ(rows[1][0], 3);
-  ASSERT_TRUE(send_command(*control_, "unlink in in=" + uri("in")));
+  command("unlink in in=" + uri("in"));
   std::vector<std::string> links;
-  while (links.size() != 2) links = rows_of(next(*reports_, Report::Links));
+  while (links.size() != 2) links = next_links();
   EXPECT_EQ(links, (std::vector{"in in " + uri("other"), "out out " + uri("out")}));
   ASSERT_TRUE(other->close());
   EXPECT_EQ(join(), 0);
@@ -190,34 +181,30 @@ TEST_F(RunningModule, ALinkThatIsTakenAwayHasItsLastNumbersReported) {
   ASSERT_TRUE(sink->send(table({1.0})));
   next(*from);
   for (const auto& end : {"in in=" + uri("in"), "out out=" + uri("out")}) {
-    ASSERT_TRUE(send_command(*control_, "unlink " + end));
+    command("unlink " + end);
     EXPECT_EQ(next_counters(*reports_).back()[0], 1);
     next(*reports_, Report::Links);
   }
-  ASSERT_TRUE(control_->close());
-  EXPECT_EQ(join(), 0);
+  end();
 }
 
 TEST_F(RunningModule, WhatWaitsAtALinkThatIsTakenAwayIsAmongTheLost) {
   Relay module{"relay"};
   const std::string name = "@waits-" + std::to_string(::getpid()), place = "unix-listen:" + name;
-  auto sink = sink_of(uri("in")), control = sink_of(uri("control"));
-  auto reports = source_of(uri("reports"));
+  auto sink = sink_of(uri("in"));
   ::testing::internal::CaptureStderr();
-  start(module, {"--in=" + uri("in"), "--out=" + place + "?keep=100&rate=1",
-                 "--manage=" + uri("reports"), "--control=" + uri("control")});
+  start_managed(module, {"--in=" + uri("in"), "--out=" + place + "?keep=100&rate=1"});
   auto from = source_of("unix:" + name + "?wait=60");
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(sink->send(table({static_cast<double>(i)})));
-  while (next_counters(*reports).back()[0] < 100) {
+  while (next_counters(*reports_).back()[0] < 100) {
   }
-  ASSERT_TRUE(send_command(*control, "unlink out out=" + place + "?keep=100&rate=1"));
-  auto row = next_counters(*reports).back();
-  while (row[6] == 0) row = next_counters(*reports).back();
+  command("unlink out out=" + place + "?keep=100&rate=1");
+  auto row = next_counters(*reports_).back();
+  while (row[6] == 0) row = next_counters(*reports_).back();
   EXPECT_EQ(row[0], 100);
   EXPECT_GT(row[6], 0);
-  ASSERT_TRUE(control->close());
   ASSERT_TRUE(sink->close());
-  EXPECT_EQ(join(), 0);
+  end();
   EXPECT_EQ(::testing::internal::GetCapturedStderr(),
             "relay: out: " + std::to_string(row[6]) + " waiting, lost with the link\n");
 }
@@ -265,20 +252,16 @@ TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
   next(*reports_, Report::Links);
   std::string place = uri("left");
   auto l = sink_of(place), r = sink_of(uri("right"));
-  auto obeyed = [&](const std::string& command) {
-    ASSERT_TRUE(send_command(*control_, command));
-    next(*reports_, Report::Links);
-  };
-  obeyed("link in right=" + uri("right"));
-  obeyed("link in left=" + place);
+  relink("link in right=" + uri("right"));
+  relink("link in left=" + place);
   for (double i : {1, 2}) {
     ASSERT_TRUE(l->send(table({i})));
     ASSERT_TRUE(r->send(table({i})));
-    EXPECT_EQ(next(*sums).view<double>()->at(0, 0), 2 * i);
-    obeyed("unlink in left=" + place);
+    EXPECT_EQ(number_of(next(*sums)), 2 * i);
+    relink("unlink in left=" + place);
     place += "_anew";
     l = sink_of(place);
-    obeyed("link in left=" + place);
+    relink("link in left=" + place);
   }
   ASSERT_TRUE(l->close());
   EXPECT_EQ(join(), 0);
@@ -289,15 +272,13 @@ TEST_F(RunningModule, AFocusLinkIsTakenAwayAlone) {
   auto one = sink_of(uri("one")), other = sink_of(uri("other"));
   start_managed(module, {"--in", "focus=" + uri("one"), "--in", "focus=" + uri("other")});
   next(*reports_, Report::State);
-  ASSERT_TRUE(send_command(*control_, "unlink in focus=" + uri("one")));
-  ASSERT_TRUE(send_command(*control_, "unlink in focus=" + uri("one")));
-  next(*reports_, Report::Links);
+  command("unlink in focus=" + uri("one"));
+  relink("unlink in focus=" + uri("one"));
   EXPECT_EQ(read_log(next(*reports_, Report::Log))->text,
             "command \"unlink in focus=" + uri("one") + "\": there is no such link");
   ASSERT_TRUE(other->send(table<std::int32_t>({7})));
   EXPECT_EQ(next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 1), 7);
-  ASSERT_TRUE(control_->close());
-  EXPECT_EQ(join(), 0);
+  end();
 }
 
 TEST_F(RunningModule, AWriterThatHasEndedForGoodIsNoNews) {
@@ -309,38 +290,73 @@ TEST_F(RunningModule, AWriterThatHasEndedForGoodIsNoNews) {
   ASSERT_TRUE(writer->send(table({1.0})));
   ASSERT_TRUE(writer->close());
   writer.reset();
-  ASSERT_TRUE(send_command(*control_, "finish in=" + name + "?reconnect=60"));
+  command("finish in=" + name + "?reconnect=60");
   EXPECT_EQ(join(), 0);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
-TEST_F(RunningModule, AGeneratorReadsTheWriterThatFollowsAnother) {
-  const std::string name = "shm:generator-" + std::to_string(::getpid());
-  Module module{"generator", "Reads, and never waits for it."};
-  int come = 0;
-  module.on(module.input("in", table<double>(), ""), [&](const auto&) { ++come; });
-  module.generate([&] {
-    module.keep_rate(1000);
-    return come < 2;
-  });
-  start(module, {"--in=" + name + "?reconnect=60"});
-  for (int writers = 0; writers < 2; ++writers) {
-    auto writer = sink_of(name);  // it leaves without closing, as who is killed does
+/// The name of the link that DISABLED_SendsOnce writes to.
+constexpr const char* kWritten = "HC_TEST_WRITTEN";
+
+/// A program, which is to be killed.
+TEST(Writer, DISABLED_SendsOnce) {
+  const auto sink = sink_of(std::getenv(kWritten));
+  ASSERT_TRUE(sink->send(table({1.0})));
+  while (true) ::pause();
+}
+
+pid_t start_writer(const std::string& link) {
+  ::setenv(kWritten, link.c_str(), 1);
+  const char* words[] = {"module_test", "--gtest_also_run_disabled_tests",
+                         "--gtest_filter=Writer.DISABLED_SendsOnce", nullptr};
+  pid_t started = 0;
+  HC_CHECK(::posix_spawn(&started, "/proc/self/exe", nullptr, nullptr,
+                         const_cast<char* const*>(words), environ) == 0,
+           errno);
+  return started;
+}
+
+TEST_F(RunningModule, WhoNeverWaitsReadsTheWriterThatFollowsOneThatWasKilled) {
+  const std::string name = "shm:killed-" + std::to_string(::getpid());
+  for (const bool generates : {false, true}) {
+    SCOPED_TRACE(generates);
+    Module module{"busy", "Has always something to do."};
+    std::atomic<int> come = 0;
+    auto feed = sink_of(uri("feed"));
+    module.on(module.input("feed", table<double>(), ""), [&](const auto&) {
+      ASSERT_TRUE(come < 2 && !generates ? feed->send(table({1.0})) : feed->close());
+    });
+    module.on(module.input("in", table<double>(), ""), [&](const auto&) { ++come; });
+    if (generates) module.generate([&] { return come < 2; });
+    start_managed(module, {"--in=feed=" + uri("feed"), "--in=in=" + name + "?reconnect=60"});
+    ASSERT_TRUE(feed->send(table({1.0})));
+    const pid_t killed = start_writer(name);
+    while (come < 1) std::this_thread::yield();
+    ASSERT_EQ(::kill(killed, SIGKILL), 0);
+    ASSERT_EQ(::waitpid(killed, nullptr, 0), killed);
+    auto writer = sink_of(name);
     ASSERT_TRUE(writer->send(table({1.0})));
+    while (come < 2) std::this_thread::yield();
+    if (!generates) {
+      ASSERT_TRUE(send_command(*control_, "finish in=" + name + "?reconnect=60"));
+    }
+    ASSERT_TRUE(control_->close());
+    writer.reset();
+    EXPECT_EQ(join(), 0);
+    control_.reset();
+    reports_.reset();
   }
-  EXPECT_EQ(join(), 0);
 }
 
 TEST_F(RunningModule, ALinkOfAGraphIsNamedByItsPort) {
   const std::string nowhere = "unix:@nowhere-" + std::to_string(::getpid());
   Taker module{"reader"};
   start_managed(module);
-  ASSERT_TRUE(send_command(*control_, "link in in=" + nowhere));
+  command("link in in=" + nowhere);
   const auto refusal = read_log(next(*reports_, Report::Log))->text;
   EXPECT_TRUE(refusal.starts_with("command \"link in in=" + nowhere + "\": Closed: in: "))
       << refusal;
-  ASSERT_TRUE(control_->close());
-  EXPECT_EQ(join(), 0);
+  end();
 }
 
 }  // namespace

@@ -41,6 +41,11 @@ bool keeps_latest(Uri& uri) {
   return false;
 }
 
+/// Whether readers of an output are on this host, and so connect at once unless they hang.
+bool is_on_this_host(const Uri& uri) {
+  return uri.scheme == "shm" || uri.scheme == "unix-listen" || !uri.option("same_user", "").empty();
+}
+
 /// An output's end that waits neither for the first reader nor for a slow one
 /// (Module::never_waits()).
 Uri without_waiting(Uri uri, std::uint32_t keep) {
@@ -61,6 +66,7 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
       management_(*(module.management_ = std::make_shared<internal::Management>())),
       waits_(stop),
       pauses_(stop) {
+  joins_ = arguments.joins;
   options_.limits = arguments.limits;
   options_.stop = stop;
   module_.focus_ = arguments.focus;
@@ -82,6 +88,7 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
                    arguments.control ? open(*arguments.control, "commands") : nullptr);
   open_outputs(arguments);
   open_inputs(arguments);
+  joins_ = true;  // with links that are added
   for (const auto& uri : arguments.focus_links) open_focus(uri);
   for (const auto& [link, route] : arguments.routes) set_route(link, route);
   if (arguments.clock) read_moments(*arguments.clock);
@@ -145,7 +152,11 @@ std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std:
   // In a graph a full disk ends a recording, and not the module.
   if (is_of_graph && opened.scheme == "file") add("optional", "1");
   // By the clock of messages nothing is ever lost.
-  if (is_of_graph && !module_.message_time_) add("timeout", kTimeoutInGraphs);
+  if (is_of_graph && !module_.message_time_) {
+    add("timeout", kTimeoutInGraphs);
+    if (joins_ && opened.option("stay", "") == "1" && opened.option("timeout", "") != "0")
+      add("wait", is_on_this_host(opened) ? "1" : kTimeoutInGraphs);
+  }
   if (keep > 0) opened = without_waiting(std::move(opened), keep);
   auto options = options_for(opened, port);
   auto link = std::make_shared<LinkedSink>();
@@ -266,8 +277,6 @@ void Module::Loop::run() {
     read_watched();
     if (any) continue;
     if (is_generators_turn()) {
-      // Notices that a publisher has died, whose messages such a module never waits for.
-      if (!sources_.empty() && !module_.message_time_) wait(true, now_);
       note(TraceEvent::What::Began, kNoPort, {}, TraceEvent::kGenerator);
       const bool goes_on = generate();
       note(TraceEvent::What::Ended, kNoPort, {}, TraceEvent::kGenerator);

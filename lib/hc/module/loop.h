@@ -154,6 +154,7 @@ struct Module::Loop {
   // loop_control.cpp
   void attend();
   void serve();
+  void look_at_silent();
   void receive_focus();
   void set_focus(internal::Inlet& link, const Message& message);
   void expire_focus();
@@ -174,6 +175,7 @@ struct Module::Loop {
 
   Module& module_;
   LinkOptions options_;
+  bool joins_ = false;  // the graph runs already: see --join
   std::vector<internal::Inlet> sources_;
   std::vector<std::shared_ptr<internal::LinkedSink>> sinks_;     // in the order of the command line
   std::vector<std::shared_ptr<internal::LinkedSink>> unlinked_;  // one may still be in send()

@@ -57,10 +57,19 @@ void Module::Loop::serve() {
   if (now_ - attended_ < kHousekeepingPeriod && deferred_.empty() && !reports) return;
   attended_ = now_;
   if (module_.before_waiting_) module_.before_waiting_();
+  look_at_silent();
   for (const auto& command : std::exchange(deferred_, {})) obey(command);
   for (const auto& command : management_.take_commands()) obey(command);
   report();
   now_ = module_.clock_.monotonic();  // commands may have taken their time
+}
+
+/// Has links notice that their writers have died: they look at that when they are waited for, and a
+/// module that always has something to do waits for none.
+void Module::Loop::look_at_silent() {
+  for (auto* links : {&sources_, &focus_})
+    for (const auto& link : *links)
+      if (link.source != nullptr && !link.head) link.source->prepare_wait();
 }
 
 void Module::Loop::receive_focus() {

@@ -22,6 +22,34 @@ Message stamped(Message message, std::int64_t time, std::int32_t mode = 0) {
   return message;
 }
 
+/// Runs a module; gives what it says on standard error.
+std::string said(Module& module, const std::vector<std::string>& words, int status = 0) {
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(module, words), status);
+  return ::testing::internal::GetCapturedStderr();
+}
+
+/// Runs a module whose inputs have these messages; gives what its output "out" sends.
+std::vector<Message> run_on(Module& module,
+                            const std::vector<std::pair<std::string, std::vector<Message>>>& fed,
+                            std::vector<std::string> words = {}) {
+  words.insert(words.end(), {"--out", "out=inproc:run_on-out"});
+  auto source = source_of("inproc:run_on-out");
+  std::vector<std::unique_ptr<Sink>> sinks;
+  for (const auto& [input, messages] : fed) {
+    const std::string uri = "inproc:run_on-" + input;
+    words.insert(words.end(), {"--in", input + "=" + uri});
+    sinks.push_back(sink_of(uri));
+    for (const auto& message : messages) EXPECT_TRUE(sinks.back()->send(message));
+    EXPECT_TRUE(sinks.back()->close());
+  }
+  EXPECT_EQ(run(module, words), 0);
+  std::vector<Message> sent;
+  Message message;
+  while (*receive(*source, message)) sent.push_back(message);
+  return sent;
+}
+
 TEST(Module, AnswersEachMessageAndKeepsItsTime) {
   Module module{"double", "Doubles positions."};
   auto in = module.input("in", position<double>(), "");
@@ -30,17 +58,12 @@ TEST(Module, AnswersEachMessageAndKeepsItsTime) {
   module.on(in, [&](const auto& message) {
     out.send(position(message.matrix().at(0, 0, 0) * *factor, 0.0, 0.0));
   });
-  auto sink = sink_of("inproc:m1-in");
-  auto source = source_of("inproc:m1-out");
-  for (int i = 1; i <= 3; ++i)
-    ASSERT_TRUE(sink->send(stamped(position(i * 1.0, 0.0, 0.0), 1000 + i, 5)));
-  ASSERT_TRUE(sink->close());
-  EXPECT_EQ(run(module, {"--in", "in=inproc:m1-in", "--out", "out=inproc:m1-out", "--factor", "10",
-                         "--address", "out=77"}),
-            0);
+  std::vector<Message> taken;
+  for (int i = 1; i <= 3; ++i) taken.push_back(stamped(position(i * 1.0, 0.0, 0.0), 1000 + i, 5));
+  const auto sent = run_on(module, {{"in", taken}}, {"--factor", "10", "--address", "out=77"});
+  ASSERT_EQ(sent.size(), 3U);
   for (int i = 1; i <= 3; ++i) {
-    Message message;
-    ASSERT_TRUE(*receive(*source, message));
+    const Message& message = sent[static_cast<std::size_t>(i) - 1];
     EXPECT_EQ(message.view<double>()->at(0, 0, 0), 10.0 * i);
     EXPECT_EQ(message.header.time, 1000 + i);
     EXPECT_EQ(message.header.seq, i - 1);
@@ -68,32 +91,25 @@ TEST(Module, ConvertsForTheLinkThatSaysSoAlone) {
   EXPECT_EQ(run(module, {"--out=image=inproc:m9-small?as=jpeg&quality=50&scale=0.5&keep=latest",
                          "--out=image=inproc:m9-whole", "--out=number=inproc:m9-other?scale=0.5"}),
             0);
-  Message message;
-  ASSERT_TRUE(*receive(*whole, message));
-  EXPECT_EQ(message.header.width, 64);
-  EXPECT_EQ(message.header.info.encoding, Encoding::Binary);
-  const Header sent = message.header;
-  ASSERT_TRUE(*receive(*small, message));
-  EXPECT_EQ(message.header.info.encoding, Encoding::Jpeg);
-  const auto expanded = expand(message);
-  ASSERT_TRUE(expanded);
-  Header wanted = sent;
+  Header wanted = next(*whole).header;
+  EXPECT_EQ(wanted.width, 64);
+  EXPECT_EQ(wanted.info.encoding, Encoding::Binary);
+  const Message compressed = next(*small);
+  EXPECT_EQ(compressed.header.info.encoding, Encoding::Jpeg);
+  const Message expanded = must(expand(compressed));
   wanted.width = 32;
   wanted.height = 24;
-  EXPECT_EQ(expanded->header, wanted);
-  EXPECT_NEAR(expanded->view<std::uint8_t>()->at(20, 30, 2), 100, 2);
-  ASSERT_TRUE(*receive(*other, message));  // is no image
-  EXPECT_EQ(message.view<double>()->at(0, 0), 1.5);
+  EXPECT_EQ(expanded.header, wanted);
+  EXPECT_NEAR(expanded.view<std::uint8_t>()->at(20, 30, 2), 100, 2);
+  EXPECT_EQ(number_of(next(*other)), 1.5);  // is no image
 }
 
 TEST(Module, RefusesALinkThatCannotConvert) {
   Module module{"camera", "Sends nothing."};
   module.output("image", rgb_image<std::uint8_t>(), "");
-  ::testing::internal::CaptureStderr();
-  EXPECT_NE(run(module, {"--out=image=inproc:m10?scale=2"}), 0);
-  EXPECT_NE(
-      ::testing::internal::GetCapturedStderr().find("option scale is a number from 0.01 to 1"),
-      std::string::npos);
+  EXPECT_NE(said(module, {"--out=image=inproc:m10?scale=2"}, 2)
+                .find("option scale is a number from 0.01 to 1"),
+            std::string::npos);
 }
 
 TEST(Module, SendsWhatIsOnDemandOnlyByALinkOfItsOwn) {
@@ -125,35 +141,11 @@ TEST(Module, ExpandsWhatIsCompressedAndCompressesWhenAsked) {
   });
   Draft draft = Draft::make(intensity_image<std::uint8_t>().type.info, 32, 8);
   for (auto& byte : draft.elements()) byte = std::byte{99};
-  auto sink = sink_of("inproc:m2-in");
-  auto source = source_of("inproc:m2-out");
-  ASSERT_TRUE(sink->send(*compress(std::move(draft).finish(), Encoding::Zstd)));
-  ASSERT_TRUE(sink->close());
-  EXPECT_EQ(run(module, {"--in=inproc:m2-in", "--out=inproc:m2-out", "--encoding=jpeg"}), 0);
-  Message message;
-  ASSERT_TRUE(*receive(*source, message));
-  EXPECT_EQ(message.header.info.encoding, Encoding::Jpeg);
-  EXPECT_EQ(expand(message)->view<std::uint8_t>()->at(3, 3), 99);
-}
-
-/// Runs a module whose inputs have these messages and whose output is "out".
-std::vector<Message> run_on(Module& module,
-                            const std::vector<std::pair<std::string, std::vector<Message>>>& fed) {
-  std::vector<std::string> words{"--out", "inproc:together-out"};
-  auto source = source_of("inproc:together-out");
-  std::vector<std::unique_ptr<Sink>> sinks;
-  for (const auto& [input, messages] : fed) {
-    const std::string uri = "inproc:together-" + input;
-    words.insert(words.end(), {"--in", input + "=" + uri});
-    sinks.push_back(sink_of(uri));
-    for (const auto& message : messages) EXPECT_TRUE(sinks.back()->send(message));
-    EXPECT_TRUE(sinks.back()->close());
-  }
-  EXPECT_EQ(run(module, words), 0);
-  std::vector<Message> sent;
-  Message message;
-  while (*receive(*source, message)) sent.push_back(message);
-  return sent;
+  const auto sent = run_on(module, {{"in", {*compress(std::move(draft).finish(), Encoding::Zstd)}}},
+                           {"--encoding=jpeg"});
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_EQ(sent[0].header.info.encoding, Encoding::Jpeg);
+  EXPECT_EQ(expand(sent[0])->view<std::uint8_t>()->at(3, 3), 99);
 }
 
 std::vector<Message> at_times(const std::vector<std::int64_t>& times) {
@@ -380,20 +372,13 @@ TEST(Module, ABadMessageIsOneBadMessage) {
                                       unheard_of, position(1.0, 2.0, 3.0)})
     ASSERT_TRUE(sink->send(message));
   ASSERT_TRUE(sink->close());
-  ::testing::internal::CaptureStderr();
-  EXPECT_EQ(run(module, {"--in", "inproc:m4", "--name", "north", "--manage=inproc:m4_reports"}), 0);
-  EXPECT_EQ(handled, 2);
   EXPECT_EQ(
-      ::testing::internal::GetCapturedStderr(),
+      said(module, {"--in", "inproc:m4", "--name", "north", "--manage=inproc:m4_reports"}),
       "north: in: dropped: Malformed: table 1 x 1 of 1 x f64 fits no input: in takes position "
       "of 3 x f64 or rgb_image of 3 x u8 (further ones are counted, not logged)\n"
       "north: total: 5 bad at in\n");
-  Message report;
-  std::uint64_t bad = 0;
-  while (*reports->take(report) == Got::Message)
-    if (report.header.src == static_cast<int>(Report::Counters))
-      bad = read_counters(report).at(0).traffic.bad;
-  EXPECT_EQ(bad, 5U);
+  EXPECT_EQ(handled, 2);
+  EXPECT_EQ(last_counters(*reports).at(0).at(15), 5);
 }
 
 TEST(Module, WhatALibraryThrowsIsLoggedWithoutItsSources) {
@@ -407,11 +392,10 @@ TEST(Module, WhatALibraryThrowsIsLoggedWithoutItsSources) {
   auto sink = sink_of("inproc:m_library");
   ASSERT_TRUE(sink->send(table({1.0})));
   ASSERT_TRUE(sink->close());
-  ::testing::internal::CaptureStderr();
-  EXPECT_EQ(run(module, {"--in", "inproc:m_library"}), 0);
-  EXPECT_TRUE(::testing::internal::GetCapturedStderr().starts_with(
-      "strict: in: dropped: System: OpenCV: (-4:Insufficient memory) Failed to allocate 8 bytes "
-      "("));
+  EXPECT_TRUE(said(module, {"--in", "inproc:m_library"})
+                  .starts_with("strict: in: dropped: System: OpenCV: (-4:Insufficient memory) "
+                               "Failed to allocate 8 bytes "
+                               "("));
 }
 
 TEST(Module, ABadSetIsDropped) {
@@ -421,15 +405,8 @@ TEST(Module, ABadSetIsDropped) {
     if (one.header.time == 1) throw BadMessage("it does not belong");
     ++handled;
   });
-  std::vector<std::unique_ptr<Sink>> sinks;
-  for (const char* name : {"inproc:m_left", "inproc:m_right"}) {
-    auto sink = sink_of(name);
-    for (std::int64_t time : {1, 2}) ASSERT_TRUE(sink->send(table({1.0}).at(time)));
-    ASSERT_TRUE(sink->close());
-    sinks.push_back(std::move(sink));
-  }
   ::testing::internal::CaptureStderr();
-  EXPECT_EQ(run(module, {"--in", "left=inproc:m_left", "--in", "right=inproc:m_right"}), 0);
+  run_on(module, {{"left", at_times({1, 2})}, {"right", at_times({1, 2})}});
   EXPECT_EQ(handled, 1);
   EXPECT_NE(::testing::internal::GetCapturedStderr().find("pair: total: 1 bad at "),
             std::string::npos);
@@ -449,12 +426,10 @@ TEST(Module, ABadFocusIsOneBadMessage) {
     ASSERT_TRUE(focus->send(message));
   ASSERT_TRUE(sink->send(table({1.0})));
   ASSERT_TRUE(sink->close());
-  ::testing::internal::CaptureStderr();
-  EXPECT_EQ(run(module, {"--in=inproc:m_in", "--in=focus=inproc:m_focus", "--mode=2"}), 0);
-  EXPECT_EQ(had, std::vector<bool>{true});
-  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+  EXPECT_EQ(said(module, {"--in=inproc:m_in", "--in=focus=inproc:m_focus", "--mode=2"}),
             "actor: focus: dropped: the elements are position of 3 x f64, text, not plain i32 "
             "(further ones are counted, not logged)\nactor: total: 2 bad at focus\n");
+  EXPECT_EQ(had, std::vector<bool>{true});
 }
 
 TEST(Module, AFileWithBadMessagesIsReadToItsEndAndAFailure) {
@@ -471,12 +446,10 @@ TEST(Module, AFileWithBadMessagesIsReadToItsEndAndAFailure) {
   auto in = module.input("in", table<double>(), "");
   double sum = 0;
   module.on(in, [&](const auto& message) { sum += message.matrix().at(0, 0); });
-  ::testing::internal::CaptureStderr();
-  EXPECT_EQ(run(module, {"--in", "file:" + file}), 1);
-  EXPECT_EQ(sum, 3);
-  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+  EXPECT_EQ(said(module, {"--in", "file:" + file}, 1),
             "adder: in: dropped: Malformed: R17 info: position does not fit, the port takes table "
             "(further ones are counted, not logged)\nadder: total: 2 bad at in\n");
+  EXPECT_EQ(sum, 3);
   std::remove(file.c_str());
 }
 
@@ -489,8 +462,7 @@ TEST(Module, EndsWhenNobodyReadsItAnyMore) {
   });
   auto source = source_of("inproc:m5");
   std::thread reader([&] {
-    Message message;
-    for (int i = 0; i < 10; ++i) ASSERT_TRUE(*receive(*source, message));
+    for (int i = 0; i < 10; ++i) next(*source);
     source.reset();
   });
   EXPECT_EQ(run(module, {"--out", "inproc:m5"}), 0);
@@ -508,15 +480,12 @@ TEST(Module, ReportsItsCounters) {
   ASSERT_TRUE(sink->close());
   EXPECT_EQ(run(module, {"--in=inproc:m6-in", "--out=inproc:m6-out", "--manage=inproc:m6-manage"}),
             0);
-  Message message, last;
-  while (*manage->take(message) == Got::Message)
-    if (message.header.src == static_cast<int>(Report::Counters)) last = message;
-  auto rows = *last.view<std::int64_t>();
-  ASSERT_EQ(rows.height(), 2U);
-  EXPECT_EQ(rows.at(0, 0, 0), 7);
-  EXPECT_EQ(rows.at(0, 0, 1), 7 * 8);
-  EXPECT_EQ(rows.at(1, 0, 0), 7);
-  EXPECT_EQ(rows.at(1, 0, 1), 7 * 16);
+  const auto rows = last_counters(*manage);
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].at(0), 7);
+  EXPECT_EQ(rows[0].at(1), 7 * 8);
+  EXPECT_EQ(rows[1].at(0), 7);
+  EXPECT_EQ(rows[1].at(1), 7 * 16);
 }
 
 TEST(Module, ABadCommandLineIsStatusTwoAndOneLine) {
@@ -538,10 +507,7 @@ TEST(Module, ABadCommandLineIsStatusTwoAndOneLine) {
     auto out = module.output("out", position<double>(), "");
     auto hue = module.parameter("hue", 0.3, "turn", "", {.min = 0, .max = 1, .positional = true});
     auto on = module.parameter("on", false, "", "");
-    ::testing::internal::CaptureStderr();
-    EXPECT_EQ(run(module, words), 2);
-    EXPECT_EQ(::testing::internal::GetCapturedStderr(),
-              "blob: Invalid: " + std::string(line) + "\n");
+    EXPECT_EQ(said(module, words, 2), "blob: Invalid: " + std::string(line) + "\n");
   }
 }
 
@@ -577,14 +543,9 @@ TEST(Module, DescribesItself) {
 
 TEST(Module, AWrongUriIsWrongUsage) {
   Taker module{"sink"};
-  for (const char* uri : {"tcp-listen:abc", "tcp:1?wait=x", "unix:"}) {
-    ::testing::internal::CaptureStderr();
-    EXPECT_EQ(run(module, {"--in", uri}), 2) << uri;
-    EXPECT_TRUE(::testing::internal::GetCapturedStderr().starts_with("sink: Invalid: ")) << uri;
-  }
-  ::testing::internal::CaptureStderr();
-  EXPECT_EQ(run(module, {"--in", "file:/nowhere/at/all"}), 1);
-  EXPECT_NE(::testing::internal::GetCapturedStderr().find("NotFound"), std::string::npos);
+  for (const char* uri : {"tcp-listen:abc", "tcp:1?wait=x", "unix:"})
+    EXPECT_TRUE(said(module, {"--in", uri}, 2).starts_with("sink: Invalid: ")) << uri;
+  EXPECT_NE(said(module, {"--in", "file:/nowhere/at/all"}, 1).find("NotFound"), std::string::npos);
 }
 
 TEST(Module, HandlersFailWithOneLine) {
@@ -593,9 +554,7 @@ TEST(Module, HandlersFailWithOneLine) {
   module.on(in, [](const auto&) { throw ModuleError("no camera"); });
   auto sink = sink_of("inproc:m7");
   ASSERT_TRUE(sink->send(table({1.0})));
-  ::testing::internal::CaptureStderr();
-  EXPECT_EQ(run(module, {"--in", "inproc:m7"}), 1);
-  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "broken: no camera\n");
+  EXPECT_EQ(said(module, {"--in", "inproc:m7"}, 1), "broken: no camera\n");
 }
 
 TEST(Module, AFailedStatusEndsItAsItsCodeSays) {
@@ -606,9 +565,7 @@ TEST(Module, AFailedStatusEndsItAsItsCodeSays) {
       succeed_or_end({});
       succeed_or_end(failed);
     });
-    ::testing::internal::CaptureStderr();
-    EXPECT_EQ(run(module, {}), status);
-    EXPECT_NE(::testing::internal::GetCapturedStderr().find("no camera"), std::string::npos);
+    EXPECT_NE(said(module, {}, status).find("no camera"), std::string::npos);
   }
 }
 

@@ -53,6 +53,19 @@ inline Message to(Message message, std::int32_t dst) {
   return message;
 }
 
+/// The next report of a kind.
+inline Message next(Source& reports, Report kind) {
+  Message message;
+  do {
+    HC_CHECK(*receive(reports, message));
+  } while (message.header.src != static_cast<int>(kind));
+  return message;
+}
+
+inline Status send_command(Sink& control, const std::string& line) {
+  return control.send(make_rows(std::vector<std::string>{line}));
+}
+
 /// A module that runs on a thread of its own, with links inside the process whose names begin with
 /// the test's.
 class RunningModule : public ::testing::Test {
@@ -75,6 +88,22 @@ class RunningModule : public ::testing::Test {
     thread_.join();
     return status_;
   }
+  /// Sends a command to a managed module.
+  void command(const std::string& line) const { must(send_command(*control_, line)); }
+  /// Its links, when they have changed the next time.
+  [[nodiscard]] std::vector<std::string> next_links() const {
+    return rows_of(next(*reports_, Report::Links));
+  }
+  /// The same for a command that changes them.
+  std::vector<std::string> relink(const std::string& line) const {
+    command(line);
+    return next_links();
+  }
+  /// Ends a managed module that has no other link.
+  void end() {
+    must(control_->close());
+    EXPECT_EQ(join(), 0);
+  }
 
   std::unique_ptr<Sink> control_;
   std::unique_ptr<Source> reports_;
@@ -82,17 +111,9 @@ class RunningModule : public ::testing::Test {
   int status_ = -1;
 };
 
-/// The next report of a kind.
-inline Message next(Source& reports, Report kind) {
-  Message message;
-  do {
-    HC_CHECK(*receive(reports, message));
-  } while (message.header.src != static_cast<int>(kind));
-  return message;
-}
-
-inline Status send_command(Sink& control, const std::string& line) {
-  return control.send(make_rows(std::vector<std::string>{line}));
+/// The number of a table that has one.
+inline double number_of(const Message& message) {
+  return message.view<double>()->at(0, 0);
 }
 
 /// Numbers of counters; a row for each link.

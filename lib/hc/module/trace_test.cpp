@@ -4,33 +4,10 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <new>
 
 #include <hc/contract/trace.h>
 #include <hc/module/running_module_test.h>
-
-namespace {
-thread_local std::int64_t allocations = 0;  // of this thread
-}  // namespace
-
-// Not inlined: compilers then take malloc() and free() for no pair of these. ThreadSanitizer has
-// its own and lets nobody replace them; nothing is counted there.
-#if !defined(__has_feature)
-#define __has_feature(feature) 0
-#endif
-#if !__has_feature(thread_sanitizer)
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size); memory != nullptr) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-#endif
+#include <hc/testing/allocations.h>
 
 namespace hc {
 namespace {
@@ -114,19 +91,16 @@ TEST_F(RunningModule, IsTracedFromACommandOn) {
   auto sink = sink_of(uri("in"));
   auto trace = source_of(uri("trace"));
   start_managed(module, {"--in=" + uri("in")});
-  EXPECT_EQ(rows_of(next(*reports_, Report::Links)).size(), 1U);
-  ASSERT_TRUE(send_command(*control_, "link out trace=" + uri("trace")));
-  EXPECT_EQ(rows_of(next(*reports_, Report::Links))[1], "out trace " + uri("trace"));
+  EXPECT_EQ(next_links().size(), 1U);
+  EXPECT_EQ(relink("link out trace=" + uri("trace"))[1], "out trace " + uri("trace"));
   ASSERT_TRUE(sink->send(at(table({1.0}), 1000, 7)));
-  Message message;
-  ASSERT_TRUE(*receive(*trace, message));  // while it runs
+  Message message = next(*trace);  // while it runs
   EXPECT_EQ(
       words(read_trace(message)),
       (std::vector<std::string>{"took in 0 7 1000", "began in 0 7 1000", "ended in 0 7 1000"}));
-  ASSERT_TRUE(send_command(*control_, "unlink out trace=" + uri("trace")));
-  EXPECT_EQ(rows_of(next(*reports_, Report::Links)).size(), 1U);
+  EXPECT_EQ(relink("unlink out trace=" + uri("trace")).size(), 1U);
   EXPECT_FALSE(*receive(*trace, message));
-  ASSERT_TRUE(send_command(*control_, "unlink out trace=" + uri("trace")));
+  command("unlink out trace=" + uri("trace"));
   EXPECT_EQ(read_log(next(*reports_, Report::Log))->text,
             "command \"unlink out trace=" + uri("trace") + "\": there is no such link");
   ASSERT_TRUE(sink->close());
@@ -141,7 +115,7 @@ TEST_F(RunningModule, GoesOnWhenNobodyReadsItsTrace) {
   auto sink = sink_of(uri("in"));
   auto trace = source_of(uri("trace"));
   start_managed(module, {"--in=" + uri("in"), "--out=trace=" + uri("trace")});
-  EXPECT_EQ(rows_of(next(*reports_, Report::Links)).size(), 2U);
+  EXPECT_EQ(next_links().size(), 2U);
   trace.reset();
   for (int i = 0; i < 2; ++i) {
     ASSERT_TRUE(sink->send(at(table({1.0}), 1000, i)));
@@ -185,8 +159,8 @@ class TracedEffort : public RunningModule {
     int handled = 0;
     module.on(in, [&](const Doubles& message) {
       ++handled;
-      if (handled == kBegin) begin = {allocations, clock.looks, 0};
-      if (handled == kEnd) end = {allocations, clock.looks, 0};
+      if (handled == kBegin) begin = {hc::allocations.count, clock.looks, 0};
+      if (handled == kEnd) end = {hc::allocations.count, clock.looks, 0};
       out.send(table({2 * message.numbers()[0]}));
     });
     std::filesystem::remove(trace_);
@@ -196,8 +170,7 @@ class TracedEffort : public RunningModule {
     reports_ = source_of(uri("reports"));
     for (const auto& command : commands) EXPECT_TRUE(send_command(*control_, command));
     words.insert(words.end(), {"--manage=" + uri("reports"), "--control=" + uri("control")});
-    start(module, words);
-    EXPECT_EQ(join(), 0);
+    EXPECT_EQ(run(module, words), 0);
     control_.reset();
     reports_.reset();
     EXPECT_EQ(handled, kEnd + 1);

@@ -4,55 +4,23 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
-#include <cstdlib>
 #include <cstring>
-#include <new>
 #include <vector>
 
 #include <hc/mtp/codec.h>
-
-namespace {
-
-std::atomic<std::size_t> allocated = 0;  // bytes that operator new has given
-
-[[maybe_unused]] void* counted(std::size_t size, std::size_t alignment) {
-  allocated += size;
-  void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-  if (memory == nullptr) std::abort();
-  return memory;
-}
-
-}  // namespace
-
-// Out of line, since GCC takes an inlined std::free() for the wrong end of what `new` gave.
-// ThreadSanitizer has these itself and lets nobody put others in; nothing is counted there.
-#if !defined(__has_feature)
-#define __has_feature(feature) 0
-#endif
-#if !__has_feature(thread_sanitizer)
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  return counted(size, 16);
-}
-[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-  return counted(size, static_cast<std::size_t>(alignment));
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
-#endif
+#include <hc/testing/allocations.h>
 
 namespace hc {
 namespace {
+
+/// Gives a reader what it has space for, but no more than `most`; the rest stays.
+void feed(StreamReader& reader, std::string_view& bytes, std::size_t most = SIZE_MAX) {
+  const auto space = reader.space();
+  const std::size_t size = std::min({most, space.size(), bytes.size()});
+  std::memcpy(space.data(), bytes.data(), size);
+  reader.commit(size);
+  bytes.remove_prefix(size);
+}
 
 /// Feeds a stream in pieces; takes all messages there are, and the error or end behind them.
 struct Reading {
@@ -74,11 +42,7 @@ Reading read_all(std::string_view bytes, std::size_t piece, StreamReader& reader
       continue;
     }
     if (bytes.empty()) break;
-    auto space = reader.space();
-    std::size_t size = std::min({piece, space.size(), bytes.size()});
-    std::memcpy(space.data(), bytes.data(), size);
-    reader.commit(size);
-    bytes.remove_prefix(size);
+    feed(reader, bytes, piece);
   }
   reading.end = reader.finish();
   return reading;
@@ -179,19 +143,13 @@ TEST(StreamReader, MemoryIsUsedAgainWhenNobodyHoldsIt) {
   std::string bytes = encode(filled(kPicture, 800, 600));
   StreamReader reader;
   Message message;
-  std::size_t after_first = 0;
+  std::int64_t after_first = 0;
   for (int i = 0; i < 20; ++i) {
     std::string_view rest = bytes;
-    while (!*reader.next(message)) {
-      auto space = reader.space();
-      std::size_t size = std::min(space.size(), rest.size());
-      std::memcpy(space.data(), rest.data(), size);
-      reader.commit(size);
-      rest.remove_prefix(size);
-    }
-    if (i == 1) after_first = allocated;
+    while (!*reader.next(message)) feed(reader, rest);
+    if (i == 1) after_first = allocations.bytes;
   }
-  EXPECT_EQ(allocated, after_first);
+  EXPECT_EQ(allocations.bytes, after_first);
 }
 
 TEST(StreamReader, ElementsOfALargeMessageAfterAnotherAreReadWhereTheyStay) {
@@ -203,16 +161,12 @@ TEST(StreamReader, ElementsOfALargeMessageAfterAnotherAreReadWhereTheyStay) {
     std::string_view rest = bytes;
     Message message;
     while (!*reader.next(message)) {
-      auto missing = reader.missing();
-      auto space = reader.space();
-      if (missing > 0) {
+      if (auto missing = reader.missing(); missing > 0) {
+        const auto space = reader.space();
         EXPECT_TRUE(is_first || space.size() == missing);
         in_place += std::min(space.size(), rest.size());
       }
-      std::size_t size = std::min(space.size(), rest.size());
-      std::memcpy(space.data(), rest.data(), size);
-      reader.commit(size);
-      rest.remove_prefix(size);
+      feed(reader, rest);
     }
     EXPECT_EQ(message.characters(), sent.characters());
     EXPECT_EQ(reader.missing(), 0U);
@@ -237,26 +191,12 @@ TEST(StreamReader, R24_PromisesCostNothing) {
       "1 7 0 0 8 0 40102 1 7 1 1\n268435456\nabc",
   };
   for (const auto& bytes : hostile) {
-    std::size_t before = allocated;
+    const auto before = allocations.bytes;
     {
       StreamReader reader;
-      Message message;
-      std::string_view rest = bytes;
-      Status end;
-      while (true) {
-        auto got = reader.next(message);
-        if (!got) end = got.error();
-        if (!got || rest.empty()) break;
-        auto space = reader.space();
-        std::size_t size = std::min(space.size(), rest.size());
-        std::memcpy(space.data(), rest.data(), size);
-        reader.commit(size);
-        rest.remove_prefix(size);
-      }
-      if (end) end = reader.finish();
-      EXPECT_FALSE(end) << bytes.substr(0, 60);
+      EXPECT_FALSE(read_all(bytes, SIZE_MAX, reader).end) << bytes.substr(0, 60);
     }
-    EXPECT_LT(allocated - before, (std::size_t{1} << 20) + 100'000) << bytes.substr(0, 60);
+    EXPECT_LT(allocations.bytes - before, (1 << 20) + 100'000) << bytes.substr(0, 60);
   }
 }
 

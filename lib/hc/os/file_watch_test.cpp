@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include <hc/os/descriptor.h>
+#include <hc/testing/files.h>
 
 namespace hc {
 namespace {
@@ -20,12 +21,7 @@ namespace fs = std::filesystem;
 
 class FileWatchTest : public ::testing::Test {
  protected:
-  FileWatchTest() {
-    std::string pattern = ::testing::TempDir() + "file_watch.XXXXXX";
-    folder_ = ::mkdtemp(pattern.data());
-    fs::create_directory(folder_ / "sub");
-  }
-  ~FileWatchTest() override { fs::remove_all(folder_); }
+  FileWatchTest() { fs::create_directory(folder_ / "sub"); }
 
   void write(const std::string& name, const char* text = "text\n") const {
     std::ofstream(folder_ / name) << text;
@@ -45,7 +41,7 @@ class FileWatchTest : public ::testing::Test {
   std::unique_ptr<Loop> loop_ = std::move(*Loop::make());
   int calls_ = 0;
   std::unique_ptr<FileWatch> watch_;
-  fs::path folder_;
+  Folder folder_;
 };
 
 /// A disk that hangs: who looks for a file on it waits until this goes.

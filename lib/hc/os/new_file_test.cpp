@@ -4,21 +4,18 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <atomic>
-#include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <hc/os/program.h>
+#include <hc/testing/files.h>
 #include <hc/testing/must.h>
 
 namespace hc {
@@ -28,12 +25,6 @@ namespace fs = std::filesystem;
 
 class NewFiles : public ::testing::Test {
  protected:
-  NewFiles() {
-    std::string name = (fs::temp_directory_path() / "hc-test-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
-  }
-  ~NewFiles() override { fs::remove_all(folder_); }
-
   [[nodiscard]] std::string at(const std::string& name) const { return folder_ / name; }
   /// Begins a file and writes to it; its name in the folder.
   [[nodiscard]] std::string begin(const std::string& name, std::string_view contents) const {
@@ -41,13 +32,10 @@ class NewFiles : public ::testing::Test {
     EXPECT_TRUE(write_all(file.descriptor.get(), contents));
     return fs::path(file.path).filename();
   }
-  [[nodiscard]] std::string contents(const std::string& name) const {
-    std::ifstream file(at(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  [[nodiscard]] std::string contents(const std::string& name) const { return bytes_of(at(name)); }
 
  private:
-  fs::path folder_;
+  Folder folder_;
 };
 
 TEST_F(NewFiles, WhatHasContentsStays) {
@@ -116,16 +104,11 @@ TEST(FreeName, OfTheWorkingFolderIsBesideIt) {
 
 TEST_F(NewFiles, AFileIsReplacedWholeOrNotAtAll) {
   ASSERT_TRUE(replace_file(at("x"), "first"));
-  rlimit limit{};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
-  const rlimit small{4, limit.rlim_max};
-  auto* before = std::signal(SIGXFSZ, SIG_IGN);
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-  const auto replaced = replace_file(at("x"), "second");
-  ::setrlimit(RLIMIT_FSIZE, &limit);
-  std::signal(SIGXFSZ, before);
-  ASSERT_FALSE(replaced);
-  EXPECT_NE(replaced.error().detail.find("File too large"), std::string::npos);
+  {
+    const FullDisk full(4);
+    EXPECT_NE(refused(replace_file(at("x"), "second")).detail.find("File too large"),
+              std::string::npos);
+  }
   EXPECT_EQ(contents("x"), "first");
   EXPECT_FALSE(fs::exists(at("x.unfinished")));
 }

@@ -42,16 +42,10 @@ TEST_P(LinkConformance, NothingIsNoEnd) {
 
 TEST_P(LinkConformance, ASlowReaderLosesNothing) {
   open();
-  std::thread sender([&] {
-    for (int i = 0; i < 500; ++i) ASSERT_TRUE(sink_->send(numbered(i, 100'000)));
-    ASSERT_TRUE(sink_->close());
-  });
-  Message message;
+  auto sender = send_all(*sink_, 500, 100'000);
   for (int i = 0; i < 500; ++i) {
     // One look at the descriptor between any two messages, so that the sender runs ahead.
-    auto got = receive(*source_, message);
-    ASSERT_TRUE(got && *got);
-    ASSERT_EQ(message.header.seq, i);
+    ASSERT_EQ(next(*source_).header.seq, i);
     std::this_thread::yield();
   }
   sender.join();
@@ -89,16 +83,13 @@ TEST_P(LinkConformance, AReaderThatTakesNothingIsGivenUpUntilItDoes) {
 
 TEST_P(LinkConformance, AMessageMayBeHeldForAsLongAsOneLikes) {
   open();
-  std::thread sender([&] {
-    for (int i = 0; i < 100; ++i) ASSERT_TRUE(sink_->send(numbered(i, 1 + i * 500)));
-    ASSERT_TRUE(sink_->close());
-  });
-  std::vector<Message> held(100);
-  for (auto& message : held) ASSERT_TRUE(*receive(*source_, message));
+  const auto size = [](int i) { return 1 + i * 500; };
+  auto sender = send_all(*sink_, 100, size);
+  std::vector<Message> held;
+  for (int i = 0; i < 100; ++i) held.push_back(next(*source_));
   sender.join();
   for (int i = 0; i < 100; ++i)
-    EXPECT_EQ(held[static_cast<std::size_t>(i)].characters(),
-              numbered(i, 1 + i * 500).characters());
+    EXPECT_EQ(held[static_cast<std::size_t>(i)].characters(), numbered(i, size(i)).characters());
 }
 
 TEST_P(LinkConformance, AReaderThatLeavesIsNoticed) {
@@ -116,15 +107,10 @@ TEST_P(LinkConformance, AReaderThatLeavesIsNoticed) {
 TEST_P(LinkConformance, SmallAndLargeOnesStayInOrder) {
   open();
   constexpr int kCount = 2000;
-  std::thread sender([&] {
-    for (int i = 0; i < kCount; ++i)
-      ASSERT_TRUE(sink_->send(numbered(i, i % 100 == 99 ? 200'000 : i % 50)));
-    ASSERT_TRUE(sink_->close());
-  });
-  for (int i = 0; i < kCount; ++i) {
-    ASSERT_EQ(next(*source_).characters(),
-              numbered(i, i % 100 == 99 ? 200'000 : i % 50).characters());
-  }
+  const auto size = [](int i) { return i % 100 == 99 ? 200'000 : i % 50; };
+  auto sender = send_all(*sink_, kCount, size);
+  for (int i = 0; i < kCount; ++i)
+    ASSERT_EQ(next(*source_).characters(), numbered(i, size(i)).characters());
   sender.join();
 }
 

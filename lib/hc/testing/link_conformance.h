@@ -54,6 +54,16 @@ class Stop {
   Event event_ = must(Event::make());
 };
 
+/// What a link logged.
+struct Warnings {
+  std::vector<std::string> lines;
+  LinkOptions options() {
+    LinkOptions options;
+    options.log = [this](Level, std::string_view line) { lines.emplace_back(line); };
+    return options;
+  }
+};
+
 /// Sends a message by another thread, as the sink may wait for its reader; gives what comes.
 inline Message carry(Sink& sink, Source& source, const Message& message) {
   std::thread sender([&] { EXPECT_TRUE(sink.send(message)); });
@@ -76,6 +86,17 @@ inline Message numbered(std::int64_t seq, std::int32_t size) {
   return std::move(draft).finish();
 }
 
+/// Sends messages 0, 1, … by another thread, and closes the sink. @param size  of each.
+inline std::thread send_all(Sink& sink, int count, std::function<std::int32_t(int)> size) {
+  return std::thread([&sink, count, size = std::move(size)] {
+    for (int i = 0; i < count; ++i) ASSERT_TRUE(sink.send(numbered(i, size(i))));
+    ASSERT_TRUE(sink.close());
+  });
+}
+inline std::thread send_all(Sink& sink, int count, std::int32_t size) {
+  return send_all(sink, count, [size](int) { return size; });
+}
+
 // Tests that use the helpers above alone need not run the suite.
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(LinkConformance);
 
@@ -95,10 +116,7 @@ class LinkConformance : public ::testing::TestWithParam<Transport> {
 
   /// Sends from another thread, takes here, compares.
   void transfer(int count, std::int32_t size) {
-    std::thread sender([&] {
-      for (int i = 0; i < count; ++i) ASSERT_TRUE(sink_->send(numbered(i, size)));
-      ASSERT_TRUE(sink_->close());
-    });
+    auto sender = send_all(*sink_, count, size);
     Message message;
     for (int i = 0; i < count; ++i) {
       auto got = receive(*source_, message);

@@ -56,16 +56,6 @@ inline std::vector<Transport> both_ways(const SocketScheme& scheme) {
           {scheme.name + "_sink_listens", sink_listens, true, true}};
 }
 
-/// What a link logged.
-struct Warnings {
-  std::vector<std::string> lines;
-  LinkOptions options() {
-    LinkOptions options;
-    options.log = [this](Level, std::string_view line) { lines.emplace_back(line); };
-    return options;
-  }
-};
-
 /// Takes from a source that gets no message, until it has logged something.
 inline void await_warning(Source& source, const Warnings& warnings) {
   Message message;

@@ -8,6 +8,8 @@
 namespace hc::testing {
 namespace {
 
+class ShmRoom : public ShmLink {};
+
 /// Takes what is there, and gives how many messages it was.
 int drain(Source& source, Message& message) {
   int count = 0;
@@ -15,72 +17,66 @@ int drain(Source& source, Message& message) {
   return count;
 }
 
-TEST(ShmRoom, ASlotIsUsedAgainOnlyWhenNobodyHoldsIt) {
-  auto name = fresh_name();
-  auto sink = sink_of(name + "?memory=2M");
-  auto source = source_of(name);
-  ASSERT_TRUE(sink->send(numbered(1, kLarge)));
-  Message held, message;
-  ASSERT_TRUE(*receive(*source, held));
+TEST_F(ShmRoom, ASlotIsUsedAgainOnlyWhenNobodyHoldsIt) {
+  open("?memory=2M");
+  ASSERT_TRUE(sink_->send(numbered(1, kLarge)));
+  const Message held = next(*source_);
   for (int i = 2; i < 200; ++i) {
-    ASSERT_TRUE(sink->send(numbered(i, kLarge)));
-    ASSERT_TRUE(*receive(*source, message));
+    ASSERT_TRUE(sink_->send(numbered(i, kLarge)));
+    const Message message = next(*source_);
     EXPECT_NE(message.elements.data(), held.elements.data());
     EXPECT_EQ(message.characters(), numbered(i, kLarge).characters());
   }
   EXPECT_EQ(held.characters(), numbered(1, kLarge).characters());
-  source.reset();
+  source_.reset();
   EXPECT_EQ(held.characters(), numbered(1, kLarge).characters());
 }
 
-TEST(ShmRoom, WhoKeepsTheLatestGetsItAndLosesTheOthers) {
+TEST_F(ShmRoom, WhoKeepsTheLatestGetsItAndLosesTheOthers) {
   for (auto size : {kSmall, kLarge}) {
-    auto name = fresh_name();
-    auto sink = sink_of(name + "?memory=2M");
-    auto source = source_of(name + "?keep=latest");
+    open("?memory=2M", "?keep=latest");
     constexpr int kCount = 5000;  // more than there are cells, more than fit into the memory
-    for (int i = 0; i < kCount; ++i) ASSERT_TRUE(sink->send(numbered(i, size)));
+    for (int i = 0; i < kCount; ++i) ASSERT_TRUE(sink_->send(numbered(i, size)));
     Message message;
-    ASSERT_EQ(drain(*source, message), 1);
-    ASSERT_TRUE(sink->send(numbered(kCount, size)));
-    EXPECT_EQ(next(*source).characters(), numbered(kCount, size).characters());
-    EXPECT_EQ(source->traffic().dropped_newer, static_cast<std::uint64_t>(kCount) - 1);
-    EXPECT_EQ(source->traffic().messages, 2U);
+    ASSERT_EQ(drain(*source_, message), 1);
+    ASSERT_TRUE(sink_->send(numbered(kCount, size)));
+    EXPECT_EQ(next(*source_).characters(), numbered(kCount, size).characters());
+    EXPECT_EQ(source_->traffic().dropped_newer, static_cast<std::uint64_t>(kCount) - 1);
+    EXPECT_EQ(source_->traffic().messages, 2U);
   }
 }
 
-TEST(ShmRoom, WhoKeepsMoreThanFitsLosesTheOldest) {
-  auto name = fresh_name();
-  auto sink = sink_of(name + "?memory=2M&keep=30");
-  auto source = source_of(name);
-  for (int i = 0; i < 100; ++i) ASSERT_TRUE(sink->send(numbered(i, kLarge)));
+TEST_F(ShmRoom, WhoKeepsMoreThanFitsLosesTheOldest) {
+  open("?memory=2M&keep=30");
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(sink_->send(numbered(i, kLarge)));
   std::vector<std::int64_t> seen;
   Message message;
-  while (*source->take(message) == Got::Message) seen.push_back(message.header.seq);
+  while (*source_->take(message) == Got::Message) seen.push_back(message.header.seq);
   ASSERT_FALSE(seen.empty());
   EXPECT_EQ(seen.back(), 99);
   for (std::size_t i = 1; i < seen.size(); ++i) EXPECT_EQ(seen[i], seen[i - 1] + 1);
-  EXPECT_EQ(source->traffic().dropped_newer, 70U);
-  EXPECT_EQ(seen.size() + source->traffic().dropped_memory, 30U);
-  EXPECT_GT(source->traffic().dropped_memory, 0U);  // fewer fit
+  EXPECT_EQ(source_->traffic().dropped_newer, 70U);
+  EXPECT_EQ(seen.size() + source_->traffic().dropped_memory, 30U);
+  EXPECT_GT(source_->traffic().dropped_memory, 0U);  // fewer fit
 }
 
-TEST(ShmRoom, ASlowReaderDoesNotHoldUpAnother) {
+TEST_F(ShmRoom, ASlowReaderOfTheLatestHoldsUpNobody) {
   auto name = fresh_name();
   auto sink = sink_of(name + "?readers=2&memory=2M");
   auto slow = source_of(name + "?keep=latest");
   auto quick = source_of(name);
-  Message message;
-  for (int i = 0; i < 3000; ++i) {
+  constexpr int kCount = 5000;
+  for (int i = 0; i < kCount; ++i) {
     ASSERT_TRUE(sink->send(numbered(i, i % 2 == 0 ? kSmall : kLarge)));
-    ASSERT_TRUE(*receive(*quick, message));
-    ASSERT_EQ(message.header.seq, i);
+    ASSERT_EQ(next(*quick).header.seq, i);
   }
+  Message message;
   EXPECT_EQ(drain(*slow, message), 1);
-  EXPECT_EQ(slow->traffic().dropped_newer, 2999U);
+  EXPECT_EQ(message.header.seq, kCount - 1);
+  EXPECT_EQ(slow->traffic().dropped_newer, kCount - 1U);
 }
 
-TEST(ShmRoom, AReaderThatHoldsTooManyGetsCopiesWhichIsLogged) {
+TEST_F(ShmRoom, AReaderThatHoldsTooManyGetsCopiesWhichIsLogged) {
   auto name = fresh_name();
   auto sink = sink_of(name);
   int told = 0;
@@ -90,57 +86,46 @@ TEST(ShmRoom, AReaderThatHoldsTooManyGetsCopiesWhichIsLogged) {
     ++told;
   };
   auto source = source_of(name, options);
-  std::vector<Message> held(100);
+  std::vector<Message> held;
   for (int i = 0; i < 100; ++i) {
     ASSERT_TRUE(sink->send(numbered(i, kLarge)));
-    ASSERT_TRUE(*receive(*source, held[static_cast<std::size_t>(i)]));
+    held.push_back(next(*source));
   }
   EXPECT_EQ(told, 1);
   for (int i = 0; i < 100; ++i)
     EXPECT_EQ(held[static_cast<std::size_t>(i)].characters(), numbered(i, kLarge).characters());
 }
 
-TEST(ShmRoom, AReaderThatHoldsAllDoesNotStallAPublisherThatDrops) {
-  auto name = fresh_name();
-  auto sink = sink_of(name + "?keep=latest&memory=2M");
-  auto source = source_of(name);
+TEST_F(ShmRoom, AReaderThatHoldsAllDoesNotStallAPublisherThatDrops) {
+  open("?keep=latest&memory=2M");
   std::vector<Message> held(100);
   int count = 0;
   for (int i = 0; i < 100; ++i) {
-    ASSERT_TRUE(sink->send(numbered(i, kLarge)));
-    if (*source->take(held[static_cast<std::size_t>(i)]) == Got::Message) ++count;
+    ASSERT_TRUE(sink_->send(numbered(i, kLarge)));
+    if (*source_->take(held[static_cast<std::size_t>(i)]) == Got::Message) ++count;
   }
   EXPECT_LT(count, 100);
-  EXPECT_EQ(sink->traffic().messages, 100U);
-  EXPECT_EQ(sink->traffic().dropped_memory + static_cast<std::uint64_t>(count), 100U);
+  EXPECT_EQ(sink_->traffic().messages, 100U);
+  EXPECT_EQ(sink_->traffic().dropped_memory + static_cast<std::uint64_t>(count), 100U);
 }
 
-TEST(ShmRoom, APublisherWaitsForRoomUntilItIsLetGo) {
-  auto name = fresh_name();
-  auto sink = sink_of(name + "?memory=2M");
-  auto source = source_of(name);
+TEST_F(ShmRoom, APublisherWaitsForRoomUntilItIsLetGo) {
+  open("?memory=2M");
   std::vector<Message> held;
-  std::thread publisher([&] {
-    for (int i = 0; i < 100; ++i) ASSERT_TRUE(sink->send(numbered(i, kLarge)));
-    ASSERT_TRUE(sink->close());
-  });
-  Message message;
+  auto publisher = send_all(*sink_, 100, kLarge);
   for (int i = 0; i < 100; ++i) {
-    ASSERT_TRUE(*receive(*source, message)) << i;
-    ASSERT_EQ(message.header.seq, i);
-    held.push_back(message);
+    held.push_back(next(*source_));
+    ASSERT_EQ(held.back().header.seq, i);
     if (held.size() == 7) held.clear();
   }
   publisher.join();
 }
 
-TEST(ShmRoom, AProgramThatKeepsAllLoansGetsAnError) {
-  auto name = fresh_name();
-  auto sink = sink_of(name + "?memory=2M");
-  auto source = source_of(name);
+TEST_F(ShmRoom, AProgramThatKeepsAllLoansGetsAnError) {
+  open("?memory=2M");
   std::vector<Draft> loans;
-  for (int i = 0; i < 30; ++i) loans.push_back(sink->loan(numbered(i, kLarge).header));
-  EXPECT_EQ(refused(sink->send(numbered(0, kLarge))).text(),
+  for (int i = 0; i < 30; ++i) loans.push_back(sink_->loan(numbered(i, kLarge).header));
+  EXPECT_EQ(refused(sink_->send(numbered(0, kLarge))).text(),
             "TooLarge: no room left: this program holds all of the memory");
 }
 

@@ -11,6 +11,8 @@
 namespace hc::testing {
 namespace {
 
+class Shm : public ShmLink {};
+
 INSTANTIATE_TEST_SUITE_P(Shm, LinkConformance,
                          ::testing::Values(Transport{"shm",
                                                      [] {
@@ -21,7 +23,7 @@ INSTANTIATE_TEST_SUITE_P(Shm, LinkConformance,
                                                      true, true, true}),
                          [](const auto& test) { return test.param.name; });
 
-TEST(Shm, EachReaderHasARateOfItsOwn) {
+TEST_F(Shm, EachReaderHasARateOfItsOwn) {
   auto name = fresh_name();
   auto sink = sink_of(name + "?readers=2");
   auto slow = source_of(name + "?rate=1&keep=latest"), fast = source_of(name);
@@ -44,31 +46,26 @@ TEST(Shm, EachReaderHasARateOfItsOwn) {
   EXPECT_FALSE(*receive(*slow, message));
 }
 
-TEST(Shm, LargeElementsAreReadWhereTheyWereWritten) {
-  auto name = fresh_name();
-  auto sink = sink_of(name);
-  auto source = source_of(name);
+TEST_F(Shm, LargeElementsAreReadWhereTheyWereWritten) {
+  open();
   auto header = numbered(0, kLarge).header;
-  Draft draft = sink->loan(header);
+  Draft draft = sink_->loan(header);
   std::iota(draft.view<std::uint8_t>().numbers().begin(),
             draft.view<std::uint8_t>().numbers().end(), std::uint8_t{0});
   const auto* written = draft.elements().data();
   Message sent = std::move(draft).finish();
-  ASSERT_TRUE(sink->send(sent));
-  ASSERT_TRUE(sink->send(sent));  // once more, without a copy
-  Message first, second;
-  ASSERT_TRUE(*receive(*source, first));
-  EXPECT_EQ(first.elements.data(), next(*source).elements.data());
+  ASSERT_TRUE(sink_->send(sent));
+  ASSERT_TRUE(sink_->send(sent));  // once more, without a copy
+  const Message first = next(*source_);
+  EXPECT_EQ(first.elements.data(), next(*source_).elements.data());
   EXPECT_EQ(first.characters(), sent.characters());
   EXPECT_EQ(sent.elements.data(), written);
 }
 
 /// Elements of every size about that of a cell, with headers of several lengths; in memory that
 /// begins anywhere and ends with them, so that what is read beyond it is noticed (ASan).
-TEST(Shm, EverySizeArrivesWhole) {
-  auto name = fresh_name();
-  auto sink = sink_of(name);
-  auto source = source_of(name);
+TEST_F(Shm, EverySizeArrivesWhole) {
+  open();
   for (std::size_t shift = 0; shift < 9; ++shift)
     for (std::int32_t size = 0; size <= 260; ++size) {
       std::vector<std::byte> memory(shift + static_cast<std::size_t>(size));
@@ -77,40 +74,34 @@ TEST(Shm, EverySizeArrivesWhole) {
       Message sent;
       sent.header = numbered(size % 3 == 0 ? 1'234'567'890 : size, size).header;
       sent.elements = std::span(memory).subspan(shift);
-      ASSERT_TRUE(sink->send(sent));
-      Message message;
-      ASSERT_TRUE(*receive(*source, message));
+      ASSERT_TRUE(sink_->send(sent));
+      const Message message = next(*source_);
       ASSERT_EQ(message.header, sent.header);
       ASSERT_EQ(message.characters(), sent.characters()) << size;
     }
 }
 
-TEST(Shm, TextTravelsWithItsHeaderAndWithoutBeingWritten) {
-  auto name = fresh_name();
-  auto sink = sink_of(name);
-  auto source = source_of(name);
+TEST_F(Shm, TextTravelsWithItsHeaderAndWithoutBeingWritten) {
+  open();
   Header header;
   header.info = {MatrixType::Position, 3, Scalar::F64, Encoding::Text};
   header.width = header.height = 1;
-  Draft draft = sink->loan(header);
+  Draft draft = sink_->loan(header);
   draft.view<double>().at(0, 0, 1) = 0.1;
-  ASSERT_TRUE(sink->send(std::move(draft).finish()));
-  Message message;
-  ASSERT_TRUE(*receive(*source, message));
+  ASSERT_TRUE(sink_->send(std::move(draft).finish()));
+  const Message message = next(*source_);
   EXPECT_EQ(message.header.info, header.info);
   EXPECT_EQ(message.view<double>()->at(0, 0, 1), 0.1);
 }
 
-TEST(Shm, AMessageThatDoesNotFitIsRefused) {
-  auto name = fresh_name();
-  auto sink = sink_of(name + "?memory=2M");
-  auto source = source_of(name);
-  EXPECT_EQ(refused(sink->send(numbered(0, 3'000'000))).code, Code::TooLarge);
-  ASSERT_TRUE(sink->send(numbered(1, kLarge)));
-  next(*source);
+TEST_F(Shm, AMessageThatDoesNotFitIsRefused) {
+  open("?memory=2M");
+  EXPECT_EQ(refused(sink_->send(numbered(0, 3'000'000))).code, Code::TooLarge);
+  ASSERT_TRUE(sink_->send(numbered(1, kLarge)));
+  next(*source_);
 }
 
-TEST(Shm, SeveralSourcesAreWaitedForTogether) {
+TEST_F(Shm, SeveralSourcesAreWaitedForTogether) {
   auto first_name = fresh_name(), second_name = fresh_name();
   auto first_sink = sink_of(first_name), second_sink = sink_of(second_name);
   auto first = source_of(first_name), second = source_of(second_name);
@@ -143,7 +134,7 @@ TEST(Shm, SeveralSourcesAreWaitedForTogether) {
   publisher.join();
 }
 
-TEST(Shm, APublisherThatWaitsCanBeStopped) {
+TEST_F(Shm, APublisherThatWaitsCanBeStopped) {
   auto name = fresh_name();
   Stop stop;
   auto sink = sink_of(name, stop.options());
@@ -158,7 +149,7 @@ TEST(Shm, APublisherThatWaitsCanBeStopped) {
   publisher.join();
 }
 
-TEST(Shm, AReaderThatWaitsCanBeStopped) {
+TEST_F(Shm, AReaderThatWaitsCanBeStopped) {
   for (const char* spin : {"0", "1000000"}) {
     auto name = fresh_name();
     Stop stop;

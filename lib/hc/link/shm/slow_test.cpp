@@ -12,25 +12,18 @@
 namespace hc::testing {
 namespace {
 
-TEST(ShmSlow, APublisherTakesMemoryFromWhoLosesMessagesWhileItWaitsForOthers) {
+class ShmSlow : public ShmLink {};
+
+TEST_F(ShmSlow, APublisherTakesMemoryFromWhoLosesMessagesWhileItWaitsForOthers) {
   auto name = fresh_name();
   auto sink = sink_of(name + "?readers=2&memory=2M");
   auto reader = source_of(name);
   auto lagging = source_of(name + "?keep=1000");  // more than fit into the memory
   constexpr int kCount = 100;
-  std::thread publisher([&] {
-    for (int i = 0; i < kCount; ++i) {
-      must(sink->send(numbered(i, kLarge)));
-    }
-    ASSERT_TRUE(sink->close());
-  });
-  Message message;
-  for (int i = 0; i < kCount; ++i) {
-    auto got = receive(*reader, message);
-    ASSERT_TRUE(got && *got);
-    ASSERT_EQ(message.header.seq, i);
-  }
+  auto publisher = send_all(*sink, kCount, kLarge);
+  for (int i = 0; i < kCount; ++i) ASSERT_EQ(next(*reader).header.seq, i);
   publisher.join();
+  Message message;
   while (*lagging->take(message) == Got::Message) {
   }
   EXPECT_EQ(message.header.seq, kCount - 1);
@@ -38,21 +31,19 @@ TEST(ShmSlow, APublisherTakesMemoryFromWhoLosesMessagesWhileItWaitsForOthers) {
 }
 
 /// A cell that is written again while it is read is no damage.
-TEST(ShmSlow, WhoIsOvertakenWhileItReadsGoesOn) {
-  auto name = fresh_name();
-  auto sink = sink_of(name + "?keep=latest&readers=1");
-  auto source = source_of(name + "?keep=" + std::to_string(internal::kCells));
+TEST_F(ShmSlow, WhoIsOvertakenWhileItReadsGoesOn) {
+  open("?keep=latest&readers=1", "?keep=" + std::to_string(internal::kCells));
   std::atomic<bool> done{false};
   std::thread publisher([&] {
     Message small = numbered(1, kSmall);
-    Message large = sink->loan(numbered(2, kLarge).header).finish();  // sent without a copy
+    Message large = sink_->loan(numbered(2, kLarge).header).finish();  // sent without a copy
     // No cell gets the same kind twice in a row.
-    for (int i = 0; i < 2'000'000; ++i) ASSERT_TRUE(sink->send(i % 3 == 0 ? small : large));
+    for (int i = 0; i < 2'000'000; ++i) ASSERT_TRUE(sink_->send(i % 3 == 0 ? small : large));
     done = true;
   });
   Message message;
   while (!done) {
-    auto got = must(source->take(message));
+    auto got = must(source_->take(message));
     if (got == Got::Message) {
       ASSERT_EQ(message.elements.size(), message.header.element_bytes());
     }
@@ -61,20 +52,18 @@ TEST(ShmSlow, WhoIsOvertakenWhileItReadsGoesOn) {
 }
 
 /// A slot is not written again while somebody reads it, however late he came to hold it.
-TEST(ShmSlow, WhatIsTakenBackJustThenIsWholeOrLost) {
+TEST_F(ShmSlow, WhatIsTakenBackJustThenIsWholeOrLost) {
   constexpr std::int32_t kBytes = 4096;
-  auto name = fresh_name();
-  auto sink = sink_of(name + "?keep=latest&readers=1&memory=2M");
-  auto source = source_of(name + "?keep=" + std::to_string(internal::kCells));
+  open("?keep=latest&readers=1&memory=2M", "?keep=" + std::to_string(internal::kCells));
   std::atomic<bool> done{false};
   std::thread publisher([&] {
-    for (int i = 0; i < 1'000'000; ++i) ASSERT_TRUE(sink->send(numbered(i, kBytes)));
+    for (int i = 0; i < 1'000'000; ++i) ASSERT_TRUE(sink_->send(numbered(i, kBytes)));
     done = true;
   });
   Message message;
   std::uint64_t wrong = 0;
   while (!done) {
-    auto got = must(source->take(message));
+    auto got = must(source_->take(message));
     if (got != Got::Message) continue;
     auto right = static_cast<std::byte>(message.header.seq * 7 + kBytes);
     for (std::size_t at = 0; at < message.elements.size(); at += 64)
@@ -85,7 +74,7 @@ TEST(ShmSlow, WhatIsTakenBackJustThenIsWholeOrLost) {
 }
 
 /// Those it waits for leave while it looks for room, with messages that they hold.
-TEST(ShmSlow, ReadersComeAndGoWhileThePublisherWaits) {
+TEST_F(ShmSlow, ReadersComeAndGoWhileThePublisherWaits) {
   auto name = fresh_name();
   auto sink = sink_of(name + "?memory=2M");
   std::atomic<bool> done{false};

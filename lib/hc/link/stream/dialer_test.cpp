@@ -68,6 +68,19 @@ class DialerTest : public ::testing::Test {
     EXPECT_TRUE(made) << made.error().text();
     return made && *made;
   }
+  /// The peer goes. @param was_of_use  as lost() has it.
+  void lose(Dialer& dialer, bool was_of_use = true) {
+    listening_ = {};
+    dialer.lost(now_, was_of_use, "it has gone");
+  }
+  /// Tries until a moment, in vain.
+  void fail_until(Dialer& dialer, TimePoint end) {
+    for (; now_ < end; now_ = dialer.due()) EXPECT_FALSE(connects(dialer));
+    EXPECT_EQ(now_, end);  // due() says no later
+  }
+  void log(Dialer& dialer) {
+    dialer.log_to([&](Level, std::string_view line) { lines_.emplace_back(line); });
+  }
   /// Lets tries fail until each pause is drawn from 5 s.
   void tire(Dialer& dialer) {
     for (std::size_t i = 0; i < kBounds.size(); ++i) {
@@ -81,6 +94,7 @@ class DialerTest : public ::testing::Test {
   std::function<Status(int)> admit_;
   ListeningSocket listening_;
   TimePoint now_{seconds(1000)};
+  std::vector<std::string> lines_;
 };
 
 TEST_F(DialerTest, ConnectsAtOnceWhereSomebodyListens) {
@@ -106,73 +120,63 @@ TEST_F(DialerTest, TriesNoSoonerThanItSays) {
 
 TEST_F(DialerTest, GivesUpWhenNobodyComesAndSaysWhy) {
   auto dialer = this->dialer(seconds(10), seconds(60));
-  const auto end = now_ + seconds(10);
-  for (; now_ < end; now_ = dialer.due()) EXPECT_FALSE(connects(dialer));
-  EXPECT_EQ(now_, end);  // due() says no later
-  auto made = dialer.dial(now_);
-  ASSERT_FALSE(made);
-  EXPECT_EQ(made.error().text(), "NotFound: no peer for 10 s: Connection refused");
+  fail_until(dialer, now_ + seconds(10));
+  EXPECT_EQ(dialer.dial(now_).error().text(), "NotFound: no peer for 10 s: Connection refused");
 }
 
 TEST_F(DialerTest, GivesUpWhenNobodyComesBack) {
   listen();
   auto dialer = this->dialer(seconds(60), seconds(10));
   EXPECT_TRUE(connects(dialer));
-  listening_ = {};
-  dialer.lost(now_, true, "it has gone");
-  const auto end = now_ + seconds(10);
-  for (; now_ < end; now_ = dialer.due()) EXPECT_FALSE(connects(dialer));
-  EXPECT_EQ(now_, end);
+  lose(dialer);
+  fail_until(dialer, now_ + seconds(10));
   EXPECT_EQ(dialer.dial(now_).error().text(), "Closed: no peer for 10 s: Connection refused");
 }
 
 TEST_F(DialerTest, LogsOnceThatItsFirstConnectionTakesLong) {
   auto dialer = this->dialer();
-  std::vector<std::string> lines;
-  auto log = [&](Level, std::string_view line) { lines.emplace_back(line); };
-  dialer.log_to(log);
+  log(dialer);
   const auto begin = now_;
   now_ = begin + Dialer::kQuiet - nanoseconds(1);
   EXPECT_FALSE(connects(dialer));
-  EXPECT_TRUE(lines.empty());
+  EXPECT_TRUE(lines_.empty());
   for (int i : {1, 2}) {
     now_ = begin + i * Dialer::kQuiet;
     EXPECT_FALSE(connects(dialer));
-    EXPECT_EQ(lines,
+    EXPECT_EQ(lines_,
               std::vector<std::string>{"no peer yet (Connection refused); giving up after 60 s"});
   }
-  lines.clear();
+  lines_.clear();
   auto patient = this->dialer(seconds(86'400));
-  patient.log_to(log);
+  log(patient);
   now_ += Dialer::kQuiet;
   EXPECT_FALSE(connects(patient));
-  EXPECT_EQ(lines, std::vector<std::string>{"no peer yet (Connection refused); waiting"});
+  EXPECT_EQ(lines_, std::vector<std::string>{"no peer yet (Connection refused); waiting"});
 }
 
 TEST_F(DialerTest, LogsALossUnlessAConnectionIsInUseBeforeThatIsDue) {
   listen();
   auto dialer = this->dialer();
-  std::vector<std::string> lines;
-  dialer.log_to([&](Level, std::string_view line) { lines.emplace_back(line); });
+  log(dialer);
   EXPECT_TRUE(connects(dialer));
   dialer.in_use();
-  EXPECT_TRUE(lines.empty());
+  EXPECT_TRUE(lines_.empty());
   dialer.lost(now_, true, "sender closed", milliseconds(200));
   EXPECT_TRUE(connects(dialer));
   dialer.in_use();
-  EXPECT_TRUE(lines.empty());
+  EXPECT_TRUE(lines_.empty());
   dialer.lost(now_, true, "reset");
-  EXPECT_EQ(lines, std::vector<std::string>{"reset; reconnecting"});
+  EXPECT_EQ(lines_, std::vector<std::string>{"reset; reconnecting"});
   EXPECT_TRUE(connects(dialer));
   dialer.in_use();
-  EXPECT_EQ(lines.back(), "reconnected");
+  EXPECT_EQ(lines_.back(), "reconnected");
   listening_ = {};
   dialer.lost(now_, true, "sender closed", milliseconds(200));
   EXPECT_FALSE(connects(dialer));
-  EXPECT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines_.size(), 2U);
   now_ += milliseconds(200);
   EXPECT_FALSE(connects(dialer));
-  EXPECT_EQ(lines.back(), "sender closed; reconnecting");
+  EXPECT_EQ(lines_.back(), "sender closed; reconnecting");
 }
 
 TEST_F(DialerTest, AfterAConnectionOfUseItTriesAtOnceAndWithShortPauses) {
@@ -180,39 +184,29 @@ TEST_F(DialerTest, AfterAConnectionOfUseItTriesAtOnceAndWithShortPauses) {
   tire(dialer);
   listen();
   EXPECT_TRUE(connects(dialer));
-  listening_ = {};
-  dialer.lost(now_, true, "it has gone");
+  lose(dialer);
   EXPECT_EQ(dialer.due(), now_);
   tire(dialer);  // checks the bounds
 }
 
-TEST_F(DialerTest, AfterOneOfNoUseItGoesOnWithItsPauses) {
-  nanoseconds longest(0);
-  for (int i = 0; i < 20; ++i) {
-    auto dialer = this->dialer();
-    tire(dialer);
-    listen();
-    EXPECT_TRUE(connects(dialer));
-    now_ += internal::kFirstPause - nanoseconds(1);
-    dialer.lost(now_, false, "it has gone");
-    EXPECT_LE(dialer.due() - now_, internal::kLongestPause);
-    longest = std::max(longest, nanoseconds(dialer.due() - now_));
-    listening_ = {};
-  }
+TEST_F(DialerTest, AfterOneOfNoUseItGoesOnWithItsPausesUnlessItLived) {
+  const auto longest_after = [&](nanoseconds life) {
+    nanoseconds longest(0);
+    for (int i = 0; i < 20; ++i) {
+      auto dialer = this->dialer();
+      tire(dialer);
+      listen();
+      EXPECT_TRUE(connects(dialer));
+      now_ += life;
+      lose(dialer, false);
+      longest = std::max(longest, nanoseconds(dialer.due() - now_));
+    }
+    return longest;
+  };
+  const auto longest = longest_after(internal::kFirstPause - nanoseconds(1));
+  EXPECT_LE(longest, internal::kLongestPause);
   EXPECT_GT(longest, 3 * internal::kFirstPause);
-}
-
-TEST_F(DialerTest, AfterOneThatLivedItsPausesAreShortAgain) {
-  for (int i = 0; i < 20; ++i) {
-    auto dialer = this->dialer();
-    tire(dialer);
-    listen();
-    EXPECT_TRUE(connects(dialer));
-    now_ += internal::kFirstPause;
-    dialer.lost(now_, false, "it was killed");
-    EXPECT_LE(dialer.due() - now_, internal::kFirstPause);
-    listening_ = {};
-  }
+  EXPECT_LE(longest_after(internal::kFirstPause), internal::kFirstPause);
 }
 
 TEST_F(DialerTest, PatienceBeginsAnewWithEachLoss) {
@@ -220,8 +214,7 @@ TEST_F(DialerTest, PatienceBeginsAnewWithEachLoss) {
   auto dialer = this->dialer(seconds(10), seconds(10));
   EXPECT_TRUE(connects(dialer));
   now_ += seconds(100);
-  listening_ = {};
-  dialer.lost(now_, true, "it has gone");
+  lose(dialer);
   EXPECT_FALSE(connects(dialer));
   listen();
   now_ = dialer.due();

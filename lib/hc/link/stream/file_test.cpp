@@ -1,34 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <sys/resource.h>
 #include <sys/stat.h>
 
-#include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <tuple>
 
 #include <hc/mtp/codec.h>
+#include <hc/testing/files.h>
 #include <hc/testing/link_conformance.h>
 
 namespace hc::testing {
 namespace {
 namespace fs = std::filesystem;
-
-/// A folder that goes with the test.
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "hc-test-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path_); }
-  [[nodiscard]] std::string operator/(const char* name) const { return (path_ / name).string(); }
-
- private:
-  fs::path path_;
-};
 
 TEST(File, HoldsTheBytesOfTheWire) {
   Folder folder;
@@ -36,8 +20,7 @@ TEST(File, HoldsTheBytesOfTheWire) {
   ASSERT_TRUE(sink->send(numbered(1, 3)));
   ASSERT_TRUE(sink->send(numbered(2, 100000)));
   ASSERT_TRUE(sink->close());
-  std::ifstream file(folder / "eyes.mtp", std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string bytes = bytes_of(folder / "eyes.mtp");
   EXPECT_EQ(bytes, encode(numbered(1, 3)) + encode(numbered(2, 100000)));
   EXPECT_EQ(sink->traffic().bytes, bytes.size());
 
@@ -75,12 +58,6 @@ TEST(File, R40_IsReadOnBehindDamage) {
   EXPECT_EQ(next(*source).header.seq, 1);
   EXPECT_EQ(next(*source).header.seq, 2);
   EXPECT_FALSE(*receive(*source, message));
-}
-
-/// What a file contains.
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 void send_to(const std::string& uri, const Message& message, LogSink log = {}) {
@@ -151,48 +128,29 @@ TEST(File, AFullDiskIsReported) {
   EXPECT_EQ(refused(sink->send(numbered(0, 10))).detail, "write(): No space left on device");
 }
 
-/// Files become no larger, as on a full disk.
-class FullDisk : public ::testing::TestWithParam<std::tuple<int, std::string>> {
- protected:
-  FullDisk() {
-    EXPECT_EQ(::getrlimit(RLIMIT_FSIZE, &limit_), 0);
-    const rlimit small{100'000, limit_.rlim_max};
-    EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-  }
-  ~FullDisk() override {
-    ::setrlimit(RLIMIT_FSIZE, &limit_);
-    std::signal(SIGXFSZ, before_);
-  }
+class OnAFullDisk : public ::testing::TestWithParam<std::tuple<int, std::string>> {};
 
-  Folder folder_;
-
- private:
-  rlimit limit_{};
-  void (*before_)(int) = std::signal(SIGXFSZ, SIG_IGN);
-};
-
-TEST_P(FullDisk, LeavesWholeMessages) {
+TEST_P(OnAFullDisk, AreWholeMessages) {
   const auto& [size, options] = GetParam();
-  auto sink = sink_of("file:" + (folder_ / "eyes.mtp") + options);
+  const FullDisk full(100'000);
+  Folder folder;
+  auto sink = sink_of("file:" + (folder / "eyes.mtp") + options);
   Status sent;
   for (int i = 0; sent && i < 20'000; ++i) sent = sink->send(numbered(i, size));
   ASSERT_FALSE(sent);
   EXPECT_EQ(sent.error().detail, "write(): File too large");
   EXPECT_FALSE(sink->close());
 
-  auto source = source_of(folder_ / "eyes.mtp");
+  auto source = source_of(folder / "eyes.mtp");
   Message message;
-  while (true) {
-    auto got = must(receive(*source, message));
-    if (!got) break;
-  }
+  while (must(receive(*source, message))) continue;
   const auto traffic = sink->traffic();
   EXPECT_GT(source->traffic().messages, 0U);
   EXPECT_EQ(source->traffic().messages, traffic.messages - traffic.dropped_disconnect);
 }
 
 // With a rate, messages wait in the queue.
-INSTANTIATE_TEST_SUITE_P(SmallAndLarge, FullDisk,
+INSTANTIATE_TEST_SUITE_P(SmallAndLarge, OnAFullDisk,
                          ::testing::Combine(::testing::Values(100, 30'000),
                                             ::testing::Values(std::string(),
                                                               std::string("?rate=5000"))));
