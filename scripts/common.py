@@ -14,10 +14,11 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 def build_folder():
     """The folder of a build that is the first argument; without one, ends with what the script says
     of itself."""
-    folder = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "").resolve()
-    if not (folder / "CMakeCache.txt").exists():
-        sys.exit(sys.modules["__main__"].__doc__.strip())
-    return folder
+    given = "".join(sys.argv[1:2])
+    if not given or not pathlib.Path(given, "CMakeCache.txt").exists():
+        print(sys.modules["__main__"].__doc__.strip(), file=sys.stderr)
+        sys.exit(2)
+    return pathlib.Path(given).resolve()
 
 
 def machine():

@@ -630,6 +630,39 @@ TEST_F(Mcap, StaticFramesThatCannotBeReadAreAllRepeated) {
   EXPECT_EQ(topics_of(summary_of(written.files.back()))["/tf_static"], 2U);
 }
 
+TEST_F(Mcap, OfStaticFramesWithoutEndTheLatestAreRepeatedAndThoseThatCanBeRead) {
+  auto options = chunks_of();
+  options.frames = "head 3 robot 1 2 3 0 0 0 1";
+  record_images(in("fixed.mcap"), 1, options);
+  constexpr std::uint64_t kCount = 300, kSize = mcap::Storage::kMostLasting / 100;
+  const std::vector<std::byte> unknown(kSize, std::byte('x'));
+  ForeignFile file;
+  file.out.add(Opcode::Channel, std::uint16_t{1}, std::uint16_t{0}, "/tf_static", "json",
+               StringMap());
+  for (std::uint64_t time = 2; time < 2 + kCount; ++time) {
+    file.out.begin(Opcode::Message, std::uint16_t{1}, std::uint32_t{0}, time, time);
+    file.out.append(unknown);
+    file.out.end();
+  }
+  write("tf.mcap", file.bytes());
+  auto writer = writer_of(in("x.mcap"), chunks_of());  // behind both
+  const auto stream = *writer->add_stream("eye.left");
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(writer->add(stream, image(i), 1000 + i));
+  ASSERT_TRUE(writer->close().status);
+  options = chunks_of();
+  options.split = 20000;
+  const auto written = copied({in("fixed.mcap"), in("tf.mcap"), in("x.mcap")}, "all.mcap", options);
+  ASSERT_GT(written.files.size(), 1U);
+  std::map<std::string, std::uint64_t> counts;  // by encoding
+  const auto summary = summary_of(written.files.back());
+  for (const auto& [id, channel] : summary.channels)
+    if (channel.topic == "/tf_static" && summary.counts.contains(id))
+      counts[channel.encoding] = summary.counts.at(id);
+  EXPECT_EQ(counts["cdr"], 1U);
+  EXPECT_GT(counts["json"], 90U);
+  EXPECT_LT(counts["json"], 100U);
+}
+
 /// A `transformation` along x, from a neck of address 11.
 Message pose(std::int32_t coord, double x) {
   auto draft = Draft::make({MatrixType::Transformation, 1, Scalar::F64, Encoding::Binary}, 4, 4);

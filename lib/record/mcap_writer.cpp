@@ -125,12 +125,12 @@ std::uint16_t McapWriter::add_channel(mcap::ChannelRecord channel, mcap::SchemaR
     auto& number = schemas_[key_of(schema)];
     if (number == 0) {
       number = schema.id = static_cast<std::uint16_t>(schemas_.size());
-      static_cast<void>(repeat(std::move(schema)));
+      repeat(std::move(schema));
     }
     channel.schema = number;
   }
   channel.id = ++last_channel_;
-  static_cast<void>(repeat(std::move(channel)));
+  repeat(std::move(channel));
   return last_channel_;
 }
 
@@ -210,16 +210,20 @@ Status McapWriter::copy(const StoredPair& pair, const void* from) {
   const bool is_known =
       copied_.contains(message.channel) && (!companion || copied_.contains(companion->channel));
   if (!is_known && last_channel_ >= kMostChannels) return no_room();
-  if (message.channel->topic == kStaticFrames)
-    return repeat(mcap::Lasting{copied_channel(message, from),
-                                message.record.sequence,
-                                message.record.log_time,
-                                {message.data.begin(), message.data.end()},
-                                frames_of(message.data)});
+  if (message.channel->topic == kStaticFrames) {
+    repeat(mcap::Lasting{copied_channel(message, from),
+                         message.record.sequence,
+                         message.record.log_time,
+                         {message.data.begin(), message.data.end()},
+                         frames_of(message.data)},
+           message.data.size());
+    return wait_for_room();
+  }
   if (companion) add_copy(*companion, from);
   add_copy(message, from);
   if (is_mtp(message)) ++chunk_.messages;
-  return flush_if_due();
+  flush_if_due();
+  return wait_for_room();
 }
 
 Status McapWriter::write(std::size_t number, const Message& message, std::int64_t time) {
@@ -262,7 +266,8 @@ Status McapWriter::write(std::size_t number, const Message& message, std::int64_
       add_other(kFrames, ros::Type::TfMessage, time, encoder_.encode(std::span(&*joint, 1)));
     }
   }
-  return flush_if_due();
+  flush_if_due();
+  return wait_for_room();
 }
 
 void McapWriter::add_other(std::string_view topic, ros::Type type, std::int64_t time,
@@ -273,7 +278,8 @@ void McapWriter::add_other(std::string_view topic, ros::Type type, std::int64_t 
 Status McapWriter::log(std::int64_t time, const LogLine& line) {
   const std::lock_guard lock(chunk_mutex_);
   add_other(kLog, ros::Type::Log, time, encoder_.encode_log(time, line));
-  return flush_if_due();
+  flush_if_due();
+  return wait_for_room();
 }
 
 /// Records frames that never move, with the time of the first message.
@@ -285,55 +291,55 @@ void McapWriter::record_fixed_frames(std::int64_t time) {
   const auto number = other_channel(kStaticFrames, ros::Type::TfMessage);
   auto data = joined(encoder_.encode(fixed));
   auto frames = frames_of(data);
-  static_cast<void>(repeat(mcap::Lasting{number, ++others_, static_cast<std::uint64_t>(time),
-                                         std::move(data), std::move(frames)}));
+  repeat(mcap::Lasting{number, ++others_, static_cast<std::uint64_t>(time), std::move(data),
+                       std::move(frames)});
 }
 
 Status McapWriter::metadata(const std::string& name, const StringMap& words) {
-  return repeat(mcap::MetadataRecord{name, words});
+  repeat(mcap::MetadataRecord{name, words});
+  return wait_for_room();
 }
 
-Status McapWriter::repeat(mcap::Storage::Repeated record) {
-  return enqueue({[this, record = std::move(record)] { return storage_.add(record); }});
+void McapWriter::repeat(mcap::Storage::Repeated record, std::size_t bytes) {
+  enqueue({[this, record = std::move(record)] { return storage_.add(record); }, bytes});
 }
 
-bool McapWriter::is_due() const {
-  return chunk_.size() >= chunk_bytes_ ||
-         std::chrono::steady_clock::now() - chunk_begun_ >= kChunkTime;
-}
-
-Status McapWriter::flush_if_due() {
-  if (is_due()) static_cast<void>(flush());
+Status McapWriter::wait_for_room() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return waiting_ <= kBacklog; });
   return status_;
 }
 
-Status McapWriter::flush() {
-  if (chunk_.empty()) return {};
+void McapWriter::flush_if_due() {
+  if (chunk_.size() >= chunk_bytes_ ||
+      std::chrono::steady_clock::now() - chunk_begun_ >= kChunkTime)
+    flush();
+}
+
+void McapWriter::flush() {
+  if (chunk_.empty()) return;
   const auto bytes = chunk_.size();
   const auto messages = chunk_.messages;
   auto write = [this, chunk = std::exchange(chunk_, {})] { return storage_.add(chunk.pack()); };
-  return enqueue({std::move(write), bytes, messages});
+  enqueue({std::move(write), bytes, messages});
 }
 
-Status McapWriter::enqueue(Job job) {
+void McapWriter::enqueue(Job job) {
   const std::lock_guard lock(mutex_);
   waiting_ += job.bytes;
   jobs_.push_back(std::move(job));
   changed_.notify_all();
-  return status_;
 }
 
 Result<std::string> McapWriter::save() {
   if (is_closed_) return status_ ? Error{Code::Closed, "the recording has ended"} : status_.error();
   const std::lock_guard chunk(chunk_mutex_);
-  static_cast<void>(flush());
+  flush();
   Result<std::string> saved = Error{};
-  static_cast<void>(enqueue({[&] {
+  enqueue({[&] {
     saved = storage_.save();
     return Status();
-  }}));
+  }});
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return jobs_.empty(); });
   return status_ ? std::move(saved) : status_.error();
@@ -342,7 +348,7 @@ Result<std::string> McapWriter::save() {
 Status McapWriter::close() {
   if (!std::exchange(is_closed_, true)) {
     const std::lock_guard chunk(chunk_mutex_);
-    static_cast<void>(flush());
+    flush();
     {
       const std::lock_guard lock(mutex_);
       is_ending_ = true;
@@ -361,8 +367,7 @@ void McapWriter::work() {
     if (!changed_.wait_for(lock, kChunkTime / 2, [&] { return is_ending_ || !jobs_.empty(); })) {
       lock.unlock();
       // A call that has the chunk looks for itself at its end.
-      if (const std::unique_lock chunk(chunk_mutex_, std::try_to_lock); chunk && is_due())
-        static_cast<void>(flush());
+      if (const std::unique_lock chunk(chunk_mutex_, std::try_to_lock); chunk) flush_if_due();
       lock.lock();
       continue;
     }

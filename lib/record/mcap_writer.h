@@ -102,15 +102,15 @@ class McapWriter {
   /// Adds a message of another file to the chunk.
   void add_copy(const mcap::StoredMessage& message, const void* from);
   /// Writes what each file contains.
-  Status repeat(mcap::Storage::Repeated record);
-  /// Whether the chunk is full or old.
-  [[nodiscard]] bool is_due() const;
-  /// Passes the chunk to the thread: if it is due, or in any case. Never between a message and its
-  /// companion: whoever adds them holds chunk_mutex_. The first then waits while too much waits to
-  /// be written; the thread, which writes it, does not call it.
-  Status flush_if_due();
-  Status flush();
-  Status enqueue(Job job);
+  /// @param bytes  of memory, where they may be many.
+  void repeat(mcap::Storage::Repeated record, std::size_t bytes = 0);
+  /// Passes the chunk to the thread: if it is full or old, or in any case. Never between a message
+  /// and its companion: whoever adds them holds chunk_mutex_.
+  void flush_if_due();
+  void flush();
+  void enqueue(Job job);
+  /// Waits while too much waits to be written. Not for the thread, which writes it.
+  Status wait_for_room();
   void work();
 
   const std::size_t chunk_bytes_;

@@ -57,7 +57,18 @@ TEST_F(Recorded, AnErrorLeavesNothingBehind) {
   EXPECT_TRUE(fs::is_empty(kept));
 }
 
+TEST_F(Recorded, AnErrorLeavesWhatWasThere) {
+  write("kept/eyes.left.mtp", "");
+  WriterOptions options;
+  options.streams = {"eyes.left", "eyes.right", std::string(300, 'x')};
+  options.append = true;
+  EXPECT_EQ(Writer::open(place_of_streams(kept), options).error().code, Code::System);
+  EXPECT_TRUE(fs::exists(kept + "/eyes.left.mtp"));
+  EXPECT_FALSE(fs::exists(kept + "/eyes.right.mtp"));
+}
+
 TEST_F(Recorded, NothingIsLeftBehindWhereNoDescriptorsAre) {
+  const auto empty = write("empty.mtp", "");
   rlimit before{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
   bool is_open = false;
@@ -65,8 +76,10 @@ TEST_F(Recorded, NothingIsLeftBehindWhereNoDescriptorsAre) {
     const rlimit limit{most, before.rlim_max};
     ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
     is_open = open_folder(kept, {"eyes.left"}).has_value();
+    EXPECT_EQ(Writer::open(place_of(empty), {}).has_value(), is_open) << most;
     ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
     EXPECT_EQ(fs::exists(kept), is_open) << most;
+    EXPECT_TRUE(fs::exists(empty)) << most;
   }
   EXPECT_TRUE(is_open);
 }

@@ -58,10 +58,8 @@ Status Writer::begin(const Place& place) {
   for (const auto& name : options_.streams) {
     auto added = add_stream(name);
     if (added) continue;
-    // Empty files would send the next attempt to another folder.
+    for (const auto& each : files_) remove_unused(each);
     std::error_code ignored;
-    for (const auto& each : files_)
-      if (fs::is_empty(each.path, ignored)) fs::remove(each.path, ignored);
     if (is_new) fs::remove(written_.place, ignored);
     return added.error();
   }
@@ -69,26 +67,34 @@ Status Writer::begin(const Place& place) {
 }
 
 Status Writer::begin_file(const std::string& path) {
-  File file{path, {}, nullptr};
+  File file{path, {}, nullptr, false};
+  std::error_code missing;
   Uri uri{"file", path, {}};
   if (options_.append) {
     uri.options = {{"append", "1"}};
+    file.is_new = !fs::exists(path, missing);
   } else if (!is_written_in_place(path)) {  // begun here, to know its name
     auto begun = HC_TRY(hc::begin_file(path));
     file.path = std::move(begun.path);
     file.lock = std::move(begun.descriptor);
+    file.is_new = begun.is_new;
     uri.rest = "/proc/self/fd/" + std::to_string(file.lock.get());
   }
   LinkOptions options;
   if (!is_folder_) options.log = options_.log;
   auto sink = hc::open_sink(uri, options);
   if (!sink) {
-    if (file.lock) fs::remove(file.path);  // begun here, and empty
+    remove_unused(file);
     return sink.error();
   }
   file.sink = std::move(*sink);
   files_.push_back(std::move(file));
   return {};
+}
+
+void Writer::remove_unused(const File& file) {
+  std::error_code ignored;
+  if (file.is_new && fs::is_empty(file.path, ignored)) fs::remove(file.path, ignored);
 }
 
 Writer::~Writer() {

@@ -105,11 +105,15 @@ class Writer {
     std::string path;
     Descriptor lock;             // of a new file, as long as it is written
     std::unique_ptr<Sink> sink;  // null: closed
+    bool is_new = false;         // it was not there before
   };
 
   Writer(const Place& place, const WriterOptions& options);
   Status begin(const Place& place);
   Status begin_file(const std::string& path);
+  /// Removes a file that was begun in vain: as an empty one it would send the next attempt to
+  /// another folder.
+  static void remove_unused(const File& file);
   /// Closes all files.
   Status end();
   [[nodiscard]] Error named(const File& file, const Error& error) const;

@@ -84,14 +84,14 @@ class Page final : public web::Site {
   [[nodiscard]] web::Bytes rows_message(const std::vector<std::string>& rows, std::int32_t src,
                                         std::int64_t seq) const;
   void take_command(std::uint64_t session, const std::string& command);
-  // These give what is wrong, or nothing: it is answered later.
+  std::vector<std::string> invite(const std::vector<std::string>& words);
+  // These give what is wrong, or nothing: it is done, and answered, later.
   /// Stops the robot, or clears that.
   std::optional<std::vector<std::string>> stop(const Asked& asked,
                                                const std::vector<std::string>& words);
   /// Begins a recording, or ends it.
   std::optional<std::vector<std::string>> record(const Asked& asked,
                                                  const std::vector<std::string>& words);
-  std::vector<std::string> invite(const std::vector<std::string>& words);
   /// Ends the recording, and then calls back.
   std::optional<std::vector<std::string>> end_recording(const std::function<void()>& ended);
   /// As Server::aside(), for what begins or ends a recording.

@@ -106,12 +106,13 @@ std::string free_name(const std::string& path, std::string_view ending,
                       const std::function<bool(const std::string& path)>& is_free) {
   if (!path.ends_with(ending)) ending = "";
   std::string stem = path.substr(0, path.size() - ending.size());
+  std::error_code none;
   auto strip = [&stem] {  // "kept/"
     while (stem.size() > 1 && stem.ends_with('/')) stem.pop_back();
   };
   strip();
   if (const auto last = fs::path(stem).filename(); last == "." || last == "..")
-    stem = fs::weakly_canonical(fs::absolute(stem)).string();
+    stem = fs::weakly_canonical(fs::absolute(stem, none), none).string();
   strip();
   std::string name = path;
   for (int i = 2; !is_free(name); ++i) name = stem + "_" + std::to_string(i) + std::string(ending);
@@ -125,13 +126,16 @@ Result<NewFile> begin_file(const std::string& path) {
   }
   // The lock tells of two that find the same empty file.
   Result<Descriptor> file = Descriptor();
+  bool is_new = false;
   auto name = free_name(path, fs::path(path).extension().string(), [&](const std::string& each) {
     if (has_contents(each)) return false;
-    file = open_file(each, O_WRONLY);
+    file = open_file(each, O_WRONLY | O_EXCL);
+    is_new = file.has_value();
+    if (!file) file = open_file(each, O_WRONLY);
     return !file || (lock(*file) && !has_contents(each));
   });
   if (!file) return file.error();
-  return NewFile{std::move(*file), std::move(name)};
+  return NewFile{std::move(*file), std::move(name), is_new};
 }
 
 Result<NewFile> continue_file(const std::string& path) {

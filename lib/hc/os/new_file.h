@@ -25,6 +25,7 @@ std::string free_name(const std::string& path, std::string_view ending,
 struct NewFile {
   Descriptor descriptor;
   std::string path;
+  bool is_new = false;  ///< no empty file had the name
 };
 
 /// Begins a file. One that has contents, or that another process is writing, stays as it is, and

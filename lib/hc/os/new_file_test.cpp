@@ -48,7 +48,8 @@ TEST_F(NewFiles, WhatHasContentsStays) {
 }
 
 TEST_F(NewFiles, AnEmptyFileIsFree) {
-  std::ofstream(at("x.mtp")) << "";
+  EXPECT_TRUE(must(begin_file(at("x.mtp"))).is_new);
+  EXPECT_FALSE(must(begin_file(at("x.mtp"))).is_new);
   EXPECT_EQ(begin("x.mtp", "first"), "x.mtp");
 }
 

@@ -112,6 +112,20 @@ void Storage::remove_old() {
   }
 }
 
+void Storage::limit_lasting() {
+  std::size_t all = 0;
+  for (const auto& each : repeated_)
+    if (const auto* lasting = std::get_if<Lasting>(&each)) all += lasting->data.size() + kOfLasting;
+  for (const bool also_known : {false, true})
+    std::erase_if(repeated_, [&](const Repeated& each) {
+      const auto* lasting = std::get_if<Lasting>(&each);
+      if (all <= kMostLasting || lasting == nullptr || (!also_known && !lasting->about.empty()))
+        return false;
+      all -= lasting->data.size() + kOfLasting;
+      return true;
+    });
+}
+
 Status Storage::add(Repeated record) {
   if (const auto* metadata = std::get_if<MetadataRecord>(&record))
     std::erase_if(repeated_, [&](const Repeated& each) {
@@ -126,9 +140,10 @@ Status Storage::add(Repeated record) {
       for (const auto& one : lasting->about) older->about.erase(one);
       return older->about.empty();
     });
-  const auto time = lasting != nullptr ? lasting->log_time : 0;
+  auto added = file_ ? write(record, lasting != nullptr ? lasting->log_time : 0) : Status();
   repeated_.push_back(std::move(record));
-  return file_ ? write(repeated_.back(), time) : Status();
+  if (lasting != nullptr) limit_lasting();
+  return added;
 }
 
 Status Storage::add(Chunk chunk) {

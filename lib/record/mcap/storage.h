@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <list>
 #include <optional>
 #include <set>
 #include <string>
@@ -41,8 +42,11 @@ class Storage {
  public:
   /// What each file contains: all schemas and channels, the newest metadata of each name, and
   /// lasting messages, after the first file with the time at which the file begins: at most one for
-  /// each thing that they are about.
+  /// each thing that they are about, and no more than kMostLasting: those about nothing known are
+  /// left out first, and the oldest of them.
   using Repeated = std::variant<SchemaRecord, ChannelRecord, MetadataRecord, Lasting>;
+  /// Of lasting messages, each with kOfLasting for what is around it. [byte]
+  static constexpr std::size_t kMostLasting = std::size_t{1} << 20, kOfLasting = 512;
 
   /// @param file  "kept.mcap". One that has contents stays, and a new one is written beside it
   ///     (os/new_file.h). With `split` or `last`, "kept_0001.mcap" and so on after existing ones.
@@ -71,6 +75,8 @@ class Storage {
   Status begin_file(std::uint64_t time);
   Status end_file();
   Status write(const Repeated& record, std::uint64_t time);
+  /// Forgets what is more than kMostLasting.
+  void limit_lasting();
   void remove_old();
 
   struct Done {
@@ -80,7 +86,7 @@ class Storage {
 
   std::string name_;
   StorageOptions options_;
-  std::vector<Repeated> repeated_;
+  std::list<Repeated> repeated_;
   std::optional<File> file_;
   std::deque<Done> done_;
   std::deque<Chunk> memory_;

@@ -58,8 +58,15 @@ test("a damaged file ends with a sentence", async () => {
   }
 });
 
-/** A file of MCAP, whose chunks have these messages of a stream `s`, and their companions. */
-function fileOf(chunks: ("message" | "companion")[][]): Blob {
+/**
+ * A file of MCAP, whose chunks have these messages of a stream `s`, and their companions.
+ *
+ * @param timeOf  log time of a message by its sequence [s].
+ */
+function fileOf(
+  chunks: ("message" | "companion")[][],
+  timeOf = (sequence: number) => 1 + sequence,
+): Blob {
   const number = (size: number, value: number) => {
     const bytes = Buffer.alloc(size);
     bytes.writeUIntLE(value, 0, Math.min(size, 6));
@@ -95,7 +102,7 @@ function fileOf(chunks: ("message" | "companion")[][]): Blob {
           ? Buffer.concat([Buffer.alloc(8), elements])
           : Buffer.concat([matrix, number(4, 8), number(4, 16), number(4, 0)]);
       const id = number(2, kind === "companion" ? 1 : 2);
-      const time = number(8, 1e9 * (1 + sequence));
+      const time = number(8, 1e9 * timeOf(sequence));
       const offset = Buffer.concat(records).length;
       records.push(record(5, id, number(4, sequence), time, time, data));
       indexes.push(record(7, id, list(time, number(8, offset))));
@@ -134,6 +141,33 @@ test("a chunk may end between a message and its companion", async () => {
       ],
     );
   }
+});
+
+test("messages of one log time have their own companions", async () => {
+  for (const chunks of [
+    [["message", "message", "companion", "companion"]],
+    [["companion", "companion"], ["message"], ["message"]],
+    [
+      ["companion", "message"],
+      ["message", "message"],
+      ["companion", "companion"],
+    ],
+  ] as ("message" | "companion")[][][]) {
+    const [track] = await openMcap(fileOf(chunks, () => 1));
+    const messages = Array.from({ length: track!.length }, (_, index) => track!.message(index));
+    assert.deepEqual(
+      (await Promise.all(messages)).map(({ elements }) => [...elements]),
+      messages.map((_, index) => [index, 0.5]),
+    );
+  }
+});
+
+test("a message is as large as it and its companion, whichever comes first", async () => {
+  const [[track], [other]] = await Promise.all([
+    openMcap(fileOf([["companion", "message"]])),
+    openMcap(fileOf([["message", "companion"]])),
+  ]);
+  assert.equal(track!.usualBytes, other!.usualBytes);
 });
 
 test("a message whose elements are missing says so, and the others are found", async () => {

@@ -7,6 +7,7 @@ import { expandZstd } from "./zstd";
 const magic = Uint8Array.of(0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a);
 const tailBytes = 9 + 20 + magic.length; // the footer's record and the magic
 const mostBytes = 2 ** 30; // of a chunk, expanded
+const mostCompanions = 1000; // before and behind a message, among which its own is sought
 const opcodes = { channel: 4, chunkIndex: 8 };
 
 /** Reads numbers and text one after the other; throws RangeError behind the end. */
@@ -70,39 +71,51 @@ interface Chunk {
 }
 
 interface Channel {
-  readonly topic: string;
   /** Of messages of MTP. */
   readonly stream?: Stream;
   /** Of companions: the topic of their messages. */
   readonly companion?: string;
 }
 
-/** A stream, and where its messages are. */
+/** A stream, and where its messages and their companions are, which may be in other chunks. */
 interface Stream {
   readonly track: Track;
   readonly places: Place[];
+  readonly companions: Place[]; // by log time, and then as in the file
 }
 
 /** Where a message is. */
 interface Place {
   readonly chunk: Chunk;
   readonly offset: number; // in its chunk
-  /** Of a message of MTP: its companion, which may be in another chunk. */
-  companion?: Place | undefined;
-}
-
-/** A message in the index of a chunk. */
-interface Found extends Place {
+  readonly number: number; // of all messages in the file
   readonly time: number; // [s since 1970]
   readonly bytes: number;
+}
+
+/** Companions of the log time of a message, the nearest in the file first. */
+function* companionsNear({ time, number }: Place, companions: readonly Place[]): Generator<Place> {
+  let [low, high] = [0, companions.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    const other = companions[middle]!;
+    if (other.time < time || (other.time === time && other.number < number)) low = middle + 1;
+    else high = middle;
+  }
+  for (let i = 0; i < mostCompanions; ++i) {
+    const near = [companions[low - 1 - i], companions[low + i]].filter(
+      (other) => other?.time === time,
+    );
+    if (near.length === 0) return;
+    yield* near as Place[];
+  }
 }
 
 class McapFile {
   private readonly channels = new Map<number, Channel>();
   private readonly chunks: Chunk[] = [];
-  // By log time and topic of MTP: companions of messages to come, and messages without one.
-  private readonly companions = new Map<string, Found>();
-  private readonly alone = new Map<string, Found>();
+  private readonly companions = new Map<string, Place[]>(); // by topic of MTP
+  private messages = 0;
   private newest?: { readonly chunk: Chunk; readonly bytes: Promise<Uint8Array<ArrayBuffer>> };
 
   constructor(private readonly file: Blob) {}
@@ -132,7 +145,14 @@ class McapFile {
       this.addMessages(chunk, await this.read(chunk.end, chunk.indexBytes));
       progress((i + 1) / this.chunks.length);
     }
-    return [...this.channels.values()].flatMap(({ stream }) => stream?.track ?? []);
+    const streams = [...this.channels.values()].flatMap(({ stream }) => stream ?? []);
+    for (const list of this.companions.values()) list.sort((a, b) => a.time - b.time);
+    for (const { track, places, companions } of streams)
+      for (const place of places) {
+        const [companion] = companionsNear(place, companions);
+        track.add(place.time, place.bytes + (companion?.bytes ?? 0));
+      }
+    return streams.map(({ track }) => track);
   }
 
   private async read(begin: number, size: number): Promise<Fields> {
@@ -147,10 +167,16 @@ class McapFile {
     const words = new Map<string, string>();
     for (const list = content.list(); list.left > 0;) words.set(list.text(), list.text());
     const name = words.get("hypercolumn.stream");
-    const places: Place[] = [];
-    const track = new Track(name ?? "", (index) => this.message(topic, places[index]!));
-    const stream = name === undefined ? undefined : { track, places };
-    this.channels.set(id, { topic, stream, companion: words.get("hypercolumn.mtp") });
+    const [places, companions] = [[] as Place[], this.companionsOf(topic)];
+    const track = new Track(name ?? "", (index) => this.message(topic, places[index]!, companions));
+    const stream = name === undefined ? undefined : { track, places, companions };
+    this.channels.set(id, { stream, companion: words.get("hypercolumn.mtp") });
+  }
+
+  private companionsOf(topic: string): Place[] {
+    const known = this.companions.get(topic) ?? [];
+    this.companions.set(topic, known);
+    return known;
   }
 
   private addChunk(content: Fields): void {
@@ -174,26 +200,10 @@ class McapFile {
     entries.sort((a, b) => a.offset - b.offset);
     entries.forEach(({ time, offset, channel }, i) => {
       const bytes = (entries[i + 1]?.offset ?? chunk.plain) - offset;
-      const found: Found = { chunk, offset, time, bytes };
-      if (channel?.companion !== undefined) this.addCompanion(channel.companion, found);
-      if (!channel?.stream) return;
-      const key = `${time} ${channel.topic}`;
-      const companion = this.companions.get(key);
-      this.companions.delete(key);
-      if (!companion) this.alone.set(key, found);
-      found.companion = companion;
-      channel.stream.places.push(found);
-      channel.stream.track.add(time, bytes + (companion?.bytes ?? 0));
+      const place: Place = { chunk, offset, number: this.messages++, time, bytes };
+      channel?.stream?.places.push(place);
+      if (channel?.companion !== undefined) this.companionsOf(channel.companion).push(place);
     });
-  }
-
-  /** Adds one that comes before its message, or behind it where another program has sorted them. */
-  private addCompanion(topic: string, companion: Found): void {
-    const key = `${companion.time} ${topic}`;
-    const message = this.alone.get(key);
-    this.alone.delete(key);
-    if (message) message.companion = companion;
-    else this.companions.set(key, companion);
   }
 
   /** The messages of a chunk, plain. */
@@ -219,7 +229,7 @@ class McapFile {
     return { sequence, data: content.take(content.left) };
   }
 
-  private async message(topic: string, place: Place): Promise<Message> {
+  private async message(topic: string, place: Place, companions: Place[]): Promise<Message> {
     const { sequence, data } = await this.stored(place);
     // hypercolumn_msgs/msg/Matrix in CDR.
     const matrix = new Fields(data);
@@ -229,7 +239,9 @@ class McapFile {
     const [from, size] = [matrix.u32(), matrix.u32()];
     let bytes = matrix.take(matrix.u32());
     if (from > 0) {
-      const other = place.companion && (await this.stored(place.companion));
+      let other;
+      for (const each of companionsNear(place, companions))
+        if ((other = await this.stored(each)).sequence === sequence) break;
       if (other?.sequence !== sequence || from + size > other.data.length)
         throw new Error(`A message of ${topic} lacks its elements.`);
       bytes = other.data.subarray(from, from + size);
