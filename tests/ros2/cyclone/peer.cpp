@@ -85,6 +85,7 @@ int main() {
   FOR_EACH_TYPE(ADD)
   using Info = TYPE(rmw_dds_common, ParticipantEntitiesInfo);
   auto* late = qos(true);
+  dds_qset_history(late, DDS_HISTORY_KEEP_ALL, 0);  // a node announces each of its ends
   dds_qset_durability(late, DDS_DURABILITY_TRANSIENT_LOCAL);
   const auto info_topic =
       dds_create_topic(participant, &rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc,

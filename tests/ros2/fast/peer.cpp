@@ -66,6 +66,7 @@ struct Ends {
     fast::DataReaderQos qos;
     qos.history().depth = 10;
     if (is_late) {
+      qos.history().kind = fast::KEEP_ALL_HISTORY_QOS;  // a node announces each of its ends
       qos.reliability().kind = fast::RELIABLE_RELIABILITY_QOS;
       qos.durability().kind = fast::TRANSIENT_LOCAL_DURABILITY_QOS;
     }
