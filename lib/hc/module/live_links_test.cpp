@@ -328,8 +328,8 @@ TEST_F(RunningModule, WhoNeverWaitsReadsTheWriterThatFollowsOneThatWasKilled) {
     });
     module.on(module.input("in", table<double>(), ""), [&](const auto&) { ++come; });
     if (generates) module.generate([&] { return come < 2; });
+    module.on_start([&] { ASSERT_TRUE(feed->send(table({1.0}))); });
     start_managed(module, {"--in=feed=" + uri("feed"), "--in=in=" + name + "?reconnect=60"});
-    ASSERT_TRUE(feed->send(table({1.0})));
     const pid_t killed = start_writer(name);
     while (come < 1) std::this_thread::yield();
     ASSERT_EQ(::kill(killed, SIGKILL), 0);
