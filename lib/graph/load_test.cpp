@@ -59,7 +59,7 @@ class Load : public ::testing::Test {
   }
 
   FakeHosts hosts_;
-  const Plan running_;
+  const Plan running_{};
   const Event stop_ = must(Event::make());
   LoadOptions options_ = [this] {
     LoadOptions options;
