@@ -88,13 +88,15 @@ TEST_P(QueuedLink, WhatWaitsWhenItIsAbandonedIsLost) {
 
 /// Sends messages with this `seq` until a reader that connects meanwhile has one; what it got
 /// first.
-std::int64_t first_of_next_reader(Sink& sink, const std::string& uri, std::int64_t seq) {
+/// @param source  becomes the reader, and stays connected.
+std::int64_t first_of_next_reader(Sink& sink, const std::string& uri, std::int64_t seq,
+                                  std::unique_ptr<Source>& source) {
   std::atomic<bool> heard = false, done = false;
   std::thread sender([&] {
     while (!heard && sink.send(numbered(seq, 10))) continue;
     done = true;
   });
-  const auto source = source_of(uri);
+  source = source_of(uri);
   Message message;
   EXPECT_TRUE(*receive(*source, message));
   const auto first = message.header.seq;
@@ -107,8 +109,8 @@ std::int64_t first_of_next_reader(Sink& sink, const std::string& uri, std::int64
 TEST_P(LastingLink, WhoLosesNothingWaitsForTheNextReader) {
   begin("&stay=1");
   source_.reset();
-  // What goes before the leave is noticed has nobody.
-  EXPECT_EQ(first_of_next_reader(*sink_, ends_.source, 1), 1);
+  // A message that is sent before the lost reader is noticed reaches no reader.
+  EXPECT_EQ(first_of_next_reader(*sink_, ends_.source, 1, source_), 1);
   EXPECT_LE(sink_->traffic().dropped_disconnect, 1U);  // the one in flight to the reader that left
 }
 
@@ -121,7 +123,7 @@ TEST_P(LastingLink, WhoHasLeftIsGivenUpUntilAnotherComes) {
     carry(*sink, *source, numbered(0, 10));
     source.reset();
     while (sink->traffic().dropped_timeout < 3) ASSERT_TRUE(sink->send(numbered(1, 10)));
-    EXPECT_EQ(first_of_next_reader(*sink, ends.source, 2), 2);
+    EXPECT_EQ(first_of_next_reader(*sink, ends.source, 2, source), 2);
   }
 }
 
@@ -130,9 +132,10 @@ TEST_P(LastingLink, WhoDoesNotComeInTimeIsNotWaitedFor) {
   for (const char* options : {"?readers=2&stay=1&wait=1", "?readers=2&wait=1"}) {
     SCOPED_TRACE(options);
     const auto sink = sink_of(ends.sink + options);
-    ASSERT_TRUE(sink->send(numbered(0, 10)));  // after a second, to nobody
+    ASSERT_TRUE(sink->send(numbered(0, 10)));  // after a second, without a reader
     EXPECT_EQ(sink->traffic().dropped_disconnect, 1U);
-    EXPECT_EQ(first_of_next_reader(*sink, ends.source, 1), 1);  // without the other one
+    std::unique_ptr<Source> source;
+    EXPECT_EQ(first_of_next_reader(*sink, ends.source, 1, source), 1);  // without the other one
   }
   const auto sink = sink_of(ends.sink + "?readers=1&wait=1");
   EXPECT_TRUE(sink->close());
