@@ -92,7 +92,7 @@ class ServiceTest : public ::testing::Test {
   [[nodiscard]] std::string get(const std::string& path) const {
     return answer(ask(port(), path).get());
   }
-  /// Lets the loop take what has come for it.
+  /// Runs the calls that were posted to the loop.
   void turn() {
     ASSERT_TRUE(is_readable(loop_->descriptor()));
     ASSERT_TRUE(loop_->turn(std::chrono::milliseconds(0)));

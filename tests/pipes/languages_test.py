@@ -176,7 +176,7 @@ class Java(Language, Graphs):
     language = "java"
 
     def run_modules(self):
-        # Each start compiles the module anew, which takes less time where nothing is optimized.
+        # Each start compiles the module again, faster without optimization.
         self.environment["JDK_JAVA_OPTIONS"] = "-XX:TieredStopAtLevel=1 -XX:+UseSerialGC"
         return super().run_modules()
 

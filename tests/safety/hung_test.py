@@ -15,7 +15,7 @@ from streams import message, rotation
 from web_socket import BINARY
 
 HUNG = 60 if IS_FULL else 0  # at least, before the stop [s]
-SLOW = 6  # in which a queue is full, or is left out [s]
+SLOW = 6  # a queue that takes longer to fill is not waited for [s]
 OLD = 0.5  # how old the state of the graph may be [s]
 RING = 2048  # messages that a queue without a number holds
 SOON = 10  # after which `hc run` restarts a module of the head, where the file says no other [s]
@@ -73,7 +73,7 @@ class Hung(Safety):
                 self.head.seat.socket.send_frame(BINARY, each)
 
     def seconds_to_fill(self, name):
-        """In which all queues of a module are full of what is sent to it anyway, but for slow ones."""
+        """How long the other modules take to fill the queues of a module, without slow queues."""
         seconds = [
             OLD + (int(link["keep"]) if link["keep"].isdigit() else RING) / link["per_second"]
             for link in self.head.state_now()["links"]

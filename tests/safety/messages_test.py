@@ -92,7 +92,7 @@ class Times(Safety):
         head = self.head
         head.quiet()
         self.note_motion(self.steering)
-        # A person wants a task that nobody steers by: a command is refused for its time alone.
+        # A person chooses a task and sends no stick: a command is refused for its time alone.
         mode, person = head.mode("point"), head.source("workspace.person", 1)
         feeder = Feeder(lambda _: person.send(bid(1, mode)), 0.1)
         self.addCleanup(feeder.end)

@@ -14,7 +14,7 @@ SCRIPTS = pathlib.Path(__file__).parents[2] / "scripts"
 class Common(unittest.TestCase):
     def test_without_a_build_folder_a_script_says_what_it_does(self):
         with tempfile.TemporaryDirectory() as here:
-            pathlib.Path(here, "CMakeCache.txt").touch()  # a build, but nobody named it
+            pathlib.Path(here, "CMakeCache.txt").touch()  # a build that was not named
             for name in ("bench", "bench_mcap", "make_reference", "make_safety"):
                 for arguments in [], [""], ["elsewhere"]:
                     command = [sys.executable, str(SCRIPTS / name), *arguments]

@@ -30,7 +30,7 @@ struct Comparison {
   std::size_t differing = 0;               ///< another of that time was sent in their place
   std::size_t missing = 0;                 ///< recorded and not replayed
   std::size_t extra = 0;                   ///< replayed and not recorded
-  std::size_t after_end = 0;               ///< recorded behind what was to be replayed, and not
+  std::size_t after_end = 0;               ///< recorded after `last`, and not replayed
   std::string first;                       ///< where they first differ; empty: nowhere
 
   [[nodiscard]] bool is_same(const Tolerance& tolerance) const;

@@ -17,7 +17,7 @@ inline thread_local Allocations allocations;
 }  // namespace hc
 
 // Not inlined: compilers then take what `new` gave for the wrong end of free(). ThreadSanitizer has
-// these itself and lets nobody replace them; nothing is counted there.
+// its own, which cannot be replaced; nothing is counted there.
 #if !defined(__has_feature)
 #define __has_feature(feature) 0
 #endif

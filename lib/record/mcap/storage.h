@@ -42,8 +42,8 @@ class Storage {
  public:
   /// What each file contains: all schemas and channels, the newest metadata of each name, and
   /// lasting messages, after the first file with the time at which the file begins: at most one for
-  /// each thing that they are about, and no more than kMostLasting: those about nothing known are
-  /// left out first, and the oldest of them.
+  /// each thing that they are about, and no more than kMostLasting: the oldest of those about
+  /// nothing known are dropped first.
   using Repeated = std::variant<SchemaRecord, ChannelRecord, MetadataRecord, Lasting>;
   /// Of lasting messages, each with kOfLasting for what is around it. [byte]
   static constexpr std::size_t kMostLasting = std::size_t{1} << 20, kOfLasting = 512;
