@@ -38,7 +38,7 @@ Status GraphClient::watch(Callbacks callbacks) {
 
 void GraphClient::take(const Message& message) {
   is_alive_ = true;
-  const auto text = message.characters();
+  const auto text = message.text();
   if (message.header.src == static_cast<std::int32_t>(GraphReport::Log)) {
     if (const auto line = parse_log_line(text)) callbacks_->log(*line, text);
   } else if (message.header.src == static_cast<std::int32_t>(GraphReport::State)) {

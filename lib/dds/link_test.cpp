@@ -68,7 +68,7 @@ TEST(Dds, AllReadersGetEachMessage) {
   auto sender = send_all(*sink, kCount, size);
   for (int i = 0; i < kCount; ++i)
     for (const auto& source : sources)
-      EXPECT_EQ(next(*source).characters(), numbered(i, size(i)).characters());
+      EXPECT_EQ(next(*source).text(), numbered(i, size(i)).text());
   Message message;
   for (const auto& source : sources) EXPECT_FALSE(*receive(*source, message));
   sender.join();

@@ -108,7 +108,7 @@ TEST_F(DdsSample, GoesAndComesInPiecesOfAnySize) {
       for (const auto& each : {bytes, whole}) {
         auto got = must(read(*come(each, piece)));
         EXPECT_EQ(got.header, message.header);
-        EXPECT_EQ(got.characters(), message.characters());
+        EXPECT_EQ(got.text(), message.text());
       }
     }
   }
@@ -124,7 +124,7 @@ TEST_F(DdsSample, MayHaveRowsOfNumbers) {
     draft.elements()[i] = static_cast<std::byte>(i * 7);
   const Message message = std::move(draft).finish();
   auto got = must(read(*come(in_pieces(*make(message), 1000), 1000)));
-  EXPECT_EQ(got.characters(), message.characters());
+  EXPECT_EQ(got.text(), message.text());
 }
 
 TEST_F(DdsSample, HasElementsThatAreAlignedAndStayWhereTheyAre) {

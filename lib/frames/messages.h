@@ -2,6 +2,7 @@
 #pragma once
 // Messages as Eigen matrices and poses, and back. Header only. Pure.
 
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -36,20 +37,14 @@ Eigen::Map<RowMajor<T>> as_eigen(const Draft& draft) {
                                  static_cast<Eigen::Index>(view.width() * view.components()));
 }
 
-/// A pose: (4, 4) f64, p_to = T_to_from · (x y z 1)ᵀ, lengths in metres.
-inline MessageOf<TransformationKind<double>> transformation(const Eigen::Isometry3d& T_to_from) {
-  const RowMajor<double> rows = T_to_from.matrix();
-  return transformation<double>(4, 4, {rows.data(), 16});
-}
-
-/// One position: x y z.
-inline MessageOf<PositionKind<double>> position(const Eigen::Vector3d& p) {
-  return position(p.x(), p.y(), p.z());
-}
-
-/// One rotation by roll, pitch, yaw [rad].
-inline MessageOf<RotationKind<double>> rotation(const Eigen::Vector3d& angles) {
-  return rotation(angles.x(), angles.y(), angles.z());
+/// A pose as the 16 numbers of a transformation, row by row: p_to = T_to_from · (x y z 1)ᵀ, lengths
+/// in metres.
+///
+///     pose.send(hc::numbers_of(T_world_head), time);
+inline std::array<double, 16> numbers_of(const Eigen::Isometry3d& T_to_from) {
+  std::array<double, 16> numbers{};
+  Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data()) = T_to_from.matrix();
+  return numbers;
 }
 
 /// A rigid transformation out of a message: a joint of frames::Tree takes all four.

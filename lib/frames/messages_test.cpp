@@ -116,7 +116,7 @@ TEST(Rotation, RefusesWhatIsNone) {
 }
 
 TEST(Eigen, SharesATransformation) {
-  Draft draft = Draft::make({MatrixType::Transformation, 1, Scalar::F64, Encoding::Text}, 4, 3);
+  Draft draft = Draft::make({MatrixType::Transformation, 1, Scalar::F64, Encoding::Text}, 3, 4);
   auto made = as_eigen<double>(draft);
   ASSERT_EQ(made.rows(), 3);
   ASSERT_EQ(made.cols(), 4);
@@ -131,18 +131,18 @@ TEST(Eigen, SharesATransformation) {
 }
 
 TEST(Eigen, APathHasARowForEachPosition) {
-  Draft draft = Draft::make(Info(), 1, 5);
+  Draft draft = Draft::make(Info(), 5, 1);
   EXPECT_EQ(as_eigen<double>(draft).rows(), 5);
   EXPECT_EQ(as_eigen<double>(draft).cols(), 3);
 }
 
-TEST(Eigen, PosesAreMadeInOneLine) {
+TEST(Eigen, APoseGivesItsNumbers) {
   Eigen::Isometry3d T_world_head(Eigen::Translation3d(1, 2, 3) * frames::rotation(0, 0, 1.5));
-  auto message = transformation(T_world_head).in(transform_coord(Coord::kWorld, Coord::kHead));
+  const auto kind = transformation().in(transform_coord(Coord::kWorld, Coord::kHead));
+  const auto message = kind.message(numbers_of(T_world_head));
   EXPECT_LT((pose_of(message)->T_to_from.matrix() - T_world_head.matrix()).norm(), 1e-15);
   EXPECT_EQ(message.matrix().at(1, 3), 2);
-  EXPECT_EQ(position(Eigen::Vector3d(1, 2, 3)).matrix().at(0, 0, 2), 3);
-  const auto q = *rotation_of(rotation(Eigen::Vector3d(0, 0, 1.5)));
+  const auto q = *rotation_of(rotation().message({0, 0, 1.5}));
   EXPECT_LT(q.angularDistance(frames::rotation(0, 0, 1.5)), 1e-12);
 }
 

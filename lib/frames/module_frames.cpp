@@ -23,7 +23,7 @@ ModuleFrames::ModuleFrames(Module& module, const Options& options)
                              {.fixed = true})) {
   if (!options.input) return;
   auto poses =
-      module.input("frames", any_of(transformation<double>(4, 4), transformation<float>(4, 4)),
+      module.input("frames", any_of(transformation(), transformation<float>()),
                    "poses of the frames that move, T_parent_child [m]: linked by hc run");
   module.on(poses, [this](const Message& message) {
     const auto& header = message.header;

@@ -299,7 +299,7 @@ void Connection::take(const Message& message) {
   if (header.src == Order) return obey(read_order(message), received);
   const auto found = modules_.find(header.dst);
   if (found == modules_.end()) return;
-  if (header.src == Log) found->second->said(message.characters());
+  if (header.src == Log) found->second->said(message.text());
   if (header.src >= Report) found->second->reported(message);
 }
 

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 Message message_of(const Info& info, std::int32_t width, std::int32_t height, std::int64_t seq,
                    std::mt19937& random) {
-  auto draft = Draft::make(info, width, height);
+  auto draft = Draft::make(info, height, width);
   draft.header.seq = seq;
   draft.header.src = 7;
   draft.header.time = 1'763'683'200'000'000'000 + seq;
@@ -106,7 +106,7 @@ TEST_F(Mcap, NoImageIsStoredTwice) {
 
 TEST_F(Mcap, ALargeBlankImageIsReadAgain) {
   auto writer = writer_of(in("x.mcap"));
-  auto draft = Draft::make({MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary}, 6000, 4000);
+  auto draft = Draft::make({MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary}, 4000, 6000);
   std::ranges::fill(draft.elements(), std::byte(0));
   const auto blank = std::move(draft).finish();
   ASSERT_TRUE(writer->add(*writer->add_stream("eye"), blank, 1));

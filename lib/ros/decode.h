@@ -2,7 +2,7 @@
 #pragma once
 // Messages of ROS 2, in CDR, as messages. Pure.
 //
-//     auto message = ros::decode(ros::Type::Twist, bytes, hc::table<double>().of(6, 1).type);
+//     auto message = ros::decode(ros::Type::Twist, bytes, hc::table().of(1, 6).type);
 
 #include <cstddef>
 #include <span>

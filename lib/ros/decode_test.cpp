@@ -17,9 +17,9 @@
 namespace hc::ros {
 namespace {
 
-const PortType kRgb = rgb_image<std::uint8_t>().type, kGrey = intensity_image<std::uint8_t>().type,
+const PortType kRgb = rgb_image().type, kGrey = intensity_image().type,
                kDepth = intensity_image<float>().type, kPoints = position<float>().type,
-               kPose = transformation<double>().type, kTable = table<double>().type,
+               kPose = transformation().type, kTable = table().type,
                kText = string().type;
 const Stamp kStamp{{5, 7}, "eye"};
 constexpr std::int64_t kTime = 5'000'000'007;
@@ -148,7 +148,7 @@ TEST(Decode, small_ones) {
             (std::vector<double>{1, 2, 3, 4, 5, 6}));
   const auto text = decode(Type::String, cdr(String{{"zwölf"}}), kText);
   ASSERT_TRUE(text);
-  EXPECT_EQ(text->characters(), "zwölf");
+  EXPECT_EQ(text->text(), "zwölf");
   EXPECT_TRUE(decode(Type::String, cdr(String{{""}}), kText));
   CameraInfo camera;
   camera.p = {500, 0, 320, -60, 0, 510, 240, 0, 0, 0, 1, 0};

@@ -365,7 +365,7 @@ Result<Pieces> Encoder::encode_camera(const Message& message) {
 
 Result<Pieces> Encoder::encode_text(const Message& message) {
   if (message.header.info.type != MatrixType::String) return unfit(Type::String, message);
-  std::string_view text = message.characters();
+  std::string_view text = message.text();
   if (message.header.height > 1 && !message.header.empty()) {  // R32
     const auto width = static_cast<std::size_t>(message.header.width);
     text_.clear();

@@ -16,8 +16,7 @@ template <typename T>
 Message message_of(MatrixType type, int components, std::int32_t width, std::int32_t height,
                    std::vector<T> numbers, std::int32_t coord = 0) {
   Draft draft =
-      Draft::make({type, static_cast<std::uint8_t>(components), scalar_for<T>(), Encoding::Binary},
-                  width, height);
+      Draft::make({type, static_cast<std::uint8_t>(components), scalar_for<T>(), Encoding::Binary}, height, width);
   draft.header.coord = coord;
   draft.header.time = 1'763'683'200'123'456'789;
   std::ranges::copy(numbers, draft.view<T>().numbers().begin());

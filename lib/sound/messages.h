@@ -17,7 +17,7 @@ inline MessageOf<SoundKind<std::int16_t>> message_of(std::span<const std::int16_
                                                      const Format& format) {
   const auto coord = coord_of(format.rate);
   HC_CHECK(coord, format.rate);
-  return sound<std::int16_t>(format.channels, samples).in(*coord);
+  return sound(format.channels).in(*coord).message(samples);
 }
 
 /// The format of a message of sound.
@@ -35,7 +35,7 @@ inline Result<Format> format_of(const Message& message) {
 inline AnyKind any_sound() {
   AnyKind any;
   for (int channels = 1; channels <= kMostChannels; ++channels) {
-    any.types.push_back(sound<std::int16_t>(channels).type);
+    any.types.push_back(sound(channels).type);
     any.types.push_back(sound<float>(channels).type);
   }
   return any;

@@ -9,7 +9,7 @@ namespace hc {
 namespace {
 
 DraftOf<RgbImageKind<std::uint8_t>> image(std::int32_t width, std::int32_t height) {
-  return {Draft::make(rgb_image<std::uint8_t>().type.info, width, height)};
+  return {Draft::make(rgb_image().type.info, height, width)};
 }
 
 TEST(OpenCv, SharesElementsBothWays) {
@@ -60,7 +60,7 @@ TEST(OpenCv, HasTheDepthOfEachScalarThatItKnows) {
 }
 
 TEST(OpenCv, CompressedIsRefused) {
-  Message message = table({1.0});
+  Message message = table().message({1.0});
   message.header.info.encoding = Encoding::Zstd;
   EXPECT_FALSE(as_mat(message));
 }

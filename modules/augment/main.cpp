@@ -22,8 +22,8 @@ namespace {
 using hc::Coord;
 
 hc::AnyKind image(std::int32_t rectified, std::int32_t raw) {
-  return hc::any_of(hc::rgb_image<std::uint8_t>().in(rectified),
-                    hc::rgb_image<std::uint8_t>().in(raw));
+  return hc::any_of(hc::rgb_image().in(rectified),
+                    hc::rgb_image().in(raw));
 }
 
 }  // namespace
@@ -32,38 +32,35 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"augment",
                     "Draws objects into the images of both eyes, hidden by what is "
-                    "before them."};
+                    "before them.", {.background = true}};
   auto left = module.input("left", image(Coord::kLeftRectified, Coord::kLeftImage),
                            "image of the left eye, without distortion");
   auto right = module.input("right", image(Coord::kRightRectified, Coord::kRightImage),
                             "image of the right eye");
   auto depth = module.input("depth", hc::intensity_image<float>().in(Coord::kDepth),
                             "of the left image [m], 0 unknown");
-  auto intrinsics = module.input("intrinsics", hc::table<double>(),
+  auto intrinsics = module.input("intrinsics", hc::table(),
                                  "fx, fy, cx, cy [px], baseline [m] of the pair, from rectify; "
                                  "until then focal and the frames apply");
   auto cameras =
-      module.input("cameras", hc::transformation<double>(4, 4),
+      module.input("cameras", hc::transformation(),
                    "how the eyes sit on the head, from rectify; until then as the frames "
                    "have it");
-  auto poses = module.input("poses", hc::transformation<double>(4, 4),
+  auto poses = module.input("poses", hc::transformation(),
                             "T_eye_marker, from marker: objects in the markers' frames follow");
-  auto target = module.input("target", hc::position<double>().finite(),
+  auto target = module.input("target", hc::position().finite(),
                              "what the gaze follows, for the instrument gaze: x, y in the left (7) "
-                             "or right (8) image [px], or a place in any frame [m]");
-  auto confidence = module.input("confidence", hc::intensity_image<std::uint8_t>(),
+                             "or right (8) image [px], or a place in any frame [m]", {.keep = 1});
+  auto confidence = module.input("confidence", hc::intensity_image(),
                                  "of the depth, for the instrument confidence");
-  module.keep(target);
-  auto left_out = module.output("left", hc::rgb_image<std::uint8_t>(), "the left image, augmented");
+  auto left_out = module.output("left", hc::rgb_image(), "the left image, augmented");
   auto right_out =
-      module.output("right", hc::rgb_image<std::uint8_t>(), "the right image, augmented");
-  auto corners = module.output("corners", hc::table<double>(),
+      module.output("right", hc::rgb_image(), "the right image, augmented");
+  auto corners = module.output("corners", hc::table(),
                                "8 rows an object, the corners of the box around it: x, y in the "
-                               "left and x, y in the right image [px], NaN behind the eye");
-  auto mask = module.output("mask", hc::intensity_image<std::uint8_t>(),
-                            "of the left image: 255 where an object alone is seen, 0 none");
-  module.on_demand(corners);
-  module.on_demand(mask);
+                               "left and x, y in the right image [px], NaN behind the eye", {.on_demand = true});
+  auto mask = module.output("mask", hc::intensity_image(),
+                            "of the left image: 255 where an object alone is seen, 0 none", {.on_demand = true});
   auto objects =
       module.parameter("objects", "cube at world 2 0 1.2 size 0.3", "",
                        "MODEL at FRAME [to FRAME] [X Y Z [ROLL PITCH YAW]] [size SIZE|fit], with ; "
@@ -103,14 +100,14 @@ int main(int argc, char** argv) {
   };
   auto send_corners = [&](const Sight& sight) {
     const auto numbers = scene->corners(sight);
-    auto draft = corners.loan(4, static_cast<std::int32_t>(numbers.size() / 4));
+    auto draft = corners.loan(static_cast<std::int32_t>(numbers.size() / 4), 4);
     draft.header.time = sight.time;
     std::ranges::copy(numbers, draft.numbers().begin());
     corners.send(std::move(draft));
   };
   /// A message like an image, to be written.
   auto like = [](const hc::Message& image, auto& output) {
-    auto draft = output.loan(image.header.width, image.header.height);
+    auto draft = output.loan(image.header.height, image.header.width);
     draft.header.time = image.header.time;
     draft.header.coord = image.header.coord;
     return draft;
@@ -181,6 +178,5 @@ int main(int argc, char** argv) {
                       });
   });
   module.on_end([&] { frames.answer_all(); });
-  module.background();
   return module.run(argc, argv);
 }

@@ -59,16 +59,16 @@ int main(int argc, char** argv) {
   constexpr auto kWorldRightEye = hc::transform_coord(Coord::kWorld, Coord::kRightEye);
   hc::Module module{"augment_score",
                     "Compares where augment has a cube with where it would be seen."};
-  auto left_pose = module.input("left_pose", hc::transformation<double>(4, 4).in(kWorldLeftEye),
+  auto left_pose = module.input("left_pose", hc::transformation().in(kWorldLeftEye),
                                 "truth: T_world_left_eye");
-  auto right_pose = module.input("right_pose", hc::transformation<double>(4, 4).in(kWorldRightEye),
+  auto right_pose = module.input("right_pose", hc::transformation().in(kWorldRightEye),
                                  "truth: T_world_right_eye");
   auto depth = module.input("depth", hc::intensity_image<float>().in(Coord::kDepth),
                             "truth: of the left image [m]");
-  auto corners = module.input("corners", hc::table<double>(), "from augment");
-  auto mask = module.input("mask", hc::intensity_image<std::uint8_t>(), "from augment");
+  auto corners = module.input("corners", hc::table(), "from augment");
+  auto mask = module.input("mask", hc::intensity_image(), "from augment");
   auto result =
-      module.output("score", hc::table<double>().of(6, 1),
+      module.output("score", hc::table().of(1, 6),
                     "reprojection error of the corners, median and most [px], share of "
                     "the object's pixels that are right, median and minimum, fastest turn "
                     "[rad/s], images");
@@ -149,23 +149,21 @@ int main(int argc, char** argv) {
               compare_corners(eyes, found_corners.numbers());
               compare_mask(eyes[0], hc::as_mat(scene), hc::as_mat(found_mask));
             });
-  module.generate([&] {
-    constexpr double kLook = 20;  // [Hz]
-    module.keep_rate(kLook);
-    if (static_cast<double>(++waits) > *timeout * kLook)
+  constexpr std::chrono::milliseconds kLook{50};
+  module.every(kLook, [&] {
+    if (++waits * kLook > hc::duration(*timeout))
       throw hc::ModuleError("no image within timeout");
-    if (static_cast<std::int64_t>(samples.right.size()) < *images) return true;
+    if (static_cast<std::int64_t>(samples.right.size()) < *images) return;
     const double error = median(samples.errors), share = median(samples.right);
     const double worst = *std::ranges::max_element(samples.errors);
     const double least = *std::ranges::min_element(samples.right);
-    result.send(hc::table(
-        {error, worst, share, least, samples.fastest, static_cast<double>(samples.right.size())}));
+    result.send({error, worst, share, least, samples.fastest, static_cast<double>(samples.right.size())});
     module.log(
         hc::format("corners off by {:.2f} px median, {:.2f} px at most, pixels right {:.1f} % "
                    "median, {:.1f} % at least, the head turning at up to {:.0f}°/s",
                    error, worst, 100 * share, 100 * least, samples.fastest * 57.29578),
         hc::Level::Result);
-    return false;
+    module.stop();
   });
   return module.run(argc, argv);
 }

@@ -9,13 +9,13 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"brightness", "Measures how bright images are."};
-  auto image = module.input("image", hc::any_image(), "camera image");
-  auto mean = module.output("mean", hc::table<double>(), "mean of all its numbers, 0 … 255");
+  auto image = module.input("image", hc::image(), "camera image");
+  auto mean = module.output("mean", hc::table(), "mean of all its numbers, 0 … 255");
 
   module.on(image, [&](const hc::Message& message) {
     auto numbers = hc::value_or_drop(message.view<std::uint8_t>()).numbers();
     auto sum = std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
-    mean.send(hc::table({static_cast<double>(sum) / static_cast<double>(numbers.size())}));
+    mean.send({static_cast<double>(sum) / static_cast<double>(numbers.size())});
   });
   return module.run(argc, argv);
 }

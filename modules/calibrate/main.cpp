@@ -30,14 +30,14 @@ constexpr std::int64_t kRests = 300'000'000;     // it is at rest after this tim
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"calibrate", "Finds how a head's eyes are mounted, by turning it."};
-  auto left = module.input("left", hc::rgb_image<std::uint8_t>().in(hc::Coord::kLeftImage),
+  auto left = module.input("left", hc::rgb_image().in(hc::Coord::kLeftImage),
                            "image of the left camera");
-  auto right = module.input("right", hc::rgb_image<std::uint8_t>().in(hc::Coord::kRightImage),
+  auto right = module.input("right", hc::rgb_image().in(hc::Coord::kRightImage),
                             "of the right one");
-  auto command = module.output("command", hc::rotation<double>().in(hc::Coord::kGaze),
+  auto command = module.output("command", hc::rotation().in(hc::Coord::kGaze),
                                "commanded head orientation: roll 0, tilt, pan [rad]");
-  auto bid = module.output("bid", hc::table<double>(), "salience while it looks, else 0");
-  auto result = module.output("result", hc::table<double>().of(7, 1),
+  auto bid = module.output("bid", hc::table(), "salience while it looks, else 0");
+  auto result = module.output("result", hc::table().of(1, 7),
                               "eyes swapped 0/1, pan and tilt of the left eye with the unit "
                               "at 0, roll, pitch, yaw of the right eye to the left one [rad], "
                               "distance from epipolar lines, RMS [px]; once a second");
@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
 
   auto publish = [&] {
     const auto numbers = found->numbers();
-    result.send(hc::table<double>(std::span(numbers)));
+    result.send(std::span(numbers));
   };
   std::string how_found;  // for the end
   auto finish = [&](const hc::gaze::HeadCalibration& calibration, const std::string& how) {
@@ -163,7 +163,7 @@ int main(int argc, char** argv) {
     // It wants the head only while it sees with both eyes and knows how the head is turned.
     const bool sees = now - last_pair < kSilent;
     const bool wants = !is_done && now >= paused_until && (sees || work.valid());
-    bid.send(hc::table({wants ? *salience : 0.0}).at(now));
+    bid.send({wants ? *salience : 0.0}, now);
     if (!wants) {
       sent = 0;
       return;
@@ -172,7 +172,7 @@ int main(int argc, char** argv) {
     if (sent == 0) sent = now;
     if (!work.valid() && hc::seconds(now - sent) > *timeout)
       return fail("the head did not come to rest where it was sent");
-    command.send(hc::rotation(0.0, wanted.tilt, wanted.pan).at(now));
+    command.send({0.0, wanted.tilt, wanted.pan}, now);
   });
   module.every(std::chrono::seconds(1), [&] {
     if (found) publish();

@@ -25,8 +25,8 @@ int main(int argc, char** argv) {
   using hc::Coord;
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we log the results
   hc::Module module{"camera", "Sends the images of a camera, a video or image files."};
-  auto left = module.output("left", hc::rgb_image<std::uint8_t>(), "image of the left eye");
-  auto right = module.output("right", hc::rgb_image<std::uint8_t>(), "image of the right eye");
+  auto left = module.output("left", hc::rgb_image(), "image of the left eye");
+  auto right = module.output("right", hc::rgb_image(), "image of the right eye");
   auto left_name = module.parameter("source", "", "",
                                     "left or only eye: aravis:NAME, a number or /dev/videoN, "
                                     "rtsp://…, a video, pipeline, folder or image",
@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
     if (image.empty()) return;
     const cv::Mat fitted =
         hc::vision::fit(image, static_cast<int>(*width), static_cast<int>(*height), *smooth);
-    auto draft = output.loan(fitted.cols, fitted.rows);
+    auto draft = output.loan(fitted.rows, fitted.cols);
     draft.header.time = *stamped ? time : 0;
     draft.header.coord = coord;
     hc::fill(draft, [&](cv::Mat& rgb) { cv::cvtColor(fitted, rgb, cv::COLOR_BGR2RGB); });
@@ -128,18 +128,14 @@ int main(int argc, char** argv) {
     return file.next();
   };
   module.generate([&] {
-    if (*count > 0 && sent == *count) return false;
-    if (cameras != nullptr) {
-      take_live();
-      return true;
-    }
+    if (*count > 0 && sent == *count) return module.stop();
+    if (cameras != nullptr) return take_live();
     if (*rate > 0) module.keep_rate(*rate);
     const cv::Mat left_image = next(*left_file);
     const std::int64_t time = module.now();
     const cv::Mat right_image = right_file ? next(*right_file) : cv::Mat();
-    if (left_image.empty() || (right_file && right_image.empty())) return false;
+    if (left_image.empty() || (right_file && right_image.empty())) return module.stop();
     send_both(left_image, right_image, time);
-    return true;
   });
   return module.run(argc, argv);
 }

@@ -15,9 +15,9 @@ namespace web = hc::web;
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"foxglove", "Shows the graph in Foxglove and Lichtblick, live."};
+  hc::Module module{"foxglove", "Shows the graph in Foxglove and Lichtblick, live.", {.keep_running = true}};
   auto poses =
-      module.input("frames", hc::transformation<double>(4, 4), "poses, linked by `hc run`");
+      module.input("frames", hc::transformation(), "poses, linked by `hc run`");
   auto listen = module.parameter(
       "listen", "127.0.0.1", "",
       "IP address; other machines can reach any but 127.0.0.1, with TLS alone", {.fixed = true});
@@ -54,7 +54,6 @@ int main(int argc, char** argv) {
     bridge = &service->serve(std::make_unique<Bridge>(
         Bridge::Options{*graph, std::move(joints), *images == "jpeg"}, access, service->server()));
   });
-  module.keep_running();
   module.on_readable([&] { return loop->descriptor(); },
                      [&] { hc::succeed_or_end(loop->turn(std::chrono::milliseconds(0))); });
   module.on(poses, [&](const auto& pose) {

@@ -10,7 +10,7 @@
 namespace {
 
 hc::Message message(const hc::Info& info, std::int32_t width, std::int32_t height) {
-  hc::Draft draft = hc::Draft::make(info, width, height);
+  hc::Draft draft = hc::Draft::make(info, height, width);
   std::memset(draft.elements().data(), 7, draft.elements().size());
   return std::move(draft).finish();
 }

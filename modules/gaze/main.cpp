@@ -44,25 +44,21 @@ int main(int argc, char** argv) {
                     "Turns the head to a target, and bids for the head while there is one."};
   auto target =
       module.input("target",
-                   hc::any_of(hc::position<double>(), hc::transformation<double>(4, 4),
-                              hc::table<double>().of(hc::vision::kMarkerColumns, 0)),
+                   hc::any_of(hc::position(), hc::transformation(),
+                              hc::table().of(0, hc::vision::kMarkerColumns)),
                    "x, y in the left (7) or right (8) image [px], or a place in any frame [m]; a "
-                   "pose of marker, or its table; in each image or frame of one source at a time");
+                   "pose of marker, or its table; in each image or frame of one source at a time", {.keep = 1});
   auto setpoint = module.input(
-      "setpoint", hc::rotation<double>(),
+      "setpoint", hc::rotation(),
       "orientation to take, roll, tilt, pan [rad]: of the neck (13) or a person's head "
-      "(14), or in a frame; of one source at a time");
-  auto stick = module.input("stick", hc::table<double>().of(2, 1).finite(),
+      "(14), or in a frame; of one source at a time", {.keep = 1});
+  auto stick = module.input("stick", hc::table().of(1, 2).finite(),
                             "turn to the left, turn down, -1 … 1 of stick_rate; repeated while "
-                            "pushed; of one source at a time");
-  auto calibration = module.input("calibration", hc::table<double>(), "result of calibrate");
-  module.keep(target);
-  module.keep(setpoint);
-  module.keep(stick);
-  module.keep(calibration);
-  auto command = module.output("command", hc::rotation<double>().in(hc::Coord::kGaze),
+                            "pushed; of one source at a time", {.keep = 1});
+  auto calibration = module.input("calibration", hc::table(), "result of calibrate", {.keep = 1});
+  auto command = module.output("command", hc::rotation().in(hc::Coord::kGaze),
                                "commanded head orientation: roll 0, tilt, pan [rad]");
-  auto bid = module.output("bid", hc::table<double>(),
+  auto bid = module.output("bid", hc::table(),
                            "salience while there is a target, else idle_salience");
   hc::ModuleFrames frames{module};
   const GazeParameters parameters{module};
@@ -89,20 +85,20 @@ int main(int argc, char** argv) {
         Eigen::Quaterniond(frames.nearest(kRobot, kHead, module.now()).linear()));
   };
   auto send = [&](const std::optional<hc::gaze::Angles>& to) {
-    if (to) command.send(hc::rotation(0.0, to->tilt, to->pan).at(module.now()));
+    if (to) command.send({0.0, to->tilt, to->pan}, module.now());
   };
   auto follow = [&] { send(controller->follow(module.now(), measured())); };
   auto steer = [&] { send(controller->steer(module.now(), measured())); };
   auto send_bid = [&] {
     was_wanted = controller->wants_head(module.now());
     const double salience = was_wanted ? *parameters.salience : *parameters.idle_salience;
-    bid.send(hc::table({salience}).at(module.now()));
+    bid.send({salience}, module.now());
   };
   /// When a message was made. One that is old is not wanted any more; one of the future would hold
   /// back all that is made until then.
   auto time_of = [&](const hc::Header& header, double oldest) -> std::int64_t {
     if (header.time <= 0) return module.now();
-    const double age = module.seconds_since(header.time);
+    const double age = hc::seconds(module.now() - header.time);
     if (age <= oldest && age >= -kAhead) return header.time;
     throw hc::BadMessage(
         hc::format("it is {:.3f} s {}", std::abs(age), age > 0 ? "old" : "in the future"));

@@ -13,12 +13,12 @@
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"head_tracker", "Follows a person's head by an opentrack tracker."};
+  hc::Module module{"head_tracker", "Follows a person's head by an opentrack tracker.", {.keep_running = true}};
   auto centre = module.input("centre", hc::anything(), "makes the head's pose the new zero");
-  auto rotation = module.output("rotation", hc::rotation<double>().in(hc::Coord::kSupervisor),
+  auto rotation = module.output("rotation", hc::rotation().in(hc::Coord::kSupervisor),
                                 "roll, pitch, yaw since the zero [rad]; yaw > 0 turns left, pitch "
                                 "> 0 looks down");
-  auto position = module.output("position", hc::position<double>().in(hc::Coord::kSupervisor),
+  auto position = module.output("position", hc::position().in(hc::Coord::kSupervisor),
                                 "x forward, y left, z up since the zero [m]");
   auto address = module.output("address", hc::string(),
                                "where it listens, 127.0.0.1:4242; each second and on change");
@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
 
   const hc::SystemClock clock;
   std::optional<hc::TrackedHead> head;
-  auto send_address = [&] { address.send(hc::string(head->address()).at(module.now())); };
+  auto send_address = [&] { address.send(head->address(), module.now()); };
   auto pass = [&] {
     const bool listened = !head->address().empty();
     hc::succeed_or_end(head->pass(clock.monotonic()));
@@ -64,14 +64,15 @@ int main(int argc, char** argv) {
   });
   module.every(std::chrono::seconds(1), send_address);
   module.every(hc::TrackedHead::kLook, pass);
-  module.keep_running();
   module.on(centre, [&](const hc::Message&) { head->centre(); });
   module.on_readable([&] { return head->descriptor(); },
                      [&] {
                        const auto pose = hc::value_or_end(head->receive(clock.monotonic()));
                        if (!pose) return;
-                       rotation.send(hc::rotation(pose->pose.angles()).at(pose->time));
-                       position.send(hc::position(pose->pose.p).at(pose->time));
+                       const auto& p = pose->pose.p;
+                       const auto angles = pose->pose.angles();
+                       rotation.send({angles.x(), angles.y(), angles.z()}, pose->time);
+                       position.send({p.x(), p.y(), p.z()}, pose->time);
                      });
   return module.run(argc, argv);
 }

@@ -11,12 +11,12 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"point_score", "Pushes a stick and measures when the head begins to move."};
-  auto motion = module.input("motion", hc::rotation<double>().in(hc::Coord::kGaze),
+  auto motion = module.input("motion", hc::rotation().in(hc::Coord::kGaze),
                              "truth: roll, tilt, pan of the head [rad]");
-  auto report = module.input("gaze", hc::rotation<double>().in(hc::Coord::kGaze),
+  auto report = module.input("gaze", hc::rotation().in(hc::Coord::kGaze),
                              "measured head orientation; with the first one it starts");
-  auto stick = module.output("stick", hc::table<double>().of(2, 1), "left > 0, down > 0, -1 to 1");
-  auto result = module.output("score", hc::table<double>().of(4, 1),
+  auto stick = module.output("stick", hc::table().of(1, 2), "left > 0, down > 0, -1 to 1");
+  auto result = module.output("score", hc::table().of(1, 4),
                               "median and maximum time from the stick to the motion [s], "
                               "pushes that moved the head, pushes");
   auto count = module.parameter("count", 20, "", "pushes", {.min = 1, .max = 1e6, .fixed = true});
@@ -43,18 +43,16 @@ int main(int argc, char** argv) {
     pusher->take(hc::seconds(message.header.time), hc::gaze::angles_of(q));
   });
   module.on(report, [&](const auto&) { is_ready = true; });
-  module.generate([&] {
-    constexpr double kLook = 1000;  // [Hz]
-    module.keep_rate(kLook);
-    if (!is_ready) return true;
+  module.every(std::chrono::milliseconds(1), [&] {
+    if (!is_ready) return;
     const std::int64_t now = module.now();
     if (const auto pushed = pusher->look(hc::seconds(now), *rate))
-      stick.send(hc::table({pushed->left, pushed->down}).at(now));
-    if (!pusher->is_done()) return true;
+      stick.send({pushed->left, pushed->down}, now);
+    if (!pusher->is_done()) return;
     const auto score = pusher->score();
-    result.send(hc::table<double>(score.numbers()));
+    result.send(score.numbers());
     module.log(score.text(), hc::Level::Result);
-    return false;
+    module.stop();
   });
   return module.run(argc, argv);
 }

@@ -68,7 +68,7 @@ std::uint64_t bytes_of(const std::string& parameter, const std::string& text) {
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"recorder",
-                    "Records streams into a file of MCAP, which viewers read, or into a folder."};
+                    "Records streams into a file of MCAP, which viewers read, or into a folder.", {.finish_when_stopped = true}};
   sigset_t saves;  // a signal that is read from a descriptor
   ::sigemptyset(&saves);
   ::sigaddset(&saves, SIGUSR1);
@@ -157,7 +157,6 @@ int main(int argc, char** argv) {
                        while (::read(signals, &info, sizeof info) > 0)
                          if (recording != nullptr) recording->save();
                      });
-  module.finish_when_stopped();
   module.on_end([&] {
     graph.reset();
     const auto& written = recording->close();

@@ -67,9 +67,9 @@ struct Frames {
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"ros2", "Talks to ROS 2: outputs of the graph as topics, and topics here."};
+  hc::Module module{"ros2", "Talks to ROS 2: outputs of the graph as topics, and topics here.", {.keep_running = true}};
   auto poses =
-      module.input("frames", hc::transformation<double>(4, 4), "poses, linked by `hc run`");
+      module.input("frames", hc::transformation(), "poses, linked by `hc run`");
   std::map<std::string, Destination> outputs;
   const auto add = [&]<typename K>(const std::string& name, const K& kind, const char* doc) {
     outputs[name] = {kind.type,
@@ -77,19 +77,19 @@ int main(int argc, char** argv) {
                        output.send(hc::MessageOf<K>{std::move(message)});
                      }};
   };
-  add("image", hc::rgb_image<std::uint8_t>(), "of Image or CompressedImage");
-  add("grey", hc::intensity_image<std::uint8_t>(), "of Image or CompressedImage");
+  add("image", hc::rgb_image(), "of Image or CompressedImage");
+  add("grey", hc::intensity_image(), "of Image or CompressedImage");
   add("depth", hc::intensity_image<float>(), "of Image [m], 0 unknown");
   auto points = hc::position<float>();
   points.type.info.encoding = hc::Encoding::Binary;  // there are many
   add("points", points, "of PointCloud2");
-  add("camera", hc::table<double>().of(5, 1), "of CameraInfo: fx, fy, cx, cy [px], baseline [m]");
-  add("pose", hc::transformation<double>(4, 4), "of PoseStamped or TFMessage");
-  add("twist", hc::table<double>().of(6, 1), "of Twist: linear, angular");
-  add("joints", hc::table<double>(),
+  add("camera", hc::table().of(1, 5), "of CameraInfo: fx, fy, cx, cy [px], baseline [m]");
+  add("pose", hc::transformation(), "of PoseStamped or TFMessage");
+  add("twist", hc::table().of(1, 6), "of Twist: linear, angular");
+  add("joints", hc::table(),
       "of JointState: a row of positions, then of velocities and efforts");
   add("text", hc::string(), "of String");
-  add("numbers", hc::table<double>(), "of Float64MultiArray");
+  add("numbers", hc::table(), "of Float64MultiArray");
   const auto publish = module.parameter(
       "publish", "", "", "outputs as topics: MODULE.PORT=/topic[:TYPE] [rate=HZ], …; frames=/tf",
       {.fixed = true});
@@ -181,7 +181,6 @@ int main(int argc, char** argv) {
     }
     arrived.raise();
   });
-  module.keep_running();
   module.on_readable([&] { return loop->descriptor(); },
                      [&] { hc::succeed_or_end(loop->turn(std::chrono::milliseconds(0))); });
 

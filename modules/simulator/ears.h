@@ -10,7 +10,7 @@
 
 class Ears {
  public:
-  using Output = hc::Output<decltype(hc::sound<std::int16_t>(2))>;
+  using Output = hc::Output<decltype(hc::sound(2))>;
 
   /// @param left, right  where they are in the head [m]. @param start  time of the first sample
   /// [ns].

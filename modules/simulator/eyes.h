@@ -24,7 +24,7 @@ struct View {
 
 class Eyes {
  public:
-  using Kind = decltype(hc::rgb_image<std::uint8_t>());
+  using Kind = decltype(hc::rgb_image());
   using Output = hc::Output<Kind>;
 
   /// @param parameters, renderer  must outlive it.

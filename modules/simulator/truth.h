@@ -42,11 +42,11 @@ class Truth {
   void send_markers(std::int64_t time, const std::vector<hc::room::RoomMarker>& markers);
 
  private:
-  using Poses = hc::Output<decltype(hc::transformation<double>(4, 4))>;
-  using Tables = hc::Output<decltype(hc::table<double>())>;
+  using Poses = hc::Output<decltype(hc::transformation())>;
+  using Tables = hc::Output<decltype(hc::table())>;
 
   Poses head_pose_, left_pose_, right_pose_;
-  hc::Output<decltype(hc::position<double>(6))> ball_;
+  hc::Output<decltype(hc::position(6))> ball_;
   Tables ball_seen_, markers_;
   hc::Output<decltype(hc::string())> board_;
 };

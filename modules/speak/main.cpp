@@ -22,9 +22,8 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"speak", "Speaks text aloud, by eSpeak NG."};
   auto text =
-      module.input("text", hc::string(), "what to say; UTF-8, at most 2000 characters of it");
-  module.keep(text, 16);  // as many as are said in a minute or two
-  auto sound = module.output("sound", hc::sound<std::int16_t>(1).in(hc::Coord::kSound22k),
+      module.input("text", hc::string(), "what to say; UTF-8, at most 2000 characters of it", {.keep = 16});
+  auto sound = module.output("sound", hc::sound(1).in(hc::Coord::kSound22k),
                              "a message for each text");
   auto words = module.output("words", hc::string().in(hc::Coord::kText),
                              "a message for each text, with the sound's time, and in it a row for "
@@ -65,7 +64,7 @@ int main(int argc, char** argv) {
     problem.clear();
     const auto time = next.time != 0 ? next.time : module.now();
     const auto frames = speech->samples.size();
-    auto draft = sound.loan(static_cast<std::int32_t>(frames), 1);
+    auto draft = sound.loan(1, static_cast<std::int32_t>(frames));
     draft.header.time = time;
     draft.header.mode = next.mode;
     std::copy(speech->samples.begin(), speech->samples.end(), draft.matrix().numbers().begin());

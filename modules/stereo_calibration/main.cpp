@@ -13,12 +13,12 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"stereo_calibration",
                     "Finds the geometry of two cameras from views of a chessboard."};
-  auto left = module.input("left", hc::any_image(hc::Coord::kLeftImage), "image of the left eye");
-  auto right = module.input("right", hc::any_image(hc::Coord::kRightImage),
+  auto left = module.input("left", hc::image(hc::Coord::kLeftImage), "image of the left eye");
+  auto right = module.input("right", hc::image(hc::Coord::kRightImage),
                             "the right eye's of the same time");
-  auto found = module.output("view", hc::table<double>(),
+  auto found = module.output("view", hc::table(),
                              "views so far, views wanted, with each that is taken");
-  auto result = module.output("score", hc::table<double>(),
+  auto result = module.output("score", hc::table(),
                               "reprojection error of the pair, the left, the right camera [px], "
                               "mean difference of rows [px], baseline [m], views used");
   auto file = module.parameter("calibration_file", "calibration.yml", "", "where it is written",
@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
     if (!views) return;
     const auto calibrated = hc::value_or_end(std::exchange(views, std::nullopt)->calibrate());
     hc::succeed_or_end(hc::vision::write_calibration(*file, calibrated.calibration));
-    result.send(hc::table<double>(calibrated.numbers()).at(time));
+    result.send(calibrated.numbers(), time);
     module.log(calibrated.text() + ": " + *file);
   };
   module.on_start([&] {
@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
                                        hc::value_or_drop(hc::as_mat(r)), *min_difference)))
       return;
     time = std::max(l.header.time, r.header.time);
-    found.send(hc::table({static_cast<double>(views->size()), static_cast<double>(*wanted)}));
+    found.send({static_cast<double>(views->size()), static_cast<double>(*wanted)});
     if (views->size() >= static_cast<std::size_t>(*wanted)) finish();
   });
   module.on_end(finish);

@@ -53,10 +53,10 @@ std::vector<std::string> layouts() {
 int main(int argc, char** argv) {
   hc::add_all_transports();
   namespace fs = std::filesystem;
-  hc::Module module{"view", "Shows images in a window and saves them as PNG files."};
+  hc::Module module{"view", "Shows images in a window and saves them as PNG files.", {.finish_when_stopped = true}};
   auto image =
       module.input("image",
-                   hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>(),
+                   hc::any_of(hc::rgb_image(), hc::intensity_image(),
                               hc::intensity_image<std::uint16_t>(), hc::intensity_image<float>()),
                    "an image; other than u8 in colours, blue for small values");
   auto save = module.parameter("save", "", "",
@@ -168,7 +168,6 @@ int main(int argc, char** argv) {
     show(eyes.header, hc::vision::join_eyes(eyes.left, eyes.right, *stereo));
     eyes = {};
   });
-  module.finish_when_stopped();
   module.on_end([&] {
     write_latest();
     constexpr std::chrono::milliseconds kPause{20};  // between looks for a signal

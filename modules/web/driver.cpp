@@ -71,7 +71,7 @@ std::string problem(Control control, const hc::Message& message,
 }
 
 hc::Message withdrawn(const hc::Message& bid) {
-  auto message = static_cast<hc::Message>(hc::table({0.0}));
+  auto message = static_cast<hc::Message>(hc::table().message({0.0}));
   message.header.mode = bid.header.mode;
   return message;
 }
@@ -130,7 +130,7 @@ std::vector<Order> Driver::tick(std::int64_t wall, hc::MonotonicTime now) {
 
 std::vector<Order> Driver::leave(std::int64_t wall) {
   std::vector<Order> orders;
-  if (std::exchange(is_pushed_, false)) orders.push_back({Control::Stick, hc::table({0.0, 0.0})});
+  if (std::exchange(is_pushed_, false)) orders.push_back({Control::Stick, hc::table().message({0.0, 0.0})});
   if (bid_) orders.push_back({Control::Bid, withdrawn(*std::exchange(bid_, std::nullopt))});
   for (auto& order : orders) order.message.header.time = wall;
   return orders;

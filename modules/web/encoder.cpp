@@ -130,7 +130,7 @@ hc::Result<hc::Message> Vp8Encoder::encode(const hc::Message& message, bool is_k
     if (packet->kind != VPX_CODEC_CX_FRAME_PKT) continue;
     const auto& frame = packet->data.frame;
     hc::Message coded =
-        hc::table<std::uint8_t>(std::span(static_cast<const std::uint8_t*>(frame.buf), frame.sz));
+        hc::table<std::uint8_t>().message(std::span(static_cast<const std::uint8_t*>(frame.buf), frame.sz));
     const auto info = coded.header.info;
     const auto width = coded.header.width;
     coded.header = message.header;

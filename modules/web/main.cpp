@@ -42,28 +42,21 @@ void open_in_browser(const std::string& url) {
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"web", "Serves a page: the graph live, its streams, and the driver's seat."};
+  hc::Module module{"web", "Serves a page: the graph live, its streams, and the driver's seat.", {.keep_running = true}};
   auto stopped = module.input("stopped", hc::table<std::uint8_t>().of(1, 1),
-                              "from workspace: 1 while the robot is stopped");
-  module.keep(stopped);
-  auto stick = module.output("stick", hc::table<double>().of(2, 1),
-                             "left > 0, down > 0, each -1 to 1, from who drives");
-  auto rotation = module.output("rotation", hc::rotation<double>().in(hc::Coord::kSupervisor),
-                                "roll, pitch, yaw of their head [rad]");
-  auto target = module.output("target", hc::position<double>(),
-                              "where they point: x, y in the left (7) or right (8) image [px]");
-  auto text = module.output("text", hc::string(), "to be spoken");
-  auto bid = module.output("bid", hc::table<double>(), "for the task they have chosen");
+                              "from workspace: 1 while the robot is stopped", {.keep = 1});
+  auto stick = module.output("stick", hc::table().of(1, 2),
+                             "left > 0, down > 0, each -1 to 1, from who drives", {.keep = 1});
+  auto rotation = module.output("rotation", hc::rotation().in(hc::Coord::kSupervisor),
+                                "roll, pitch, yaw of their head [rad]", {.keep = 1});
+  auto target = module.output("target", hc::position(),
+                              "where they point: x, y in the left (7) or right (8) image [px]", {.keep = 1});
+  auto text = module.output("text", hc::string(), "to be spoken", {.keep = kTexts});
+  auto bid = module.output("bid", hc::table(), "for the task they have chosen", {.keep = kBids});
   auto stop = module.output("stop", hc::table<std::uint8_t>().of(1, 1),
                             "1, repeated: the robot is to stop; 0, repeated: not, but a page is "
-                            "open; 2: a person clears all stops; 3: no page is open any more");
+                            "open; 2: a person clears all stops; 3: no page is open any more", {.keep = 1});
   // The stop is never held up by who does not take what a driver sends.
-  module.never_waits(stick);
-  module.never_waits(rotation);
-  module.never_waits(target);
-  module.never_waits(text, kTexts);
-  module.never_waits(bid, kBids);
-  module.never_waits(stop);
   auto listen = module.parameter(
       "listen", "127.0.0.1", "",
       "IP address; other machines can reach any but 127.0.0.1, with TLS alone", {.fixed = true});
@@ -91,7 +84,7 @@ int main(int argc, char** argv) {
 
   std::int64_t ordered = 0;  // when a person stopped the robot or cleared that [ns]
   auto send_stop = [&](Stop::Word word, std::int64_t said) {
-    stop.send(hc::table({static_cast<std::uint8_t>(word)}).at(said));
+    stop.send({static_cast<std::uint8_t>(word)}, said);
   };
   const auto control_of = [](auto& output) -> Commanded {
     return {[&](const hc::Message& message) { output.send({message}); },
@@ -146,7 +139,6 @@ int main(int argc, char** argv) {
     if (*browser && web::is_local(*listen)) open_in_browser(url);
     seen = module.monotonic();
   });
-  module.keep_running();
   for (auto* each : {stops.get(), loop.get()})
     module.on_readable([each] { return each->descriptor(); },
                        [each] { hc::succeed_or_end(each->turn(std::chrono::milliseconds(0))); });

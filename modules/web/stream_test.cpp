@@ -33,7 +33,7 @@ class Observed {
     const auto reply = *hc::open_sink(uri(hc::read_request(asked).reply));
     ASSERT_TRUE(reply->send(answer));
     ASSERT_TRUE(reply->close());
-    ASSERT_TRUE(numbers_->send(hc::table({1.0})));
+    ASSERT_TRUE(numbers_->send(hc::table().message({1.0})));
   }
 
   const std::string place_ = "@" + graph.socket_name() + ".m.p";

@@ -14,22 +14,19 @@
 
 int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   hc::Module module{"workspace", "Grants the focus to the highest bid and publishes it.", clock};
-  auto bids = module.input("bids", hc::table<double>(),
-                           "salience 0 … 1 of the message's mode and src; 0 withdraws that one");
-  auto person = module.input("person", hc::table<double>(),
-                             "the same from a person, above all others while it is valid");
+  auto bids = module.input("bids", hc::table(),
+                           "salience 0 … 1 of the message's mode and src; 0 withdraws that one", {.keep = 16});
+  auto person = module.input("person", hc::table(),
+                             "the same from a person, above all others while it is valid", {.keep = 16});
   auto stop = module.input("stop", hc::table<std::uint8_t>().of(1, 1),
                            "of its src, 1: no mode has the focus until the same src says 0; 0, "
                            "repeated: it guards, and its silence halts too; 2: a person clears all "
-                           "stops; 3: it guards no more");
+                           "stops; 3: it guards no more", {.keep = 16});
   // More than one, since bids for several modes, and stops of several sources, may share a link.
-  module.keep(bids, 16);
-  module.keep(person, 16);
-  module.keep(stop, 16);
   auto focus = module.output("focus", hc::table<std::int32_t>().of(1, 1),
                              "number of the mode in focus, 0 none; each period");
   auto standings = module.output(
-      "standings", hc::table<double>(),
+      "standings", hc::table(),
       "a row for each mode with a bid: mode, salience, age [s], in focus 0/1, a person's 0/1");
   auto stopped =
       module.output("stopped", hc::table<std::uint8_t>().of(1, 1),
@@ -70,10 +67,10 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
       if (auto names = checked(hc::parse_mode_names(sources_read, hc::kSourceNames)))
         workspace.brake.set_names(std::move(*names));
   };
-  auto report = [&] { module.report_focus(workspace.focus(), workspace.brake.stops()); };
+  auto report = [&] { hc::internal::ModuleAccess::report_focus(module, workspace.focus(), workspace.brake.stops()); };
   auto send_stopped = [&] {
     const std::uint8_t is_stopped = workspace.brake.is_stopped() ? 1 : 0;
-    stopped.send(hc::table({is_stopped}).at(module.now()));
+    stopped.send({is_stopped}, module.now());
   };
   /// When a message was made, by the clock of bids.
   auto made_at = [&](const hc::Header& header) {
@@ -132,9 +129,9 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
     if (workspace.decide(now)) module.log("focus: " + workspace.last_change());
     report();
     const std::int64_t time = module.now();
-    focus.send(hc::table({workspace.focus()}).at(time));
+    focus.send({workspace.focus()}, time);
     auto rows = workspace.standings(now);
-    auto draft = standings.loan(5, static_cast<std::int32_t>(rows.size()));
+    auto draft = standings.loan(static_cast<std::int32_t>(rows.size()), 5);
     draft.header.time = time;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       auto row = draft.matrix().row(i);

@@ -28,14 +28,14 @@ def rgb_image(scalar: Any = "u8") -> Kind:
     return _hypercolumn.kind("rgb_image", 3, scalar)
 
 
-def image() -> Kind:
-    """A colour image of bytes, (height, width, 3): rgb_image("u8")."""
-    return rgb_image()
-
-
 def intensity_image(scalar: Any = "u8") -> Kind:
     """A grey image or a depth map, (height, width)."""
     return _hypercolumn.kind("intensity_image", 1, scalar)
+
+
+def image() -> Kind:
+    """An image of bytes, in colour or grey, for an input: (height, width, 3) or (height, width)."""
+    return _hypercolumn.any_of(rgb_image(), intensity_image())
 
 
 def vector_field(components: int, scalar: Any = "f32") -> Kind:

@@ -5,7 +5,7 @@ import sys
 from typing import Any, Callable, List, Optional, Sequence, TypeVar, Union
 
 from hypercolumn import _hypercolumn
-from hypercolumn._hypercolumn import Frames, Input, Kind, Output, Parameter, Timeout
+from hypercolumn._hypercolumn import Input, Kind, Output, Parameter, Timeout
 from hypercolumn.errors import Error
 
 Handler = TypeVar("Handler", bound=Callable[..., Any])
@@ -33,9 +33,23 @@ class Module(_hypercolumn.Module):
     such as --help, --describe, --in and --out, are there as for one in C++ (doc/modules.md).
     """
 
-    def __init__(self, name: str, summary: str) -> None:
-        """`name` is in snake_case, as in the graph; `summary` is one sentence."""
-        super().__init__(name, summary)
+    def __init__(
+        self,
+        name: str,
+        summary: str,
+        *,
+        background: bool = False,
+        keep_running: bool = False,
+        finish_when_stopped: bool = False,
+    ) -> None:
+        """`name` is in snake_case, as in the graph; `summary` is one sentence.
+
+        In the `background`, the process yields the processor to closed loops: for a module that is
+        in no hurry. With `keep_running` it runs until it is stopped, though its inputs have ended:
+        for a device that sends unasked. With `finish_when_stopped` it first takes the messages that
+        still come from modules that end beside it.
+        """
+        super().__init__(name, summary, background, keep_running, finish_when_stopped)
         self._handled: List[str] = []
 
     def input(
@@ -49,9 +63,16 @@ class Module(_hypercolumn.Module):
         """
         return self._input(name, kind, doc, actor, keep)
 
-    def output(self, name: str, kind: Kind, doc: str) -> Output:
-        """Declares an output, of one kind."""
-        return self._output(name, kind, doc)
+    def output(
+        self, name: str, kind: Kind, doc: str, *, on_demand: bool = False, keep: int = 0
+    ) -> Output:
+        """Declares an output, of one kind.
+
+        One `on_demand` is sent only by a link to it alone, and has no part in the standard output
+        that outputs share. With `keep`, sending never waits: for a slow reader so many of the
+        newest messages wait, and without a reader a message is lost.
+        """
+        return self._output(name, kind, doc, on_demand, keep)
 
     def parameter(
         self,
@@ -124,7 +145,7 @@ class Module(_hypercolumn.Module):
 
     def generate(self, handler: Handler) -> Handler:
         """For a module that makes messages unasked: the function is called again and again while
-        no message waits, until it gives False. The module ends then."""
+        no message waits, until stop()."""
         self._generate(handler)
         return handler
 
@@ -137,11 +158,6 @@ class Module(_hypercolumn.Module):
         """Has a function called once, when all inputs have ended. Not after an error."""
         self._on_end(handler)
         return handler
-
-    def frames(self) -> Frames:
-        """The frames of the module's graph: where its eyes, its head and all else are (doc/frames.md).
-        Declares a parameter and an input `frames`."""
-        return Frames(self)
 
     def run(self, arguments: Optional[Sequence[str]] = None) -> None:
         """Runs the module as the command line says, or `arguments` without a program's name, until

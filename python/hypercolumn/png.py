@@ -11,9 +11,9 @@ def png(message: Any) -> Optional[bytes]:
     bytes are shown from their least to their greatest finite one."""
     import numpy
 
-    if message.type not in ("rgb_image", "intensity_image") or message.array.size == 0:
+    if message.type not in ("rgb_image", "intensity_image") or message.matrix.size == 0:
         return None
-    pixels = message.array
+    pixels = message.matrix
     if pixels.dtype != numpy.uint8:
         known = pixels[numpy.isfinite(pixels)].astype(float)
         low, high = (known.min(), known.max()) if known.size else (0.0, 0.0)

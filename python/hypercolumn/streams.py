@@ -12,7 +12,7 @@ def open(uri: str, *, limit: Optional[int] = None) -> Stream:
 
         with hc.open("unix:/tmp/eye?wait=10") as messages:
             for message in messages:
-                print(message.array.mean())
+                print(message.matrix.mean())
 
     They come one after the other until the link ends; Ctrl-C ends a wait. What is compressed has
     been expanded. `limit` is the largest size of a message's elements that is accepted [byte].

@@ -60,7 +60,7 @@ bool warn_kept(Keeper& keeper) {
   }
   const std::string text = hc::format(
       "{} messages of {} are kept in the memory of their publisher; while it is so, further ones "
-      "are copied. To keep numbers, keep a copy: message.array.copy()",
+      "are copied. To keep numbers, keep a copy: message.matrix.copy()",
       keeper.kept.size(), keeper.name);
   return PyErr_WarnExplicitObject(PyExc_RuntimeWarning, py::str(text).ptr(), line.file.ptr(),
                                   line.number, nullptr, nullptr) == 0;
@@ -105,7 +105,7 @@ bool must_be_plain(const hc::Message& message) {
   return false;
 }
 
-PyObject* get_array(PyObject* self, void*) {
+PyObject* get_matrix(PyObject* self, void*) {
   auto& each = *reinterpret_cast<PyMessage*>(self);
   if (!must_be_plain(each.message)) return nullptr;
   if (each.keeper != nullptr && each.keeper->kept.size() > Keeper::kMostKept / 4) note_line(each);
@@ -151,7 +151,7 @@ PyObject* get_text(PyObject* self, void*) {
     return nullptr;
   }
   if (!must_be_plain(message)) return nullptr;
-  if (message.header.height <= 1) return decode(message.characters());
+  if (message.header.height <= 1) return decode(message.text());
   std::string text;
   for (const auto& row : hc::rows_of(message)) text += (text.empty() ? "" : "\n") + row;
   return decode(text);
@@ -192,13 +192,13 @@ PyObject* describe(PyObject* self) {
 }
 
 PyGetSetDef fields[] = {
-    {"array", guarded<get_array>, nullptr,
+    {"matrix", guarded<get_matrix>, nullptr,
      "The elements as a numpy array, read-only and without a copy: (height, width, components),\n"
      "without the last where it is 1. While an array lives, so does its memory; the publisher of\n"
-     "shared memory lends few messages, so keep array.copy() of what is to be kept for long.",
+     "shared memory lends few messages, so keep matrix.copy() of what is to be kept for long.",
      nullptr},
     {"numbers", guarded<get_numbers>, nullptr,
-     "All numbers, row by row, as a tuple of Python numbers: for few. Of many take array.",
+     "All numbers, row by row, as a tuple of Python numbers: for few. Of many take matrix.",
      nullptr},
     {"text", guarded<get_text>, nullptr,
      "The text of a string; its rows have a line feed between them.", nullptr},

@@ -121,19 +121,16 @@ std::function<void()> action(Program& program, const py::object& function) {
 }
 
 PyInput add_input(Program& program, const std::string& name, const Kind& kind,
-                  const std::string& doc, bool is_actor, std::uint32_t keep) {
-  auto& module = program.module();
-  PyInput port{name, module.input(name, hc::AnyKind{kind.types}, doc)};
-  if (is_actor) module.actor(port.input);
-  if (keep > 0) module.keep(port.input, keep);
-  return port;
+                  const std::string& doc, bool actor, std::uint32_t keep) {
+  return {name, program.module().input(name, hc::AnyKind{kind.types}, doc, {actor, keep})};
 }
 
 py::object add_output(const py::object& self, const std::string& name, const Kind& kind,
-                      const std::string& doc) {
+                      const std::string& doc, bool on_demand, std::uint32_t keep) {
   auto& program = self.cast<Program&>();
-  program.module().output(name, hc::AnyKind{{kind.only("an output")}}, doc);
-  return make_output(program, program.module().outputs().back(), self);
+  auto& module = program.module();
+  module.output(name, hc::AnyKind{{kind.only("an output")}}, doc, {on_demand, keep});
+  return make_output(program, hc::internal::ModuleAccess::outputs(module).back(), self);
 }
 
 PyParameter add_parameter(Program& program, const std::string& name, const py::object& initial,
@@ -156,7 +153,7 @@ PyParameter add_parameter(Program& program, const std::string& name, const py::o
     module.parameter(name, initial.cast<double>(), unit, doc, options);
   else
     module.parameter(name, initial.cast<std::string>(), unit, doc, options);
-  return {&program, module.parameters().back()};
+  return {&program, hc::internal::ModuleAccess::parameters(module).back()};
 }
 
 void every(Program& program, const py::object& period, const py::object& function) {
@@ -169,13 +166,6 @@ void every(Program& program, const py::object& period, const py::object& functio
   } else {
     module.every(period_of(period.cast<double>()), action(program, function));
   }
-}
-
-void generate(Program& program, const py::object& function) {
-  program.module().generate([&program, held = hold(function)] {
-    const Program::Inside inside(program);
-    return program.call(held.get()).ptr() != Py_False;
-  });
 }
 
 using Pose = py::array_t<double, py::array::c_style>;
@@ -237,10 +227,11 @@ void add_ports(py::module_& extension) {
   py::class_<PyTimeout>(extension, "Timeout",
                         "A timer that fires once each time it is started: Module.after().")
       .def("restart", &PyTimeout::restart, py::arg("seconds") = py::none(),
-           "Has it fire when its time, or another one, has passed from now on.")
-      .def("stop", &PyTimeout::stop, "Has it not fire.");
-  py::class_<Frames>(extension, "Frames",
-                     "The frames of the module's graph: where its eyes, its head and all else are.")
+           "Restarts the timer with its time, or another one.")
+      .def("stop", &PyTimeout::stop, "Stops the timer.");
+  py::class_<Frames>(extension, "ModuleFrames",
+                     "The frames of a module's graph: where its eyes, its head and all else are "
+                     "(doc/frames.md).\nDeclares a parameter and an input `frames`.")
       .def(py::init<Program&>(), py::keep_alive<1, 2>())
       .def("lookup", &Frames::lookup, py::arg("target"), py::arg("source"), py::arg("time"),
            "The (4, 4) matrix that takes points of a frame to another at a time.")
@@ -258,7 +249,7 @@ void add_modules(py::module_& extension) {
   add_ports(extension);
   using Self = Program;
   py::class_<Program>(extension, "Module", "What hypercolumn.Module is made of.")
-      .def(py::init<std::string, std::string>())
+      .def(py::init<std::string, std::string, bool, bool, bool>())
       .def("_input", add_input)
       .def("_output", add_output)
       .def("_parameter", add_parameter, py::keep_alive<0, 1>())
@@ -272,7 +263,10 @@ void add_modules(py::module_& extension) {
                              self.module().after(hc::duration(seconds), action(self, function))};
           },
           py::keep_alive<0, 1>())
-      .def("_generate", generate)
+      .def("_generate",
+           [](Self& self, const py::object& function) {
+             self.module().generate(action(self, function));
+           })
       .def("_on_start",
            [](Self& self, const py::object& function) {
              self.module().on_start(action(self, function));
@@ -285,11 +279,8 @@ void add_modules(py::module_& extension) {
       .def("keep_rate", keep_rate, py::arg("rate"),
            "For generators: waits until the next period of a rate begins [Hz].")
       .def(
-          "keep_running", [](Self& self) { self.module().keep_running(); },
-          "Has the module run until it is stopped, though its inputs have ended.")
-      .def(
-          "background", [](Self& self) { self.module().background(); },
-          "Has the process yield the processor to closed loops: for what is in no hurry.")
+          "stop", [](Self& self) { self.module().stop(); },
+          "Ends the module when the handler that calls this has returned.")
       .def(
           "log",
           [](const Self& self, const std::string& line, const std::string& level) {
@@ -315,10 +306,6 @@ void add_modules(py::module_& extension) {
           "now", [](Self& self) { return self.module().now(); },
           "The time for messages that begin here [ns since the Unix epoch]: the machine's, or "
           "with --clock messages that of the messages.")
-      .def(
-          "seconds_since",
-          [](Self& self, std::int64_t time) { return self.module().seconds_since(time); },
-          py::arg("time"), "Seconds from a time of a message to now().")
       .def_property_readonly(
           "focus", [](Self& self) { return self.module().focus(); },
           "Number of the system mode in focus; 0: none.")

@@ -42,7 +42,7 @@ hc::Message make_message(const PyOutput& self, std::int32_t height, std::int32_t
   header.width = width;
   raise_if_failed(hc::check(header));
   // What is lent does not depend on the kind that the type says.
-  return hc::Output<hc::TableKind<double>>(self.state).loan(width, height).finish();
+  return hc::Output<hc::TableKind<double>>(self.state).loan(height, width).finish();
 }
 
 std::byte* elements_of(const hc::Message& message) {
@@ -56,14 +56,9 @@ std::byte* elements_of(const hc::Message& message) {
 
 /// The shape of a row of numbers: that of the port, where it has one.
 hc::Message make_for_numbers(const PyOutput& self, std::size_t count) {
-  const auto& type = self.state->type();
-  const std::size_t components = type.info.components;
-  auto height = static_cast<std::size_t>(type.height), width = static_cast<std::size_t>(type.width);
-  if (height == 0 && width == 0) height = 1;
-  if (width == 0 && height != 0) width = count / components / height;
-  if (height == 0 && width != 0) height = count / components / width;
-  if (height * width * components != count) raise_misfit(self, std::to_string(count) + " numbers");
-  return make_message(self, static_cast<std::int32_t>(height), static_cast<std::int32_t>(width));
+  const auto shape = hc::shape_of(self.state->type(), count);
+  if (!shape) raise_misfit(self, std::to_string(count) + " numbers");
+  return make_message(self, shape->first, shape->second);
 }
 
 /// A number of Python as one of a message. Raises where it does not fit.

@@ -24,8 +24,13 @@ Function hold(const py::object& function);
 
 class Program {
  public:
-  Program(std::string name, std::string summary) : module_(std::move(name), std::move(summary)) {
-    module_.before_waiting([this] { release(); });
+  Program(std::string name, std::string summary, bool background, bool keep_running,
+          bool finish_when_stopped)
+      : module_(std::move(name), std::move(summary),
+                {.background = background,
+                 .keep_running = keep_running,
+                 .finish_when_stopped = finish_when_stopped}) {
+    hc::internal::ModuleAccess::before_waiting(module_, [this] { release(); });
   }
 
   /// Of the thread that runs the module alone, while it runs; raised on another one.

@@ -69,8 +69,8 @@ std::string difference(const hc::Message& recorded, const hc::Message& replayed,
     if (a.*field != b.*field) return both(name, a.*field, b.*field);
   if (std::ranges::equal(recorded.elements, replayed.elements)) return "";
   if (a.info.type == hc::MatrixType::String)
-    return both("text", "\"" + std::string(recorded.characters()) + "\"",
-                "\"" + std::string(replayed.characters()) + "\"");
+    return both("text", "\"" + std::string(recorded.text()) + "\"",
+                "\"" + std::string(replayed.text()) + "\"");
   return hc::visit_scalar(a.info.scalar, [&](auto zero) {
     return difference_of<decltype(zero)>(recorded, replayed, tolerance.number);
   });

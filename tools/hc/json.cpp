@@ -61,7 +61,7 @@ bool write_rows_of_text(const hc::Message& message, std::string& json, const Wri
     auto width = static_cast<std::size_t>(message.header.width);
     for (std::size_t at = 0; at < message.elements.size(); at += width) {
       if (at > 0) json += ',';
-      hc::append_json_string(message.characters().substr(at, width), json);
+      hc::append_json_string(message.text().substr(at, width), json);
       if (!flush(json, write)) return false;
     }
   }

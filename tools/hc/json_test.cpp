@@ -36,8 +36,7 @@ TEST(Json, IsOneLineOfNamedFields) {
 
 TEST(Json, IsWrittenInPieces) {
   const auto message = std::move(hc::Draft::make(hc::Info{hc::MatrixType::IntensityImage, 1,
-                                                          hc::Scalar::U8, hc::Encoding::Binary},
-                                                 1000, 1000))
+                                                          hc::Scalar::U8, hc::Encoding::Binary}, 1000, 1000))
                            .finish();
   std::size_t largest = 0, all = 0;
   EXPECT_TRUE(write_json(message, message.header, [&](std::string_view piece) {

@@ -2,8 +2,11 @@
 #pragma once
 // What a port takes or gives, and what fits it. Pure.
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hc/mtp/header.h>
@@ -27,6 +30,13 @@ inline bool fits(const Header& header, const PortType& type) {
          (type.height == 0 || header.height == type.height) &&
          (type.coord == 0 || header.coord == 0 || header.coord == type.coord);
 }
+
+/// Height and width.
+using Shape = std::pair<std::int32_t, std::int32_t>;
+
+/// The shape of so many numbers of a type: the sides that it fixes, else one row; of a dense graph
+/// a square, of a sparse one a column of edges. None where the count does not fit.
+std::optional<Shape> shape_of(const PortType& type, std::size_t numbers);
 
 /// Why a message does not fit a type: Malformed; the detail begins with the rule of the field,
 /// "R19: …". A message that fits is a bug.

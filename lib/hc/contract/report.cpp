@@ -22,8 +22,7 @@ static_assert(kPeers + 1 == kCounterColumns.size());
 
 template <std::size_t kColumns>
 Message make_table(std::span<const std::array<std::int64_t, kColumns>> rows) {
-  Draft draft = Draft::make({MatrixType::Table, kColumns, Scalar::I64, Encoding::Text}, 1,
-                            static_cast<std::int32_t>(rows.size()));
+  Draft draft = Draft::make({MatrixType::Table, kColumns, Scalar::I64, Encoding::Text}, static_cast<std::int32_t>(rows.size()), 1);
   auto table = draft.view<std::int64_t>();
   for (std::size_t i = 0; i < rows.size(); ++i)
     std::copy(rows[i].begin(), rows[i].end(), table.row(i).begin());

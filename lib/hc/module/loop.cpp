@@ -184,12 +184,12 @@ void Module::Loop::open_outputs(const internal::Arguments& arguments) {
   for (const auto& uri : arguments.trace_links) open_trace(uri);
   for (const auto& [port, uri] : arguments.outputs) {
     auto& output = *module_.outputs_[port];
-    output.links.push_back(open_output(uri, output.name, output.keep));
+    output.links.push_back(open_output(uri, output.name, output.options.keep));
   }
   if (!arguments.outputs.empty() || module_.outputs_.empty() || arguments.control) return;
   auto standard_output = open_output({"-", "", {}}, "-");
   for (auto& output : module_.outputs_)
-    if (!output->is_on_demand) output->links.push_back(standard_output);
+    if (!output->options.on_demand) output->links.push_back(standard_output);
 }
 
 void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*> inputs) {
@@ -261,6 +261,7 @@ void Module::Loop::run() {
   if (module_.start_) module_.start_();
   for (bool is_now = false; true;) {
     if (stop_requested()) throw Stopped();
+    if (module_.is_done_) break;
     // What was waited for comes first.
     if (!std::exchange(is_now, false)) now_ = module_.clock_.monotonic();
     if (moments_) {
@@ -278,9 +279,8 @@ void Module::Loop::run() {
     if (any) continue;
     if (is_generators_turn()) {
       note(TraceEvent::What::Began, kNoPort, {}, TraceEvent::kGenerator);
-      const bool goes_on = generate();
+      generate();
       note(TraceEvent::What::Ended, kNoPort, {}, TraceEvent::kGenerator);
-      if (!goes_on) break;
     } else if (all_ended()) {
       break;
     } else {
@@ -312,7 +312,7 @@ void Module::Loop::take_rest() {
 /// Whether nothing can come any more. A module that takes commands waits for a new link
 /// where an input has none; one without inputs has its timers.
 bool Module::Loop::all_ended() const {
-  if (module_.keeps_running_ && !module_.message_time_) return false;
+  if (module_.options_.keep_running && !module_.message_time_) return false;
   if (sources_.empty() &&
       (management_.commands() != nullptr || (module_.inputs_.empty() && !module_.timers_.empty())))
     return false;

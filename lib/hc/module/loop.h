@@ -141,7 +141,7 @@ struct Module::Loop {
 
   // loop_messages.cpp
   [[nodiscard]] bool is_generators_turn() const;
-  bool generate();
+  void generate();
   void begin_clock();
   bool take_earliest();
   bool has_heads();

@@ -179,7 +179,7 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
       open_input(link.uri, {module_.inputs_[link.port].get()});
     } else {
       auto& output = *module_.outputs_[link.port];
-      output.links.push_back(open_output(link.uri, output.name, output.keep));
+      output.links.push_back(open_output(link.uri, output.name, output.options.keep));
     }
   } catch (const ModuleError& error) {
     return Error{Code::System, error.what()};

@@ -101,10 +101,9 @@ bool Module::Loop::is_generators_turn() const {
   return module_.generate_ && (!module_.message_time_ || generates_next_);
 }
 
-/// False at its end.
-bool Module::Loop::generate() {
+void Module::Loop::generate() {
   has_generated_ = true;
-  return module_.generate_();
+  module_.generate_();
 }
 
 /// Reads what the module is to do again: what it began, and when.
@@ -151,7 +150,7 @@ bool Module::Loop::repeat_next() {
 void Module::Loop::repeat_without_message(std::int32_t number) {
   const auto index = static_cast<std::size_t>(number), timers = module_.timers_.size();
   if (number == TraceEvent::kGenerator) {
-    if (module_.generate_ && !generate()) moments_->clear();
+    if (module_.generate_) generate();
   } else if (index < timers) {
     module_.timers_[index].handler();
   } else if (index - timers < module_.timeouts_.size()) {

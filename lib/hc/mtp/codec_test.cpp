@@ -61,7 +61,7 @@ TEST(Codec, AMillionRandomMessagesComeBackToTheBit) {
     auto used = must(decode(bytes_of(bytes), again));
     ASSERT_EQ(used, bytes.size());
     ASSERT_EQ(again.header, message.header);
-    ASSERT_EQ(again.characters(), message.characters()) << bytes;
+    ASSERT_EQ(again.text(), message.text()) << bytes;
     ASSERT_EQ(encode(again), bytes);
   }
 }
@@ -69,7 +69,7 @@ TEST(Codec, AMillionRandomMessagesComeBackToTheBit) {
 TEST(Codec, ElementsAreAlwaysAligned) {
   for (std::size_t shift = 0; shift < 8; ++shift) {
     std::string bytes =
-        encode(std::move(Draft::make({MatrixType::Table, 1, Scalar::F64, Encoding::Binary}, 3, 1))
+        encode(std::move(Draft::make({MatrixType::Table, 1, Scalar::F64, Encoding::Binary}, 1, 3))
                    .finish());
     bytes.insert(0, shift, ' ');  // spaces before a header are allowed
     Message message;

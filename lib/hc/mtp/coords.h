@@ -11,7 +11,7 @@ namespace hc {
 
 /// A coordinate system of the specification: what a header's `coord` names.
 ///
-///     auto gaze = module.output("gaze", hc::rotation<double>().of(1, 1).in(hc::Coord::kGaze),
+///     auto gaze = module.output("gaze", hc::rotation().of(1, 1).in(hc::Coord::kGaze),
 ///     "…"); if (message.header.coord == hc::Coord::kLeftImage) …
 struct Coord {
   static constexpr std::int32_t kWorld = 1, kRobot = 2, kHead = 3;

@@ -2,6 +2,7 @@
 #include <hc/mtp/message.h>
 
 #include <cstdint>
+#include <stdexcept>
 
 namespace hc {
 namespace {
@@ -12,6 +13,10 @@ void check_own(const Header& header) {
 }
 
 }  // namespace
+
+void internal::refuse_index(std::size_t index, std::size_t size) {
+  throw std::out_of_range("index " + std::to_string(index) + " of " + std::to_string(size));
+}
 
 SharedBytes allocate_bytes(std::size_t size) {
   constexpr std::size_t kLarge = std::size_t{64} << 10, kPage = 4096, kAlignment = 64;
@@ -37,7 +42,7 @@ Message Message::keep() const {
   return {header, {bytes.get(), elements.size()}, bytes, byte};
 }
 
-Draft Draft::make(const Info& info, std::int32_t width, std::int32_t height) {
+Draft Draft::make(const Info& info, std::int32_t height, std::int32_t width) {
   Header header;
   header.info = info;
   header.width = width;

@@ -9,7 +9,7 @@ namespace {
 constexpr Info kRgb{MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary};
 
 Message small_image() {
-  Draft draft = Draft::make(kRgb, 2, 3);
+  Draft draft = Draft::make(kRgb, 3, 2);
   auto pixels = draft.view<std::uint8_t>();
   for (std::size_t i = 0; i < pixels.numbers().size(); ++i)
     pixels.numbers()[i] = static_cast<std::uint8_t>(i);
@@ -42,7 +42,7 @@ TEST(MessageDeathTest, OutsideIsABug) {
   EXPECT_DEATH(static_cast<void>(pixels.at(3, 0)), "check failed");
   EXPECT_DEATH(static_cast<void>(pixels.row(3)), "check failed");
   EXPECT_DEATH(static_cast<void>(Draft::make(kRgb, 1, 1).view<float>()), "check failed");
-  EXPECT_DEATH(static_cast<void>(Draft::make(kRgb, -1, 1)), "check failed.*R15");
+  EXPECT_DEATH(static_cast<void>(Draft::make(kRgb, 1, -1)), "check failed.*R15");
 }
 
 TEST(Message, KeepOwnsWhatWasBorrowed) {
@@ -51,7 +51,7 @@ TEST(Message, KeepOwnsWhatWasBorrowed) {
   Message borrowed{image.header, image.elements, nullptr, 0};
   Message kept = borrowed.keep();
   EXPECT_NE(kept.elements.data(), image.elements.data());
-  EXPECT_EQ(kept.characters(), image.characters());
+  EXPECT_EQ(kept.text(), image.text());
   EXPECT_NE(kept.owner, nullptr);
 }
 

@@ -49,7 +49,7 @@ Reading read_all(std::string_view bytes, std::size_t piece, StreamReader& reader
 }
 
 Message filled(const Info& info, std::int32_t width, std::int32_t height) {
-  Draft draft = Draft::make(info, width, height);
+  Draft draft = Draft::make(info, height, width);
   std::uint8_t value = 0;
   for (auto& byte : draft.elements()) byte = static_cast<std::byte>(value++ % 251);
   return std::move(draft).finish();
@@ -74,7 +74,7 @@ TEST(StreamReader, PiecesOfAnySizeGiveTheSameMessages) {
     EXPECT_EQ(reader.bytes(), bytes.size());
     for (std::size_t i = 0; i < sent.size(); ++i) {
       EXPECT_EQ(reading.messages[i].header, sent[i].header);
-      EXPECT_EQ(reading.messages[i].characters(), sent[i].characters()) << piece << " " << i;
+      EXPECT_EQ(reading.messages[i].text(), sent[i].text()) << piece << " " << i;
       EXPECT_EQ(reinterpret_cast<std::uintptr_t>(reading.messages[i].elements.data()) %
                     size_of(sent[i].header.info.scalar),
                 0U);
@@ -136,7 +136,7 @@ TEST(StreamReader, HeldMessagesKeepTheirElements) {
   auto reading = read_all(bytes, 4096, reader);
   ASSERT_EQ(reading.messages.size(), 3000U);
   for (const auto& message : reading.messages)
-    EXPECT_EQ(message.characters(), filled(kDepth, message.header.width, 1).characters());
+    EXPECT_EQ(message.text(), filled(kDepth, message.header.width, 1).text());
 }
 
 TEST(StreamReader, MemoryIsUsedAgainWhenNobodyHoldsIt) {
@@ -168,7 +168,7 @@ TEST(StreamReader, ElementsOfALargeMessageAfterAnotherAreReadWhereTheyStay) {
       }
       feed(reader, rest);
     }
-    EXPECT_EQ(message.characters(), sent.characters());
+    EXPECT_EQ(message.text(), sent.text());
     EXPECT_EQ(reader.missing(), 0U);
     EXPECT_GE(in_place, sent.elements.size() - (is_first ? 65536 : 4096));
   }

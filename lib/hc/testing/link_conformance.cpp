@@ -69,7 +69,7 @@ TEST_P(LinkConformance, AReaderThatTakesNothingIsGivenUpUntilItDoes) {
       auto got = receive(*source_, message);
       ASSERT_TRUE(got && *got && message.header.seq > seq) << "behind " << seq;
       seq = message.header.seq;
-      ASSERT_EQ(message.characters(), numbered(seq, 100'000).characters());
+      ASSERT_EQ(message.text(), numbered(seq, 100'000).text());
     }
     is_heard_again = true;
     while (message.elements.size() > 1) ASSERT_TRUE(*receive(*source_, message));
@@ -89,7 +89,7 @@ TEST_P(LinkConformance, AMessageMayBeHeldForAsLongAsOneLikes) {
   for (int i = 0; i < 100; ++i) held.push_back(next(*source_));
   sender.join();
   for (int i = 0; i < 100; ++i)
-    EXPECT_EQ(held[static_cast<std::size_t>(i)].characters(), numbered(i, size(i)).characters());
+    EXPECT_EQ(held[static_cast<std::size_t>(i)].text(), numbered(i, size(i)).text());
 }
 
 TEST_P(LinkConformance, AReaderThatLeavesIsNoticed) {
@@ -110,7 +110,7 @@ TEST_P(LinkConformance, SmallAndLargeOnesStayInOrder) {
   const auto size = [](int i) { return i % 100 == 99 ? 200'000 : i % 50; };
   auto sender = send_all(*sink_, kCount, size);
   for (int i = 0; i < kCount; ++i)
-    ASSERT_EQ(next(*source_).characters(), numbered(i, size(i)).characters());
+    ASSERT_EQ(next(*source_).text(), numbered(i, size(i)).text());
   sender.join();
 }
 

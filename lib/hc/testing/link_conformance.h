@@ -123,7 +123,7 @@ class LinkConformance : public ::testing::TestWithParam<Transport> {
       ASSERT_TRUE(got && *got) << i;
       Message wanted = numbered(i, size);
       ASSERT_EQ(message.header, wanted.header);
-      ASSERT_EQ(message.characters(), wanted.characters());
+      ASSERT_EQ(message.text(), wanted.text());
     }
     sender.join();
     EXPECT_EQ(source_->traffic().messages, static_cast<std::uint64_t>(count));
@@ -161,8 +161,8 @@ class LinkConformance : public ::testing::TestWithParam<Transport> {
         break;
       }
       seq = message.header.seq;
-      EXPECT_EQ(message.characters(),
-                numbered(seq, static_cast<std::int32_t>(message.elements.size())).characters());
+      EXPECT_EQ(message.text(),
+                numbered(seq, static_cast<std::int32_t>(message.elements.size())).text());
     }
     closer.join();
     EXPECT_EQ(sink_->traffic().messages, static_cast<std::uint64_t>(last) + 1);

@@ -100,7 +100,7 @@ TEST_P(SocketLink, AMessageThatWasBegunIsSentAnewToTheNextReader) {
   await_warning(*source, warnings);
   source.reset();
   source = source_of(listen());
-  EXPECT_EQ(next(*source).characters(), numbered(0, 10'000'000).characters());
+  EXPECT_EQ(next(*source).text(), numbered(0, 10'000'000).text());
   sender.join();
   EXPECT_EQ(sink->traffic().dropped_disconnect, 0U);
 }

@@ -130,7 +130,7 @@ TEST_P(SocketLink, AMessageThatIsCutIsReported) {
     for (char c : bytes) write_to(peer, {&c, 1});  // one byte at a time
   }
   Message message;
-  EXPECT_EQ(next(*source).characters(), numbered(1, 100).characters());
+  EXPECT_EQ(next(*source).text(), numbered(1, 100).text());
   auto sink = sink_of(dial());
   ASSERT_TRUE(sink->send(numbered(3, 1)));
   EXPECT_EQ(next(*source).header.seq, 3);
@@ -319,7 +319,7 @@ TEST_P(SocketLink, WhoIsInsideAMessageKeepsItsPlace) {
   ASSERT_TRUE(sink->send(numbered(2, 1)));
   EXPECT_EQ(*source->take(message), Got::Nothing);
   write_to(peers[7], bytes.substr(head_of(bytes)));
-  EXPECT_EQ(next(*source).characters(), numbered(1, 1).characters());
+  EXPECT_EQ(next(*source).text(), numbered(1, 1).text());
   EXPECT_EQ(next(*source).header.seq, 2);  // of the last writer, which replaced the seventh
 }
 

@@ -121,7 +121,7 @@ class NoPages : public ::testing::Test {
     std::thread publisher([&] {
       refused = refuse_pages();
       Message message =
-          Draft::make({MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary}, 100'000, 1)
+          Draft::make({MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary}, 1, 100'000)
               .finish();
       for (int i = 0; sent && i < count; ++i) sent = sink_->send(message);
     });
