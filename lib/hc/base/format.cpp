@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kNone = -1;
 
-/// Puts values into one pattern, from the left to the right.
+/// Inserts values into a pattern.
 class Formatter {
  public:
   Formatter(std::string_view pattern, std::initializer_list<FormatValue> values)
