@@ -366,7 +366,7 @@ TEST(Dds, AnOversizedSampleIsDroppedAndDisturbsNobody) {
   EXPECT_EQ(
       log.lines,
       std::vector<std::string>{
-          uri + ": dropped a sample: TooLarge: R24 width: 1001 x 1 x 1 bytes are over the limit "
+          uri + ": dropped a sample: TooLarge: R24 width: 1001 x 1 x 1 bytes exceed the limit "
                 "of 1000, at byte 22; further ones of this writer are dropped in silence"});
 }
 

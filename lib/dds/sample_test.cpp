@@ -222,7 +222,7 @@ TEST_F(DdsSample, ThatIsNoMessageIsRefused) {
   EXPECT_EQ(refusal(rows + rows.substr(0, rows.size() - 2) + "x\n", 1),
             "Malformed: R27 elements: \"x\" is not a number of u8, at byte 66");
   EXPECT_EQ(refusal_of(in_pieces(*make(testing::numbered(7, 30)), 100), 0, {20}),
-            "TooLarge: R24 width: 30 x 1 x 1 bytes are over the limit of 20, at byte 22");
+            "TooLarge: R24 width: 30 x 1 x 1 bytes exceed the limit of 20, at byte 22");
 }
 
 TEST_F(DdsSample, ThatIsNoSequenceIsRefused) {
