@@ -14,7 +14,7 @@ Result<std::unique_ptr<Intake>> Intake::make(Loop& loop, const std::string& uri,
     intake->woken_ = HC_TRY(loop.watch(
         wakes, EPOLLIN | EPOLLET, [self = intake.get()](auto) { self->take_unless_paused(); }));
   }
-  // A source may have something before its descriptor has ever been asked to tell.
+  // A source may have messages before its descriptor has become readable for the first time.
   intake->again_ = loop.call_at({}, [self = intake.get()] { self->take(); });
   return intake;
 }

@@ -89,7 +89,7 @@ TEST(Policy, WhatMakesNoSenseIsRefused) {
         "?burst=1.5", "?memory=3T", "?memory=K", "?memory=5G", "?memory=4294967297"})
     EXPECT_EQ(policy_of(options).error().code, Code::Invalid) << options;
   EXPECT_EQ(policy_of("?keep=x").error().detail,
-            "option keep is all, latest, or how many messages");
+            "option keep is all, latest, or a number of messages");
 }
 
 TEST(TokenBucket, WithoutARateThereIsNoLimit) {
