@@ -321,14 +321,14 @@ TEST(Dds, WhatIsNoMessageIsDroppedAndDisturbsNobody) {
   }
   ASSERT_EQ(log.lines.size(), 2U);
   std::ranges::sort(log.lines);
-  const std::string end = "; further ones of this writer are dropped in silence";
+  const std::string end = "; further ones of this writer are not logged";
   EXPECT_EQ(log.lines[0], uri +
                               ": dropped a sample: Malformed: R5 version: \"GET\" is not an "
                               "integer, at byte 0" +
                               end);
   EXPECT_EQ(log.lines[1], uri +
-                              ": dropped a sample: Malformed: it is no sequence of octets: it says "
-                              "4294967295 and has 4" +
+                              ": dropped a sample: Malformed: not a sequence of octets: length "
+                              "4294967295, but 4 bytes" +
                               end);
 }
 
@@ -367,7 +367,7 @@ TEST(Dds, AnOversizedSampleIsDroppedAndDisturbsNobody) {
       log.lines,
       std::vector<std::string>{
           uri + ": dropped a sample: TooLarge: R24 width: 1001 x 1 x 1 bytes exceed the limit "
-                "of 1000, at byte 22; further ones of this writer are dropped in silence"});
+                "of 1000, at byte 22; further ones of this writer are not logged"});
 }
 
 TEST(Dds, WaitingEndsWhenAskedToStop) {
@@ -429,13 +429,13 @@ TEST(Dds, APlaceIsChecked) {
     return source ? "" : source.error().text();
   };
   EXPECT_EQ(wrong("dds:1a"),
-            "Invalid: \"1a\" is no topic of DDS: it takes letters, digits, _ and "
-            "/, and begins with no digit");
+            "Invalid: \"1a\" is not a DDS topic: use letters, digits, _ and /, not "
+            "starting with a digit");
   EXPECT_EQ(wrong("dds:a?domain=233"),
             "Invalid: option domain is a whole number from 0 to 232, not \"233\"");
   EXPECT_EQ(wrong("dds:a?interface=robot"),
-            "Invalid: option interface is an IPv4 address of this host, or several with commas "
-            "between, not \"robot\"");
+            "Invalid: option interface takes IPv4 addresses of this host, separated by commas, "
+            "not \"robot\"");
   EXPECT_EQ(wrong("dds:a?interface=192.0.2.77"),
             "NotFound: no network interface of this host has the address 192.0.2.77; `ip address` "
             "lists them");

@@ -197,7 +197,7 @@ TEST_F(DdsSample, HasMessagesOfABoundedNumber) {
   std::string octets;
   for (int i = 0; i < 10'001; ++i) octets += message;
   EXPECT_EQ(refusal(octets.substr(message.size()), 10'000), "");
-  EXPECT_EQ(refusal(octets, 10'000), "TooLarge: it has more than 10000 messages");
+  EXPECT_EQ(refusal(octets, 10'000), "TooLarge: more than 10000 messages in a sample");
 }
 
 TEST_F(DdsSample, ThatIsNoMessageIsRefused) {
@@ -211,14 +211,15 @@ TEST_F(DdsSample, ThatIsNoMessageIsRefused) {
   for (std::size_t size = 1; size < message.size(); ++size)
     for (const std::size_t count : {0U, 1U})
       EXPECT_EQ(refusal(message.substr(0, count * message.size()) + message.substr(0, size), count),
-                "Truncated: it ends inside its message")
+                "Truncated: the sample ends inside a message")
           << size;
   const std::string rows = "1 1 0 0 8 0 40100 0 0 2 2\n1 2\n3 4\n";
   EXPECT_EQ(refusal(rows, 1), "");
   EXPECT_EQ(refusal(rows + rows, 2), "");
   EXPECT_EQ(refusal(rows + "5 6\n", 1),
             "Unsupported: R6 version: this reader knows version 1, not 5, at byte 34");
-  EXPECT_EQ(refusal(rows.substr(0, rows.size() - 4)), "Truncated: it ends inside its message");
+  EXPECT_EQ(refusal(rows.substr(0, rows.size() - 4)),
+            "Truncated: the sample ends inside a message");
   EXPECT_EQ(refusal(rows + rows.substr(0, rows.size() - 2) + "x\n", 1),
             "Malformed: R27 elements: \"x\" is not a number of u8, at byte 66");
   EXPECT_EQ(refusal_of(in_pieces(*make(testing::numbered(7, 30)), 100), 0, {20}),
@@ -227,16 +228,15 @@ TEST_F(DdsSample, ThatIsNoMessageIsRefused) {
 
 TEST_F(DdsSample, ThatIsNoSequenceIsRefused) {
   const auto bytes = [](const auto& text) { return std::string(text, sizeof text - 1); };
-  EXPECT_EQ(refusal_of(bytes("\0\1\0\0")),
-            "Malformed: it is no sequence of octets: it has no bytes");
+  EXPECT_EQ(refusal_of(bytes("\0\1\0\0")), "Malformed: not a sequence of octets: too short");
   EXPECT_EQ(refusal_of(bytes("\0\3\0\0\0\0\0\0")),
-            "Malformed: it is no sequence of octets: it is not in CDR");
+            "Malformed: not a sequence of octets: not in CDR");
   EXPECT_EQ(refusal_of(bytes("\0\1\0\0\5\0\0\0abcd")),
-            "Malformed: it is no sequence of octets: it says 5 and has 4");
+            "Malformed: not a sequence of octets: length 5, but 4 bytes");
   EXPECT_EQ(refusal_of(bytes("\0\1\0\0\xff\xff\xff\xff")),
-            "Malformed: it is no sequence of octets: it says 4294967295 and has 0");
+            "Malformed: not a sequence of octets: length 4294967295, but 0 bytes");
   EXPECT_EQ(refusal_of(bytes("\0\1\0\0\1\0\0\0abcdefgh")),
-            "Malformed: it is no sequence of octets: it says 1 and has 8");
+            "Malformed: not a sequence of octets: length 1, but 8 bytes");
   // The other byte order.
   const std::string message = encode(testing::numbered(7, 3));
   EXPECT_EQ(refusal_of(bytes("\0\0\0\0\0\0\0\36") + message, 1), "");

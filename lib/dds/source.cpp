@@ -27,14 +27,14 @@ using std::chrono::steady_clock;
 
 class DdsSource;
 
-/// What Cyclone DDS gives samples to. Its own cache has no end that a thread in it could be let out
-/// by: where it is full, the receiving thread tries again, and the reader is not deleted meanwhile.
+/// Receives samples from Cyclone DDS. Its own reader cache cannot be used: when that is full, the
+/// receiving thread retries forever, and the reader cannot be deleted.
 struct Cache : dds_rhc {
   explicit Cache(DdsSource& to);
   DdsSource& source;
 };
 
-/// A message that waits, and its size [byte].
+/// A queued message and its size [byte].
 struct Arrived {
   Message message;
   std::uint64_t bytes = 0;
@@ -42,10 +42,10 @@ struct Arrived {
 
 class DdsSource final : public Source {
  public:
-  /// What waits for a reader that loses nothing; then its writers wait. [byte]
+  /// With `keep=all`, writers are blocked when this much is queued. [byte]
   static constexpr std::uint64_t kWindow = std::uint64_t{2} << 20;
-  static constexpr std::uint64_t kBesides = 256;  // of a message [byte]
-  /// What a writer that vanishes has sent may be on its way for so long.
+  static constexpr std::uint64_t kBesides = 256;  // memory of a message besides its bytes [byte]
+  /// How long data of a vanished writer may still arrive.
   static constexpr std::chrono::seconds kPatience{1};
 
   DdsSource(const Policy& policy, LinkOptions options, std::chrono::seconds wait,
@@ -63,7 +63,7 @@ class DdsSource final : public Source {
       const std::lock_guard lock(mutex_);
       is_closing_ = true;
     }
-    reader_.reset();  // nothing is called back from then on
+    reader_.reset();  // no callbacks afterwards
     timer_.end();
   }
 
@@ -89,18 +89,18 @@ class DdsSource final : public Source {
     participant_->flush_log(options_.log);
     const std::lock_guard lock(mutex_);
     if (queue_.empty()) return nothing();
-    auto [next, bytes] = queue_.pop({});  // it has no pace
+    auto [next, bytes] = queue_.pop({});  // the queue has no rate
     message = std::move(next);
     ++traffic_.messages;
     traffic_.bytes += bytes;
     return Got::Message;
   }
 
-  /// Takes a sample, on any thread of Cyclone's; false where there is no room for it now.
+  /// Takes a sample on a thread of Cyclone DDS; false if there is no room.
   bool store(dds_instance_handle_t writer, ddsi_serdata& sample, ddsi_tkmap_instance& instance) {
     std::unique_lock lock(mutex_);
-    // The topic's only one. Cyclone DDS would make it for each sample again, and wake a thread to
-    // delete it.
+    // Keeps the topic's only instance, or Cyclone DDS would create it for each sample and wake a
+    // thread to delete it.
     if (!std::exchange(has_instance_, true)) ddsi_tkmap_instance_ref(&instance);
     if (is_closing_ || sample.kind != SDK_DATA) return true;
     if (octets_of(sample) == 0) {
@@ -142,7 +142,7 @@ class DdsSource final : public Source {
   }
 
  private:
-  /// Called on a thread of Cyclone's.
+  /// Called on a thread of Cyclone DDS.
   void count_writers(const dds_subscription_matched_status_t& status) {
     const std::lock_guard lock(mutex_);
     matched_ = status.current_count;
@@ -156,32 +156,32 @@ class DdsSource final : public Source {
     }
   }
 
-  /// How many writers have not closed. With the mutex.
+  /// The number of writers that have not closed. Call it with the mutex locked.
   [[nodiscard]] std::size_t alive() const { return matched_ - std::min(matched_, closed_.size()); }
 
-  /// There is no writer any more. @param least  until what is on its way will have come.
+  /// Waits for the next writer, at least for `least` since data may still arrive.
   void await_next(std::chrono::seconds least) {
     give_up_ = steady_clock::now() + std::max(least, reconnect_);
     timer_.call_at(give_up_);
     event_.raise();
   }
 
-  /// What there is to say where no message is. With the mutex.
+  /// The result of take() with an empty queue. Call it with the mutex locked.
   Result<Got> nothing() {
     event_.clear();
     if (alive() > 0) return Got::Nothing;
     if (give_up_ > steady_clock::now() && !is_final_) return Got::Nothing;
-    event_.raise();  // it stays so
-    if (!has_had_one_ && !is_final_) return Error{Code::NotFound, "nobody writes to this topic"};
+    event_.raise();  // remains readable
+    if (!has_had_one_ && !is_final_) return Error{Code::NotFound, "no writer on this topic"};
     return Got::End;
   }
 
-  /// One line for each writer, however much it sends. With the mutex `reading_`.
+  /// Logs once per writer. Call it with `reading_` locked.
   void drop(dds_instance_handle_t writer, const std::string& what, const Error& why) {
     constexpr std::size_t kMost = 1000;
     if (strangers_.size() >= kMost || !strangers_.insert(writer).second) return;
     participant_->warn("dropped " + what + ": " + why.text() +
-                       "; further ones of this writer are dropped in silence");
+                       "; further ones of this writer are not logged");
   }
 
   const bool loses_nothing_;
@@ -189,20 +189,20 @@ class DdsSource final : public Source {
   const std::chrono::seconds reconnect_;
   Event event_;
 
-  std::mutex reading_;  // of what follows; before the other one
+  std::mutex reading_;  // guards the members up to strangers_; locked before mutex_
   internal::HeaderMemo memo_;
-  std::vector<Arrived> read_;  // out of a sample
+  std::vector<Arrived> read_;  // from the current sample
   std::set<dds_instance_handle_t> strangers_;
 
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards the members up to give_up_
   Traffic traffic_;
   SendQueue<Arrived> queue_;
   Traffic losses_;
   std::size_t matched_ = 0;                 // writers
-  std::set<dds_instance_handle_t> closed_;  // those of them that have
+  std::set<dds_instance_handle_t> closed_;  // matched writers that have closed
   bool has_had_one_ = false, is_final_ = false, is_closing_ = false;
-  bool has_instance_ = false;             // keeps the topic's until the domain ends
-  TimePoint give_up_ = TimePoint::max();  // while there is no writer
+  bool has_instance_ = false;             // holds the topic's instance until the domain ends
+  TimePoint give_up_ = TimePoint::max();  // when to end; set while there is no writer
 
   Watch timer_;
   Cache cache_{*this};  // outlives the participant
@@ -219,8 +219,8 @@ dds_rhc_ops make_cache_ops() {
   ops.rhc_ops.unregister_wr = [](ddsi_rhc*, const ddsi_writer_info*) {};
   ops.rhc_ops.relinquish_ownership = [](ddsi_rhc*, std::uint64_t) {};
   ops.rhc_ops.set_qos = [](ddsi_rhc*, const dds_qos*) {};
-  ops.rhc_ops.free = [](ddsi_rhc*) {};  // the source has it
-  // Nobody else takes anything out.
+  ops.rhc_ops.free = [](ddsi_rhc*) {};  // the source owns it
+  // Samples are only taken by the source, through store().
   ops.read = ops.take = [](dds_rhc*, bool, void**, dds_sample_info_t*, std::uint32_t, std::uint32_t,
                            dds_instance_handle_t, dds_readcond*) { return std::int32_t{0}; };
   ops.readcdr = ops.takecdr = [](dds_rhc*, bool, ddsi_serdata**, dds_sample_info_t*, std::uint32_t,
