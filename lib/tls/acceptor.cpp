@@ -90,7 +90,7 @@ Status Acceptor::let_in(ConnectedSocket accepted) {
   return {};
 }
 
-/// Continues a handshake.
+/// Continues a handshake; ends it if it is late.
 void Acceptor::go_on(Peer peer, bool is_late) {
   auto awaited = peer->socket.channel->agree();
   if (awaited && *awaited != 0 && !is_late) {
@@ -104,7 +104,7 @@ void Acceptor::go_on(Peer peer, bool is_late) {
     std::lock_guard lock(mutex_);
     agreed_.push_back(std::move(peer->socket));
     raise();
-    // The peer hears that it is let in, and who is asked then finds it here.
+    // Sends the acceptance after the peer has been queued, so that take() finds it.
     static_cast<void>(agreed_.back().channel->write({}));
   } else if (!is_crowded_) {
     say("refused " + peer->name + ": no TLS handshake within " + std::to_string(kPatience.count()) +

@@ -16,9 +16,9 @@ namespace hc::tls {
 namespace {
 
 constexpr std::size_t kRecordBytes = SSL3_RT_MAX_PLAIN_LENGTH;
-/// With one key at most so many records are written. AES-GCM allows 2^24.5 (RFC 8446, 5.5).
+/// Records written before the key is updated. AES-GCM allows 2^24.5 (RFC 8446, 5.5).
 constexpr std::uint64_t kRecordsOfAKey = 1 << 12;
-/// More is not kept of what a peer makes us answer while it reads nothing.
+/// Limit on replies kept for a peer that makes us answer but does not read.
 constexpr std::size_t kMostUnsent = 256 << 10;
 
 int write_bytes(BIO* bio, const char* data, int size) {
@@ -33,7 +33,7 @@ long control(BIO*, int command, long, void*) {
   return command == BIO_CTRL_FLUSH ? 1 : 0;
 }
 
-/// The way of what OpenSSL has encrypted.
+/// A BIO that passes OpenSSL's encrypted output to the channel.
 BIO* make_writing_end(TlsChannel* channel) {
   static BIO_METHOD* const kMethod = [] {
     auto* method = BIO_meth_new(BIO_get_new_index() | BIO_TYPE_SOURCE_SINK, "hypercolumn");
@@ -48,7 +48,7 @@ BIO* make_writing_end(TlsChannel* channel) {
   return bio;
 }
 
-/// Of OpenSSL's reasons, those that say that the peer has refused our key, and that it is no TLS.
+/// OpenSSL's errors when the peer has refused our key, and when it does not speak TLS.
 constexpr int kRefusals[] = {
     SSL_R_SSLV3_ALERT_BAD_CERTIFICATE,      SSL_R_SSLV3_ALERT_CERTIFICATE_UNKNOWN,
     SSL_R_SSLV3_ALERT_HANDSHAKE_FAILURE,    SSL_R_SSLV3_ALERT_UNSUPPORTED_CERTIFICATE,
@@ -69,7 +69,7 @@ TlsChannel::TlsChannel(std::shared_ptr<const Context> context, int socket, Side 
   HC_CHECK(reading_end != nullptr);
   SSL_set0_rbio(ssl_.get(), reading_end);
   SSL_set0_wbio(ssl_.get(), make_writing_end(this));
-  // Whoever asks for a ticket sees it come, and not what comes behind it.
+  // SSL_peek_ex() shall return after the server's ticket, before any data that follows it.
   SSL_clear_mode(ssl_.get(), SSL_MODE_AUTO_RETRY);
   if (side == Side::Dials)
     SSL_set_connect_state(ssl_.get());
@@ -98,19 +98,19 @@ Result<short> TlsChannel::agree() {
     if (side_ == Side::Dials && !is_confirmed_) {
       const int got = SSL_peek_ex(ssl_.get(), &byte, 1, &size);
       if (!is_confirmed_) {
-        if (got == 1) fail(got);  // it sends before it has accepted us
+        if (got == 1) fail(got);  // data before the ticket
         return awaited(got);
       }
     }
     SSL_set_mode(ssl_.get(), SSL_MODE_AUTO_RETRY);
-    SSL_set_read_ahead(ssl_.get(), 1);  // from here on: so that nothing is unread by now
+    SSL_set_read_ahead(ssl_.get(), 1);  // only now, so that no data has been read yet
     state_ = State::Agreed;
   }
   if (failure_) return *failure_;
   return static_cast<short>(0);
 }
 
-/// What the handshake waits for, or why it has failed.
+/// The poll events that the handshake waits for, or the reason why it failed.
 Result<short> TlsChannel::awaited(int result) {
   const int error = SSL_get_error(ssl_.get(), result);
   if (error != SSL_ERROR_WANT_READ && error != SSL_ERROR_WANT_WRITE) fail(result);
@@ -123,12 +123,12 @@ std::string TlsChannel::why_refused(int result) const {
   const int reason = ERR_GET_REASON(ERR_peek_error());
   const bool is_silent = ERR_peek_error() == 0;
   if (refused_ && !refused_->empty())
-    return "the peer's key is " + *refused_ + ", which is not the one of peer=";
-  if (reason == SSL_R_PEER_DID_NOT_RETURN_A_CERTIFICATE) return "the peer has shown no key";
+    return "the peer's key is " + *refused_ + ", not one of peer=";
+  if (reason == SSL_R_PEER_DID_NOT_RETURN_A_CERTIFICATE) return "the peer has sent no key";
   if (std::ranges::count(kRefusals, reason) > 0)
-    return "the peer has refused our key; its peer= has to name it";
+    return "the peer has refused our key; add it to the peer's peer=";
   if (reason == SSL_R_UNSUPPORTED_PROTOCOL || reason == SSL_R_TLSV1_ALERT_PROTOCOL_VERSION)
-    return "the peer does not know TLS 1.3";
+    return "the peer does not support TLS 1.3";
   if (std::ranges::count(kNoTls, reason) > 0) return "the peer does not speak TLS";
   if (is_silent || reason == SSL_R_UNEXPECTED_EOF_WHILE_READING ||
       SSL_get_error(ssl_.get(), result) == SSL_ERROR_ZERO_RETURN)
@@ -178,7 +178,7 @@ ssize_t TlsChannel::read(std::span<std::byte> space) {
   return -1;
 }
 
-/// What goes into the next record: of one part, where that fills it, else gathered.
+/// The data of the next record: in place if a part fills it, else gathered.
 std::span<const std::byte> TlsChannel::next_record(std::span<const iovec> parts, std::size_t skip) {
   record_.clear();
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -222,7 +222,8 @@ int TlsChannel::send(std::span<const char> bytes) {
     return -1;
   }
   std::size_t sent = 0;
-  // What a server says last is for whoever calls agree() to send, once it is ready for the client.
+  // A server's last handshake record is held back; after agree(), write() sends it when the link is
+  // ready for the client.
   const bool is_held = side_ == Side::Listens && state_ == State::Greets;
   if (!is_held && !has_unsent()) {
     const auto size = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
@@ -236,7 +237,7 @@ int TlsChannel::send(std::span<const char> bytes) {
   return static_cast<int>(bytes.size());
 }
 
-/// Sends what is kept; whether that was all.
+/// Sends pending bytes; returns whether all were sent.
 bool TlsChannel::flush() {
   while (has_unsent() && send_errno_ == 0) {
     const auto size = ::send(socket_, unsent_.data() + sent_, unsent_.size() - sent_,

@@ -53,16 +53,16 @@ TEST_F(TlsRefusal, NoKey) {
   const auto context = make_context("");
   EXPECT_FALSE(shake_hands(context.get(), socket));
   EXPECT_EQ(complaint(), "tlsv13 alert certificate required");
-  EXPECT_EQ(await_line(), "the peer has shown no key");
+  EXPECT_EQ(await_line(), "the peer has sent no key");
   serves_others();
 }
 
 TEST_F(TlsRefusal, TheWrongKey) {
   const auto uri = *parse_uri("tls:" + place_ + options("c", "a"));
-  const std::string line = "the peer's key is " + *tls::fingerprint_of(key_file("c")) +
-                           ", which is not the one of peer=";
+  const std::string line =
+      "the peer's key is " + *tls::fingerprint_of(key_file("c")) + ", not one of peer=";
   const std::string why =
-      "Closed: connect(" + place_ + "): the peer has refused our key; its peer= has to name it";
+      "Closed: connect(" + place_ + "): the peer has refused our key; add it to the peer's peer=";
   EXPECT_EQ(refused(open_source(uri)).text(), why);
   EXPECT_EQ(await_line(), line);
   EXPECT_EQ(refused(open_sink(uri)).text(), why);  // before it sends
@@ -73,8 +73,8 @@ TEST_F(TlsRefusal, TheWrongKey) {
 TEST_F(TlsRefusal, AListenerWithTheWrongKey) {
   EXPECT_EQ(refusal("tls:" + place_ + options("b", "c")),
             "Closed: connect(" + place_ + "): the peer's key is " +
-                *tls::fingerprint_of(key_file("a")) + ", which is not the one of peer=");
-  EXPECT_EQ(await_line(), "the peer has refused our key; its peer= has to name it");
+                *tls::fingerprint_of(key_file("a")) + ", not one of peer=");
+  EXPECT_EQ(await_line(), "the peer has refused our key; add it to the peer's peer=");
   serves_others();
 }
 
@@ -84,7 +84,7 @@ TEST_F(TlsRefusal, Tls12) {
   SSL_CTX_set_max_proto_version(context.get(), TLS1_2_VERSION);
   EXPECT_FALSE(shake_hands(context.get(), socket));
   EXPECT_EQ(complaint(), "tlsv1 alert protocol version");
-  EXPECT_EQ(await_line(), "the peer does not know TLS 1.3");
+  EXPECT_EQ(await_line(), "the peer does not support TLS 1.3");
   serves_others();
 }
 
@@ -174,8 +174,8 @@ TEST_F(TlsRefusal, AManInTheMiddle) {
   char byte = 0;
   EXPECT_FALSE(SSL_accept(session.get()) == 1 && SSL_read(session.get(), &byte, 1) == 1);
   client.join();
-  const std::string wrong = "the peer's key is " + *tls::fingerprint_of(key_file("c")) +
-                            ", which is not the one of peer=";
+  const std::string wrong =
+      "the peer's key is " + *tls::fingerprint_of(key_file("c")) + ", not one of peer=";
   EXPECT_EQ(why, "Closed: connect(" + middle + "): " + wrong);
 
   const auto onward = connect_plainly(place_);
@@ -236,8 +236,9 @@ TEST(TlsKey, OptionsThatMakeNoSenseAreRefused) {
   EXPECT_EQ(refusal(place + "?key=no.pem&peer=b.pem"),
             "NotFound: open(no.pem): No such file or directory");
   const auto own = "?key=" + key_file("a") + "&peer=";
-  EXPECT_EQ(refusal(place + own + "beef"),
-            "Invalid: peer beef: neither a file nor a fingerprint, which has 64 digits of base 16");
+  EXPECT_EQ(
+      refusal(place + own + "beef"),
+      "Invalid: peer beef: neither a file nor a fingerprint, which has 64 hexadecimal digits");
   EXPECT_EQ(refusal(place + own + "/dev/null"), "Invalid: peer /dev/null: no certificate in PEM");
 }
 
