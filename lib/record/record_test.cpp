@@ -128,7 +128,7 @@ TEST_F(Recorded, WrongNamesAreRefused) {
   for (const auto& [streams, what] :
        {std::pair(std::vector<std::string>{""}, "\"\" cannot be a file name"),
         {{"../a.out"}, "\"../a.out\" cannot be a file name"},
-        {{"a.out", "a.out"}, "\"a.out\" is there twice"}}) {
+        {{"a.out", "a.out"}, "\"a.out\" is given twice"}}) {
     const auto error = refusal(streams);
     EXPECT_EQ(error.code, Code::Invalid);
     EXPECT_EQ(error.detail, std::string("streams: ") + what);

@@ -437,10 +437,10 @@ class Recordings(Graphs):
             self.assertEqual(self.err.count("\n"), 1)
         self.shell("hc send 1 | hc record y.mtp --split 1G", 2)
         self.shell("hc send 1 | hc record y.mcap --split x", 2)
-        self.assertIn('--split: "x" is no number of bytes, such as 1G', self.err)
+        self.assertIn('--split: "x" is not a number of bytes, such as 1G', self.err)
         self.shell("hc send 1 | hc record y.mcap --split 99999999999G", 2)
         self.shell("hc send 1 | hc recorder --split x", 2)
-        self.assertIn('split: "x" is no number of bytes', self.err)
+        self.assertIn('split: "x" is not a number of bytes', self.err)
         self.shell("hc send 1 | hc record y.mcap --keep 1G", 2)
 
 
