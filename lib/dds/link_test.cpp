@@ -344,8 +344,8 @@ TEST(Dds, OfASampleWhatIsBeforeAFaultIsTaken) {
   EXPECT_EQ(log.lines,
             std::vector<std::string>{
                 uri + ": dropped the rest of a sample: Malformed: R5 version: \"GET\" is not "
-                      "an integer, at byte 60; further ones of this writer are dropped in "
-                      "silence"});
+                      "an integer, at byte 60; further ones of this writer are not "
+                      "logged"});
 }
 
 TEST(Dds, AnOversizedSampleIsDroppedAndDisturbsNobody) {
