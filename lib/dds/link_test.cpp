@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// DDS links do what all links do; how they do it differs where several meet.
+// DDS links: the conformance suite, and links with several readers and writers.
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace hc::testing {
 namespace {
 
-/// A topic that no other test has, nor another run beside this one.
+/// A topic that is unique among tests and concurrent runs.
 std::string fresh_topic() {
   static int number = 0;
   return "dds:test/t" + std::to_string(::getpid()) + "_" + std::to_string(number++) + "?domain=97";
@@ -26,7 +26,7 @@ INSTANTIATE_TEST_SUITE_P(Dds, LinkConformance,
                                                        return std::pair{uri, uri + "&readers=1"};
                                                      }}));
 
-/// This program as another process that reads a link, or writes it, for as long as it can.
+/// Runs this program as another process that reads or writes a link until it ends.
 class Child {
  public:
   Child(const char* what, const std::string& uri) : process_(::fork()) {
@@ -74,7 +74,7 @@ TEST(Dds, AllReadersGetEachMessage) {
   sender.join();
 }
 
-/// Sends messages so close to one another that some share samples.
+/// Sends messages so fast that some share samples.
 void send_together(Sink& sink, int count, const std::function<std::int32_t(int)>& size,
                    int src = 0) {
   std::vector<Message> messages;
@@ -142,7 +142,7 @@ TEST(Dds, WhatIsDeliveredIsNotCountedAsCut) {
   constexpr std::size_t kSinks = 50;
   const auto uri = fresh_topic();
   const auto source = source_of(uri);
-  const auto keeper = sink_of(uri + "&readers=1");  // until all others have left
+  const auto keeper = sink_of(uri + "&readers=1");  // keeps the source from ending
   std::array<std::uint64_t, kSinks> received{};
   std::jthread receiver([&] {
     Message message;
@@ -164,8 +164,8 @@ TEST(Dds, WhatIsDeliveredIsNotCountedAsCut) {
     EXPECT_LE(received.at(i), sent.at(i).messages - sent.at(i).dropped_disconnect) << i;
     cut += sent.at(i).dropped_disconnect;
   }
-  EXPECT_EQ(received.at(0), 900U);  // it waited for its reader
-  // Some of the others were abandoned while samples were on their way.
+  EXPECT_EQ(received.at(0), 900U);  // it was closed, not abandoned
+  // Some of the others were abandoned with samples in transit.
   EXPECT_GT(cut, 0U);
 }
 
@@ -290,7 +290,7 @@ TEST(Dds, OfASlowReaderThatLosesNothingLittleWaits) {
   const auto sink = sink_of(uri + "&readers=1&keep=latest");
   int count = 0;
   while (sink->traffic().dropped_newer < 10) ASSERT_TRUE(sink->send(numbered(count++, 100'000)));
-  EXPECT_LT(count, 200);  // 2 MiB with the reader, 4 MB on the way
+  EXPECT_LT(count, 200);  // 2 MiB in the reader's queue, 4 MB in transit
 }
 
 TEST(Dds, ARateIsKeptByEitherEnd) {
@@ -302,7 +302,7 @@ TEST(Dds, ARateIsKeptByEitherEnd) {
   Message message;
   std::uint64_t received = 0;
   while (*receive(*source, message)) ++received;
-  EXPECT_EQ(message.header.seq, 0);  // none
+  EXPECT_EQ(message.header.seq, 0);  // empty after the end
   EXPECT_EQ(received + source->traffic().lost(), 10U);
   EXPECT_GE(source->traffic().delayed, 1U);
 }
@@ -362,7 +362,7 @@ TEST(Dds, AnOversizedSampleIsDroppedAndDisturbsNobody) {
     ASSERT_TRUE(sink->send(numbered(i, 1000)));
     EXPECT_EQ(next(*source).elements.size(), 1000U);
   }
-  // What is far too large is not even put together.
+  // A sample far over the limit is not even reassembled.
   EXPECT_EQ(
       log.lines,
       std::vector<std::string>{

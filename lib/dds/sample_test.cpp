@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples, without a network: to bytes in pieces of any size, and back.
+// Samples without a network: to bytes in fragments of any size, and back.
 #include <dds/sample.h>
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ class DdsSample : public ::testing::Test {
     return join(sample, encoder_.encode(message));
   }
 
-  /// All bytes of a sample, in words, as they go over the network in pieces.
+  /// The bytes of a sample, padded to words, as sent in fragments.
   static std::string in_pieces(const ddsi_serdata& sample, std::size_t piece) {
     const std::size_t size = (ddsi_serdata_size(&sample) + 3) / 4 * 4;
     std::string bytes;
@@ -48,7 +48,7 @@ class DdsSample : public ::testing::Test {
         ddsi_serdata_from_ser_iov(type_, SDK_DATA, pieces.size(), pieces.data(), bytes.size()));
   }
 
-  /// The messages of a sample, and what is wrong with it behind them.
+  /// The messages of a sample, and the error after them.
   std::vector<Message> read_all(const ddsi_serdata& sample, Error* error = nullptr,
                                 const Limits& limits = {}) {
     std::vector<Message> messages;
@@ -69,7 +69,7 @@ class DdsSample : public ::testing::Test {
     return std::move(messages[0]);
   }
 
-  /// What is wrong with a sample of these octets. @param count  of messages that are read of it.
+  /// The error for a sample of these octets. @param count  of messages before it.
   std::string refusal(const std::string& octets, std::size_t count = 0) {
     const Pieces pieces = {std::as_bytes(std::span(octets)), {}, {}};
     return refusal_of(in_pieces(*make_sample(*type_, pieces, {}), octets.size() + 20), count);
@@ -136,7 +136,8 @@ TEST_F(DdsSample, HasElementsThatAreAlignedAndStayWhereTheyAre) {
     header.seq = seq;
     const Message message = Draft::make(header).finish();
     const std::string bytes = in_pieces(*make(message), 65'000);
-    for (const std::size_t piece : {4U, 65'000U}) {  // of 4 bytes the header's line is not known
+    for (const std::size_t piece :
+         {4U, 65'000U}) {  // 4 bytes do not show the end of the header line
       const auto sample = come(bytes, piece);
       auto got = must(read(*sample));
       EXPECT_TRUE(got.view<double>());
@@ -188,7 +189,7 @@ TEST_F(DdsSample, GrowsByWhatIsSmall) {
   EXPECT_FALSE(add(*large, testing::numbered(0, 4000)));
   int count = 0;
   while (add(*small, testing::numbered(count, 4000))) ++count;
-  EXPECT_EQ(count, 3);  // 16 KiB
+  EXPECT_EQ(count, 3);  // kMostJoined
   EXPECT_EQ(read_all(*come(in_pieces(*small, 1000))).size(), 4U);
 }
 

@@ -72,7 +72,7 @@ TEST(Open, AnOptionThatIsMisspeltIsGuessed) {
                     .error()
                     .detail.ends_with(", did you mean \"keep\"?"))
         << end;
-  // One that another end has is spelled well.
+  // An option of the other end is not a spelling mistake.
   EXPECT_TRUE(open_sink(*parse_uri("shm:x?spin=1")).error().detail.ends_with("\"timeout\""));
 }
 
