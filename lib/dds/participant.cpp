@@ -69,7 +69,7 @@ std::uint32_t next_number() {
 }
 
 /// Makes a socket drop packets from other interfaces; Cyclone DDS listens on all of them.
-Status take_from(int socket, const std::vector<unsigned>& interfaces) {
+Status accept_only(int socket, const std::vector<unsigned>& interfaces) {
   constexpr auto kInterface = static_cast<std::uint32_t>(SKF_AD_OFF + SKF_AD_IFINDEX);
   std::vector<sock_filter> program = {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kInterface)};
   for (std::size_t i = 0; i < interfaces.size(); ++i)
@@ -105,7 +105,7 @@ Result<std::unique_ptr<Participant>> Participant::open(const Place& place, const
   std::unique_ptr<Participant> made(new Participant(next_number()));
   log_of_all().add(made->number_, made->remarks_);
   const auto most = std::min(
-      std::max<std::uint64_t>(limits.element_bytes + kMaxHeaderBytes + 64 + kFrame, kMostJoined),
+      std::max<std::uint64_t>(limits.element_bytes + kMaxHeaderBytes + 64 + kFrame, kMaxJoined),
       kMostBytes);
   const auto domain = dds_create_domain(made->number_, configuration(place, most).c_str());
   if (domain < 0) return failed("domain " + std::to_string(place.domain), domain);
@@ -125,14 +125,14 @@ Result<std::unique_ptr<Participant>> Participant::open(const Place& place, const
   }
   made->topic_ = Entity(topic);
   made->type_ = type;
-  HC_TRY(made->bar_others(interfaces));
+  HC_TRY(made->drop_other_interfaces(interfaces));
   return made;
 }
 
-Status Participant::bar_others(const std::vector<unsigned>& interfaces) const {
+Status Participant::drop_other_interfaces(const std::vector<unsigned>& interfaces) const {
   std::array<int, HC_DDS_MOST_SOCKETS> sockets{};
   const auto count = static_cast<std::size_t>(hc_dds_sockets(type_, sockets.data()));
-  for (const int socket : std::span(sockets).first(count)) HC_TRY(take_from(socket, interfaces));
+  for (const int socket : std::span(sockets).first(count)) HC_TRY(accept_only(socket, interfaces));
   return {};
 }
 

@@ -39,7 +39,7 @@ class Participant {
  private:
   explicit Participant(std::uint32_t number);
   /// Drops packets that arrive on other interfaces.
-  [[nodiscard]] Status bar_others(const std::vector<unsigned>& interfaces) const;
+  [[nodiscard]] Status drop_other_interfaces(const std::vector<unsigned>& interfaces) const;
 
   std::uint32_t number_;  // of the domain, in this process
   std::shared_ptr<internal::Remarks> remarks_;

@@ -166,7 +166,7 @@ Sample make_sample(const ddsi_sertype& type, const Pieces& pieces, const Message
   auto sample = std::make_unique<MessageSample>(type, SDK_DATA);
   const auto& [head, elements, end] = pieces;
   sample->size = kPrelude + head.size() + elements.size() + end.size();
-  const bool is_copied = elements.size() <= kMostCopied;
+  const bool is_copied = elements.size() <= kMaxCopied;
   auto& begin = sample->begin;
   begin.reserve(kPrelude + head.size() + (is_copied ? elements.size() + end.size() : 0));
   begin.resize(kPrelude);
@@ -187,9 +187,9 @@ Sample make_sample(const ddsi_sertype& type, const Pieces& pieces, const Message
 bool join(ddsi_serdata& sample, const Pieces& pieces) {
   auto& joined = static_cast<MessageSample&>(sample);
   const auto size = pieces[0].size() + pieces[1].size() + pieces[2].size();
-  const bool are_copied = joined.elements.empty() && pieces[1].size() <= kMostCopied;
-  if (!are_copied || joined.size + size > kMostJoined) return false;
-  joined.begin.reserve(kMostJoined);
+  const bool are_copied = joined.elements.empty() && pieces[1].size() <= kMaxCopied;
+  if (!are_copied || joined.size + size > kMaxJoined) return false;
+  joined.begin.reserve(kMaxJoined);
   for (const auto piece : pieces)
     joined.begin.insert(joined.begin.end(), piece.begin(), piece.end());
   joined.size = joined.begin.size();
@@ -231,7 +231,7 @@ Status read_messages(const ddsi_serdata& data, const Limits& limits, internal::H
         return Error{Code::TooLarge,
                      "more than " + std::to_string(kMost) + " messages in a sample"};
       // A small message gets a copy, so that it does not keep the memory of all others.
-      if (message.elements.size() <= kMostCopied) message.owner.reset();
+      if (message.elements.size() <= kMaxCopied) message.owner.reset();
       take(message.keep(), reader.bytes() - std::exchange(taken, reader.bytes()));
     } else if (at < octets.size()) {
       const auto space = reader.space();

@@ -23,27 +23,27 @@ inline constexpr const char* kTypeName = "hypercolumn::Message";
 /// Overhead of a sample: encapsulation header, sequence length, padding. [byte]
 inline constexpr std::uint64_t kFrame = 12;
 
-struct LetGo {
+struct Unref {
   void operator()(ddsi_serdata* sample) const { ddsi_serdata_unref(sample); }
 };
-using Sample = std::unique_ptr<ddsi_serdata, LetGo>;
+using Sample = std::unique_ptr<ddsi_serdata, Unref>;
 
 /// The type of the topics.
 ddsi_sertype* make_type();
 
 /// Elements up to this size are copied into the sample, which costs no more than another fragment.
 /// [byte]
-inline constexpr std::size_t kMostCopied = 4096;
+inline constexpr std::size_t kMaxCopied = 4096;
 
 /// A sample of one message. Its elements are shared, or copied if they are small or have no owner.
 /// @param pieces  of `message`.
 Sample make_sample(const ddsi_sertype& type, const Pieces& pieces, const Message& message);
 
 /// Maximum size of a sample of several messages. [byte]
-inline constexpr std::size_t kMostJoined = 16 << 10;
+inline constexpr std::size_t kMaxJoined = 16 << 10;
 
 /// Adds a message to a sample that has not been sent; false if the elements of either are not
-/// copied, or the sample would exceed kMostJoined.
+/// copied, or the sample would exceed kMaxJoined.
 bool join(ddsi_serdata& sample, const Pieces& pieces);
 
 /// A sample without octets, which marks the end of a writer's messages.

@@ -189,7 +189,7 @@ TEST_F(DdsSample, GrowsByWhatIsSmall) {
   EXPECT_FALSE(add(*large, testing::numbered(0, 4000)));
   int count = 0;
   while (add(*small, testing::numbered(count, 4000))) ++count;
-  EXPECT_EQ(count, 3);  // kMostJoined
+  EXPECT_EQ(count, 3);  // kMaxJoined
   EXPECT_EQ(read_all(*come(in_pieces(*small, 1000))).size(), 4U);
 }
 

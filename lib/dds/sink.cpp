@@ -99,7 +99,7 @@ class DdsSink final : public Sink {
       }
     }
     patience_.end();
-    const bool follows = waits_ && size <= kMostCopied && steady_clock::now() - sent_ < kFollowTime;
+    const bool follows = waits_ && size <= kMaxCopied && steady_clock::now() - sent_ < kFollowTime;
     following_ = follows ? following_ + 1 : 0;
     const bool is_direct = !is_paced_ && following_ < kFewest && queue_.empty();
     if (!is_direct || !write(*make_sample(participant_->type(), pieces, message))) {

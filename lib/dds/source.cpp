@@ -35,7 +35,7 @@ struct Cache : dds_rhc {
 };
 
 /// A queued message and its size [byte].
-struct Arrived {
+struct Received {
   Message message;
   std::uint64_t bytes = 0;
 };
@@ -44,13 +44,13 @@ class DdsSource final : public Source {
  public:
   /// With `keep=all`, writers are blocked when this much is queued. [byte]
   static constexpr std::uint64_t kWindow = std::uint64_t{2} << 20;
-  static constexpr std::uint64_t kBesides = 256;  // memory of a message besides its bytes [byte]
+  static constexpr std::uint64_t kOverhead = 256;  // memory of a message besides its bytes [byte]
   /// How long data of a vanished writer may still arrive.
   static constexpr std::chrono::seconds kPatience{1};
 
   DdsSource(const Policy& policy, LinkOptions options, std::chrono::seconds wait,
             std::chrono::seconds reconnect)
-      : loses_nothing_(policy.writer_waits()),
+      : blocks_writers_(policy.writer_waits()),
         options_(std::move(options)),
         reconnect_(reconnect),
         queue_(policy) {
@@ -104,10 +104,10 @@ class DdsSource final : public Source {
     if (!std::exchange(has_instance_, true)) ddsi_tkmap_instance_ref(&instance);
     if (is_closing_ || sample.kind != SDK_DATA) return true;
     if (octets_of(sample) == 0) {
-      if (closed_.insert(writer).second && alive() == 0) await_next(std::chrono::seconds(0));
+      if (closed_.insert(writer).second && alive() == 0) await_writer(std::chrono::seconds(0));
       return true;
     }
-    if (loses_nothing_ && queue_.bytes() >= kWindow) return false;
+    if (blocks_writers_ && queue_.bytes() >= kWindow) return false;
     lock.unlock();
     const std::lock_guard reading(reading_);
     const auto read =
@@ -118,7 +118,7 @@ class DdsSource final : public Source {
     lock.lock();
     const bool is_first = queue_.empty();
     for (auto& [message, bytes] : read_)
-      queue_.push({std::move(message), bytes}, bytes + kBesides, losses_);
+      queue_.push({std::move(message), bytes}, bytes + kOverhead, losses_);
     lock.unlock();
     read_.clear();
     if (is_first) event_.raise();
@@ -149,10 +149,10 @@ class DdsSource final : public Source {
     const bool has_come = status.current_count_change > 0;
     const bool had_closed = !has_come && closed_.erase(status.last_publication_handle) > 0;
     if (has_come) {
-      has_had_one_ = true;
+      had_writer_ = true;
       give_up_ = TimePoint::max();
     } else if (!had_closed && alive() == 0) {
-      await_next(kPatience);
+      await_writer(kPatience);
     }
   }
 
@@ -160,7 +160,7 @@ class DdsSource final : public Source {
   [[nodiscard]] std::size_t alive() const { return matched_ - std::min(matched_, closed_.size()); }
 
   /// Waits for the next writer, at least for `least` since data may still arrive.
-  void await_next(std::chrono::seconds least) {
+  void await_writer(std::chrono::seconds least) {
     give_up_ = steady_clock::now() + std::max(least, reconnect_);
     timer_.call_at(give_up_);
     event_.raise();
@@ -172,35 +172,35 @@ class DdsSource final : public Source {
     if (alive() > 0) return Got::Nothing;
     if (give_up_ > steady_clock::now() && !is_final_) return Got::Nothing;
     event_.raise();  // remains readable
-    if (!has_had_one_ && !is_final_) return Error{Code::NotFound, "no writer on this topic"};
+    if (!had_writer_ && !is_final_) return Error{Code::NotFound, "no writer on this topic"};
     return Got::End;
   }
 
   /// Logs once per writer. Call it with `reading_` locked.
   void drop(dds_instance_handle_t writer, const std::string& what, const Error& why) {
     constexpr std::size_t kMost = 1000;
-    if (strangers_.size() >= kMost || !strangers_.insert(writer).second) return;
+    if (warned_.size() >= kMost || !warned_.insert(writer).second) return;
     participant_->warn("dropped " + what + ": " + why.text() +
                        "; further ones of this writer are not logged");
   }
 
-  const bool loses_nothing_;
+  const bool blocks_writers_;
   const LinkOptions options_;
   const std::chrono::seconds reconnect_;
   Event event_;
 
-  std::mutex reading_;  // guards the members up to strangers_; locked before mutex_
+  std::mutex reading_;  // guards the members up to warned_; locked before mutex_
   internal::HeaderMemo memo_;
-  std::vector<Arrived> read_;  // from the current sample
-  std::set<dds_instance_handle_t> strangers_;
+  std::vector<Received> read_;  // from the current sample
+  std::set<dds_instance_handle_t> warned_;
 
   mutable std::mutex mutex_;  // guards the members up to give_up_
   Traffic traffic_;
-  SendQueue<Arrived> queue_;
+  SendQueue<Received> queue_;
   Traffic losses_;
   std::size_t matched_ = 0;                 // writers
   std::set<dds_instance_handle_t> closed_;  // matched writers that have closed
-  bool has_had_one_ = false, is_final_ = false, is_closing_ = false;
+  bool had_writer_ = false, is_final_ = false, is_closing_ = false;
   bool has_instance_ = false;             // holds the topic's instance until the domain ends
   TimePoint give_up_ = TimePoint::max();  // when to end; set while there is no writer
 

@@ -107,16 +107,16 @@ class McapReader final : public Reader {
   /// The next message and its companion, in either order; a companion without a message is returned
   /// as the message. nullopt at the end.
   Result<std::optional<StoredPair>> read_pair() {
-    if (!HC_TRY(look(0))) return std::optional<StoredPair>();
+    if (!HC_TRY(read_ahead(0))) return std::optional<StoredPair>();
     StoredPair pair{std::move(queue_.front()), std::nullopt};
     queue_.pop_front();
-    pair.companion = find_other(pair.message);
+    pair.companion = find_counterpart(pair.message);
     if (pair.companion && is_mtp(*pair.companion)) std::swap(pair.message, *pair.companion);
     return std::optional(std::move(pair));
   }
 
   /// Reads ahead until the queue has a message at `place`; false at the end.
-  Result<bool> look(std::size_t place) {
+  Result<bool> read_ahead(std::size_t place) {
     if (place < queue_.size()) return true;
     if (failed_) return *std::exchange(failed_, std::nullopt);
     auto stored = HC_TRY(reader_.next());
@@ -126,7 +126,7 @@ class McapReader final : public Reader {
 
   /// Takes the companion of a message, or the message of a companion, from those with the same log
   /// time, within the limits.
-  std::optional<StoredMessage> find_other(const StoredMessage& one) {
+  std::optional<StoredMessage> find_counterpart(const StoredMessage& one) {
     constexpr std::size_t kMost = 1000;
     const auto topic = pair_topic(one);
     const bool is_alone = topic.empty() || (is_mtp(one) && !lacks_elements(one));
@@ -138,7 +138,7 @@ class McapReader final : public Reader {
         const auto time = reader_.next_time();
         if (!time) failed_ = time.error();
         if (!time || *time != one.record.log_time) break;
-        auto read = look(i);
+        auto read = read_ahead(i);
         if (!read) failed_ = read.error();
         if (!read || !*read) break;
       }

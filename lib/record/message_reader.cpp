@@ -39,12 +39,12 @@ class MessageReader final : public Reader {
 
   Result<Got> take(Message& message) override {
     message = {};
-    auto got = look();
+    auto got = read_ahead();
     if (got && *got == Got::Message) message = std::move(*std::exchange(ahead_, std::nullopt));
     return got;
   }
   Result<std::optional<std::int64_t>> next_time() override {
-    auto got = look();
+    auto got = read_ahead();
     if (!got) return got.error();
     return *got == Got::Message ? std::optional(times_.last) : std::nullopt;
   }
@@ -80,7 +80,7 @@ class MessageReader final : public Reader {
 
  private:
   /// Reads the next message into ahead_, unless it has one.
-  Result<Got> look() {
+  Result<Got> read_ahead() {
     while (!ahead_) {
       Message message;
       auto got = source_->take(message);

@@ -24,9 +24,9 @@ namespace hc::tls {
 class Acceptor {
  public:
   /// Maximum number of handshakes in progress; a new one replaces the oldest.
-  static constexpr std::size_t kMostHalfOpen = 256;
+  static constexpr std::size_t kMaxHandshakes = 256;
   /// Maximum number of accepted peers; further ones wait in the kernel's backlog.
-  static constexpr std::size_t kMostAgreed = 64;
+  static constexpr std::size_t kMaxAccepted = 64;
   /// How long a handshake may take.
   static constexpr std::chrono::seconds kPatience{4};
 
@@ -42,16 +42,16 @@ class Acceptor {
   ConnectedSocket take(const LogSink& log);
 
  private:
-  struct HalfOpen {
+  struct Handshake {
     ConnectedSocket socket;
     std::string name;  // "192.168.1.7:40312"
     Loop::Handle watch;
   };
-  using Peer = std::list<HalfOpen>::iterator;
+  using Peer = std::list<Handshake>::iterator;
 
   void accept_all();
-  Status let_in(ConnectedSocket accepted);
-  void go_on(Peer peer, bool is_late);
+  Status begin_handshake(ConnectedSocket accepted);
+  void continue_handshake(Peer peer, bool is_late);
   void say(std::string line);
   void raise() const { ::eventfd_write(event_, 1); }
 
@@ -59,11 +59,11 @@ class Acceptor {
   std::shared_ptr<const Context> context_;
   std::unique_ptr<Loop> loop_;  // for the listening socket and the handshakes
   Loop::Handle listening_;
-  std::list<HalfOpen> half_open_;
+  std::list<Handshake> handshakes_;
   bool is_crowded_ = false;
   internal::Remarks remarks_;
   std::mutex mutex_;
-  std::deque<ConnectedSocket> agreed_;  // guarded by mutex_
+  std::deque<ConnectedSocket> accepted_;  // guarded by mutex_
   int event_ = -1;
   Watch watch_;
 };

@@ -54,10 +54,10 @@ constexpr int kRefusals[] = {
     SSL_R_SSLV3_ALERT_HANDSHAKE_FAILURE,    SSL_R_SSLV3_ALERT_UNSUPPORTED_CERTIFICATE,
     SSL_R_TLSV1_ALERT_ACCESS_DENIED,        SSL_R_TLSV1_ALERT_UNKNOWN_CA,
     SSL_R_TLSV13_ALERT_CERTIFICATE_REQUIRED};
-constexpr int kNoTls[] = {SSL_R_WRONG_VERSION_NUMBER,     SSL_R_HTTP_REQUEST,
-                          SSL_R_HTTPS_PROXY_REQUEST,      SSL_R_BAD_RECORD_TYPE,
-                          SSL_R_RECORD_LENGTH_MISMATCH,   SSL_R_PACKET_LENGTH_TOO_LONG,
-                          SSL_R_ENCRYPTED_LENGTH_TOO_LONG};
+constexpr int kNotTls[] = {SSL_R_WRONG_VERSION_NUMBER,     SSL_R_HTTP_REQUEST,
+                           SSL_R_HTTPS_PROXY_REQUEST,      SSL_R_BAD_RECORD_TYPE,
+                           SSL_R_RECORD_LENGTH_MISMATCH,   SSL_R_PACKET_LENGTH_TOO_LONG,
+                           SSL_R_ENCRYPTED_LENGTH_TOO_LONG};
 
 }  // namespace
 
@@ -87,12 +87,12 @@ TlsChannel& TlsChannel::of(const SSL* ssl) {
 
 Result<short> TlsChannel::agree() {
   ERR_clear_error();
-  if (state_ == State::Greets) {
+  if (state_ == State::Handshaking) {
     const int done = SSL_do_handshake(ssl_.get());
     if (done != 1) return awaited(done);
-    state_ = State::AwaitsAnswer;
+    state_ = State::AwaitingTicket;
   }
-  if (state_ == State::AwaitsAnswer) {
+  if (state_ == State::AwaitingTicket) {
     char byte = 0;
     std::size_t size = 0;
     if (side_ == Side::Dials && !is_confirmed_) {
@@ -104,7 +104,7 @@ Result<short> TlsChannel::agree() {
     }
     SSL_set_mode(ssl_.get(), SSL_MODE_AUTO_RETRY);
     SSL_set_read_ahead(ssl_.get(), 1);  // only now, so that no data has been read yet
-    state_ = State::Agreed;
+    state_ = State::Open;
   }
   if (failure_) return *failure_;
   return static_cast<short>(0);
@@ -122,14 +122,14 @@ Result<short> TlsChannel::awaited(int result) {
 std::string TlsChannel::why_refused(int result) const {
   const int reason = ERR_GET_REASON(ERR_peek_error());
   const bool is_silent = ERR_peek_error() == 0;
-  if (refused_ && !refused_->empty())
-    return "the peer's key is " + *refused_ + ", not one of peer=";
+  if (refused_key_ && !refused_key_->empty())
+    return "the peer's key is " + *refused_key_ + ", not one of peer=";
   if (reason == SSL_R_PEER_DID_NOT_RETURN_A_CERTIFICATE) return "the peer has sent no key";
   if (std::ranges::count(kRefusals, reason) > 0)
     return "the peer has refused our key; add it to the peer's peer=";
   if (reason == SSL_R_UNSUPPORTED_PROTOCOL || reason == SSL_R_TLSV1_ALERT_PROTOCOL_VERSION)
     return "the peer does not support TLS 1.3";
-  if (std::ranges::count(kNoTls, reason) > 0) return "the peer does not speak TLS";
+  if (std::ranges::count(kNotTls, reason) > 0) return "the peer does not speak TLS";
   if (is_silent || reason == SSL_R_UNEXPECTED_EOF_WHILE_READING ||
       SSL_get_error(ssl_.get(), result) == SSL_ERROR_ZERO_RETURN)
     return "the peer disconnected during the TLS handshake; does it listen by tls-listen?";
@@ -139,7 +139,7 @@ std::string TlsChannel::why_refused(int result) const {
 
 void TlsChannel::fail(int result) {
   if (failure_) return;
-  if (state_ != State::Agreed) {
+  if (state_ != State::Open) {
     failure_ = Error{Code::Closed, why_refused(result)};
   } else if (send_errno_ != 0) {
     failure_ = system_error("write", "", send_errno_);
@@ -224,7 +224,7 @@ int TlsChannel::send(std::span<const char> bytes) {
   std::size_t sent = 0;
   // A server's last handshake record is held back; after agree(), write() sends it when the link is
   // ready for the client.
-  const bool is_held = side_ == Side::Listens && state_ == State::Greets;
+  const bool is_held = side_ == Side::Listens && state_ == State::Handshaking;
   if (!is_held && !has_unsent()) {
     const auto size = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (size < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) {
@@ -261,7 +261,7 @@ bool TlsChannel::has_unread() const {
 }
 
 void TlsChannel::end() {
-  if (state_ != State::Agreed || std::exchange(has_ended_, true)) return;
+  if (state_ != State::Open || std::exchange(has_ended_, true)) return;
   ERR_clear_error();
   SSL_shutdown(ssl_.get());
   static_cast<void>(flush());

@@ -38,13 +38,13 @@ class TlsChannel final : public SecureChannel {
 
   // Callbacks from OpenSSL.
   static TlsChannel& of(const SSL* ssl);
-  void refuse(std::string fingerprint) { refused_ = std::move(fingerprint); }
+  void refuse(std::string fingerprint) { refused_key_ = std::move(fingerprint); }
   void confirm() { is_confirmed_ = true; }
   /// Sends or queues encrypted bytes; -1: no room, or errno has the reason.
   int send(std::span<const char> bytes);
 
  private:
-  enum class State { Greets, AwaitsAnswer, Agreed, Failed };
+  enum class State { Handshaking, AwaitingTicket, Open, Failed };
 
   Result<short> awaited(int result);
   bool flush();
@@ -55,9 +55,9 @@ class TlsChannel final : public SecureChannel {
   std::shared_ptr<const Context> context_;
   int socket_;
   Side side_;
-  State state_ = State::Greets;
+  State state_ = State::Handshaking;
   std::unique_ptr<SSL, Free<SSL_free>> ssl_;
-  std::optional<std::string> refused_;  // fingerprint of the peer's key
+  std::optional<std::string> refused_key_;  // fingerprint of the peer's key
   bool is_confirmed_ = false, has_ended_ = false;
   std::optional<Error> failure_;
   int send_errno_ = 0;

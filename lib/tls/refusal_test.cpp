@@ -149,7 +149,7 @@ TEST_F(TlsRefusal, AThousandThatStartAndSayNoMore) {
     ASSERT_EQ(::send(sockets.back().get(), kBegin, sizeof kBegin, MSG_NOSIGNAL), 4);
   }
   serves_others();
-  EXPECT_LE(open_descriptors(), before + kCount + tls::Acceptor::kMostHalfOpen + 10);
+  EXPECT_LE(open_descriptors(), before + kCount + tls::Acceptor::kMaxHandshakes + 10);
   ASSERT_EQ(warnings_.lines.size(), 1U);
   EXPECT_EQ(warnings_.lines[0],
             uri_ + ": more than 256 peers are in a TLS handshake; closing the oldest of them");

@@ -38,14 +38,14 @@ void fail(j_common_ptr info) {
 }
 
 /// Warnings (level -1) mean damaged data; other messages are ignored.
-void judge_message(j_common_ptr info, int level) {
+void fail_on_warning(j_common_ptr info, int level) {
   if (level < 0) fail(info);
 }
 
 jpeg_error_mgr* install(ErrorHandler& handler) {
   jpeg_std_error(&handler.manager);
   handler.manager.error_exit = fail;
-  handler.manager.emit_message = judge_message;
+  handler.manager.emit_message = fail_on_warning;
   return &handler.manager;
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 /// Seeks to the end of the last complete message and truncates a message that a killed writer left
 /// incomplete. False: the file is damaged or is not a recording.
-Result<bool> go_behind_messages(int file) {
+Result<bool> seek_messages_end(int file) {
   StreamReader reader({~std::uint64_t{0}});
   Message message;
   off_t at = 0;
@@ -51,7 +51,7 @@ Result<Descriptor> open_for_writing(const Uri& uri, bool appends, const LinkOpti
     return open_path(uri, O_WRONLY | O_CREAT | O_APPEND, options.stop);
   if (appends) {
     auto file = HC_TRY(continue_file(uri.rest));
-    auto is_whole = HC_TRY(go_behind_messages(file.descriptor.get()));
+    auto is_whole = HC_TRY(seek_messages_end(file.descriptor.get()));
     if (is_whole) return std::move(file.descriptor);
   }
   auto file = HC_TRY(begin_file(uri.rest));

@@ -16,7 +16,7 @@ class Intake {
  public:
   using Take = std::function<void(const Message& message)>;
 
-  /// @param is_limited  delays a writer that sends more than kMostInATurn messages within kPause.
+  /// @param is_limited  delays a writer that sends more than kMaxPerTurn messages within kPause.
   /// Errors: those of open_source(), System.
   static Result<std::unique_ptr<Intake>> make(Loop& loop, const std::string& uri, Take take,
                                               const LinkOptions& options = {},
@@ -29,7 +29,7 @@ class Intake {
   void on_end(std::function<void()> end) { end_ = std::move(end); }
 
  private:
-  static constexpr int kMostInATurn = 32, kMostRests = 32;
+  static constexpr int kMaxPerTurn = 32, kMaxRestTurns = 32;
   static constexpr std::chrono::milliseconds kPause{10};
 
   Intake(Loop& loop, std::unique_ptr<Source> source, Take take, bool is_limited)
@@ -46,7 +46,7 @@ class Intake {
   std::function<void()> end_;
   const std::chrono::milliseconds pause_;
   bool is_paused_ = false;
-  Loop::Handle watch_, woken_, again_;
+  Loop::Handle watch_, wake_, retry_;
 };
 
 }  // namespace hc::internal

@@ -93,7 +93,7 @@ Status check_end(const Transport& transport, const Uri& uri, std::string_view al
 }
 
 /// The options with a log that prefixes lines with the URI.
-LinkOptions with_name(LinkOptions options, const Uri& uri) {
+LinkOptions with_uri_prefix(LinkOptions options, const Uri& uri) {
   if (!options.log) return options;
   options.log = [log = options.log, name = uri.text() + ": "](Level severity,
                                                               std::string_view line) {
@@ -129,13 +129,13 @@ std::vector<std::string_view> transports() {
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options) {
   auto transport = HC_TRY(find_transport(uri));
   HC_TRY(check_options(uri, transport->source_options));
-  return transport->open_source(uri, with_name(options, uri));
+  return transport->open_source(uri, with_uri_prefix(options, uri));
 }
 
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options) {
   auto transport = HC_TRY(find_transport(uri));
   HC_TRY(check_options(uri, transport->sink_options));
-  return transport->open_sink(uri, with_name(options, uri));
+  return transport->open_sink(uri, with_uri_prefix(options, uri));
 }
 
 Status check_source(const Uri& uri) {

@@ -65,7 +65,7 @@ std::optional<InfoError> find_shape_error(std::size_t field, std::int64_t width,
   return std::nullopt;
 }
 
-bool has_good_size(const Header& header, const Limits& limits) {
+bool fits_limits(const Header& header, const Limits& limits) {
   // Both sides are below 2³¹ and an element has at most 792 bytes, so the product of the sides fits
   // into 64 bits, and the product of all three does if the first is below 2⁵⁴.
   std::uint64_t elements =
@@ -143,7 +143,7 @@ Result<Header> parse(std::string_view line, const Limits& limits,
                    "more than 11 fields: " + in_quotes(line.substr(at)), byte);
   }
   Header header = header_of(values, info);
-  if (!has_good_size(header, limits)) [[unlikely]]
+  if (!fits_limits(header, limits)) [[unlikely]]
     return refuse(Code::TooLarge, 24, Width,
                   std::to_string(header.width) + " x " + std::to_string(header.height) + " x " +
                       std::to_string(info.element_bytes()) + " bytes exceed the limit of " +
@@ -162,7 +162,7 @@ Status check(const Header& header, const Limits& limits) {
   bool below_0 = (header.src | header.mode | header.coord | header.width | header.height) < 0 ||
                  (header.seq | header.time) < 0;
   if (!below_0 && broken_rule(header.info) == 0 && !has_shape_rule(header.info) &&
-      has_good_size(header, limits))
+      fits_limits(header, limits))
     return {};
   if (auto error = find_error(header.info))  // code() could be that of another, valid info
     return refusal(error->code(), error->rule, kRules[InfoCode].name, error->what, std::nullopt);

@@ -10,7 +10,7 @@ namespace hc {
 namespace {
 
 constexpr std::size_t kBlockBytes = std::size_t{64} << 10;
-constexpr std::size_t kLeastSpace = 4096;      // minimum size of a read, to limit system calls
+constexpr std::size_t kMinSpace = 4096;        // minimum size of a read, to limit system calls
 constexpr std::size_t kMaxInBlock = 16 << 10;  // elements up to this size stay in the block
 constexpr std::size_t kMaxHead = kMaxHeaderBytes + 32;
 
@@ -33,7 +33,7 @@ std::span<std::byte> StreamReader::space() {
   bool shared = block_.use_count() > 1;
   if (begin_ == end_ && !shared) begin_ = end_ = 0;
   bool whole_fits = kBlockBytes - begin_ >= kMaxHead + kMaxInBlock + 2;
-  if (block_ == nullptr || kBlockBytes - end_ < kLeastSpace || !whole_fits) {
+  if (block_ == nullptr || kBlockBytes - end_ < kMinSpace || !whole_fits) {
     // Moves the unread bytes to the front; to a new block if messages still refer to this one.
     SharedBytes target = block_ == nullptr || shared ? allocate_bytes(kBlockBytes) : block_;
     if (end_ > begin_) std::memmove(target.get(), block_.get() + begin_, end_ - begin_);
@@ -44,7 +44,7 @@ std::span<std::byte> StreamReader::space() {
   // If the last message had a separate body, read only the head, so that the elements are not
   // copied.
   bool only_head = state_ == State::Head && begin_ == end_ && expects_body_;
-  return {block_.get() + end_, only_head ? kLeastSpace : kBlockBytes - end_};
+  return {block_.get() + end_, only_head ? kMinSpace : kBlockBytes - end_};
 }
 
 void StreamReader::commit(std::size_t size) {

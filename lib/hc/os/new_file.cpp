@@ -48,7 +48,7 @@ bool has_contents(const std::string& path) {
 }
 
 /// Whether other users can read or write an open file, or own it.
-bool is_of_others(const Descriptor& file) {
+bool is_accessible_to_others(const Descriptor& file) {
   struct stat about {};
   return ::fstat(file.get(), &about) != 0 || about.st_uid != ::geteuid() ||
          (about.st_mode & (S_IRWXG | S_IRWXO)) != 0;
@@ -82,7 +82,7 @@ Status put_in_place(const std::string& path, std::string_view contents, mode_t m
   const std::string unfinished = path + ".unfinished";
   const auto file = HC_TRY(open_successor(unfinished, mode));
   const bool is_wanted = replaces || ::access(path.c_str(), F_OK) != 0;
-  if (!replaces && is_wanted && is_of_others(file))
+  if (!replaces && is_wanted && is_accessible_to_others(file))
     return Error{Code::System, unfinished + ": other users can read it; remove it"};
   Status done = is_wanted ? write_to(file, path, contents) : Status();
   if (done && is_wanted && std::rename(unfinished.c_str(), path.c_str()) != 0)

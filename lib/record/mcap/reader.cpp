@@ -329,7 +329,7 @@ Result<bool> Reader::fill() {
                         parts_[next_part_].first >= pending_[next_].time))
       return true;
     if (!has_part) {
-      if (summary_.is_whole || std::exchange(is_truncation_said_, true)) return false;
+      if (summary_.is_whole || std::exchange(is_truncation_reported_, true)) return false;
       return truncated(scanned_);
     }
     const Part& part = parts_[next_part_++];

@@ -153,7 +153,7 @@ class Reader {
   std::vector<Pending> pending_;  // messages of open parts, by time
   std::size_t next_ = 0;
   std::uint64_t open_bytes_ = 0, position_ = 0;
-  bool is_truncation_said_ = false;
+  bool is_truncation_reported_ = false;
 };
 
 }  // namespace hc::mcap

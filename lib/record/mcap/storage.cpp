@@ -115,13 +115,14 @@ void Storage::remove_old() {
 void Storage::limit_lasting() {
   std::size_t all = 0;
   for (const auto& each : repeated_)
-    if (const auto* lasting = std::get_if<Lasting>(&each)) all += lasting->data.size() + kOfLasting;
+    if (const auto* lasting = std::get_if<Lasting>(&each))
+      all += lasting->data.size() + kLastingOverhead;
   for (const bool also_known : {false, true})
     std::erase_if(repeated_, [&](const Repeated& each) {
       const auto* lasting = std::get_if<Lasting>(&each);
       if (all <= kMostLasting || lasting == nullptr || (!also_known && !lasting->about.empty()))
         return false;
-      all -= lasting->data.size() + kOfLasting;
+      all -= lasting->data.size() + kLastingOverhead;
       return true;
     });
 }

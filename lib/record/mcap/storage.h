@@ -44,8 +44,8 @@ class Storage {
   /// lasting messages, which get the start time of the file from the second file on. There is at
   /// most one per subject and kMostLasting in all; the oldest without subjects are dropped first.
   using Repeated = std::variant<SchemaRecord, ChannelRecord, MetadataRecord, Lasting>;
-  /// Limit on lasting messages, each with an overhead of kOfLasting. [byte]
-  static constexpr std::size_t kMostLasting = std::size_t{1} << 20, kOfLasting = 512;
+  /// Limit on lasting messages, each with an overhead of kLastingOverhead. [byte]
+  static constexpr std::size_t kMostLasting = std::size_t{1} << 20, kLastingOverhead = 512;
 
   /// @param file  "kept.mcap". If it has contents, a new file is written beside it (os/new_file.h).
   ///     With `split` or `last`: "kept_0001.mcap" and so on, after existing ones.
