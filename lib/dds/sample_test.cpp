@@ -218,7 +218,7 @@ TEST_F(DdsSample, ThatIsNoMessageIsRefused) {
   EXPECT_EQ(refusal(rows, 1), "");
   EXPECT_EQ(refusal(rows + rows, 2), "");
   EXPECT_EQ(refusal(rows + "5 6\n", 1),
-            "Unsupported: R6 version: this reader knows version 1, not 5, at byte 34");
+            "Unsupported: R6 version: this reader supports version 1, not 5, at byte 34");
   EXPECT_EQ(refusal(rows.substr(0, rows.size() - 4)),
             "Truncated: the sample ends inside a message");
   EXPECT_EQ(refusal(rows + rows.substr(0, rows.size() - 2) + "x\n", 1),

@@ -132,7 +132,7 @@ std::string TlsChannel::why_refused(int result) const {
   if (std::ranges::count(kNotTls, reason) > 0) return "the peer does not speak TLS";
   if (is_silent || reason == SSL_R_UNEXPECTED_EOF_WHILE_READING ||
       SSL_get_error(ssl_.get(), result) == SSL_ERROR_ZERO_RETURN)
-    return "the peer disconnected during the TLS handshake; does it listen by tls-listen?";
+    return "the peer disconnected during the TLS handshake; is it a tls-listen link?";
   const char* text = ERR_reason_error_string(ERR_peek_error());
   return std::string("the TLS handshake failed: ") + (text != nullptr ? text : "unknown error");
 }

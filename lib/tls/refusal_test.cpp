@@ -101,7 +101,7 @@ TEST_F(TlsRefusal, PlainText) {
 TEST_F(TlsRefusal, APlainClientThatLeaves) {
   connect_plainly(place_).reset();
   EXPECT_EQ(await_line(),
-            "the peer disconnected during the TLS handshake; does it listen by tls-listen?");
+            "the peer disconnected during the TLS handshake; is it a tls-listen link?");
   serves_others();
 }
 
@@ -132,8 +132,8 @@ TEST(Tls, AtAPlainPort) {
   await_warning(*source, warnings);
   client.join();
   EXPECT_EQ(why, "Closed: connect(" + place +
-                     "): the peer disconnected during the TLS handshake; does it listen by "
-                     "tls-listen?");
+                     "): the peer disconnected during the TLS handshake; is it a "
+                     "tls-listen link?");
   EXPECT_NE(warnings.lines[0].find("closed a connection: Malformed: R5"), std::string::npos)
       << warnings.lines[0];
 }

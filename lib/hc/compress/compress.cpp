@@ -15,8 +15,9 @@ Error damaged(int rule, std::string_view what, const Message& message) {
 
 Error too_few_bytes(int rule, const Message& message) {
   return damaged(rule,
-                 std::to_string(message.elements.size()) + " compressed bytes cannot hold the " +
-                     std::to_string(message.header.element_bytes()) + " bytes of the header",
+                 std::to_string(message.elements.size()) +
+                     " compressed bytes cannot expand to the header's " +
+                     std::to_string(message.header.element_bytes()) + " bytes",
                  message);
 }
 

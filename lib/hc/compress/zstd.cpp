@@ -34,10 +34,9 @@ Result<Message> expand_zstd(const Message& message) {
   std::size_t size =
       ZSTD_decompress(bytes.get(), promised, message.elements.data(), message.elements.size());
   if (ZSTD_getErrorCode(size) == ZSTD_error_dstSize_tooSmall)
-    return damaged(36,
-                   "the zstd frames contain more than the " + std::to_string(promised) +
-                       " bytes of the header",
-                   message);
+    return damaged(
+        36, "the zstd frames contain more than the header's " + std::to_string(promised) + " bytes",
+        message);
   if (ZSTD_isError(size) != 0)
     return damaged(36, std::string("zstd: ") + ZSTD_getErrorName(size), message);
   if (size != promised)

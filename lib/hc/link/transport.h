@@ -21,7 +21,8 @@ struct Transport {
   Status (*check)(const Uri& uri);
 };
 
-/// Adds a transport, unless it is there. Call it before links are opened and threads are started.
+/// Adds a transport, unless its scheme exists. Call it before links are opened and threads are
+/// started.
 void add_transport(Transport transport);
 
 }  // namespace hc

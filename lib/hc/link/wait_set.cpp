@@ -16,7 +16,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-// What an event is about, unless it is the number of a source.
+// Values of epoll_event::data, besides the numbers of sources.
 constexpr std::uint64_t kStop = 0, kOther = ~std::uint64_t{0};
 
 std::uint64_t next_number() {

@@ -125,7 +125,7 @@ Result<Header> parse(std::string_view line, const Limits& limits,
     if (value < least || value > most) [[unlikely]] {
       const auto number = std::to_string(value);
       return refuse(code, rule, field,
-                    field == Version ? "this reader knows version 1, not " + number
+                    field == Version ? "this reader supports version 1, not " + number
                     : value < least  ? number + " is below " + std::to_string(least)
                                      : number + " is above " + std::to_string(most));
     }

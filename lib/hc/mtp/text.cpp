@@ -131,7 +131,7 @@ Result<std::size_t> TextRows::read_as(std::string_view text, std::uint64_t byte,
     if (open && token.size() == kMaxNumberBytes + 1 && token.back() == '\r') break;
     if (token.size() > kMaxNumberBytes)
       return refusal(Code::Malformed, 31, "elements",
-                     "a number is at most 64 bytes long, not as " + in_quotes(token), where(at));
+                     "a number is longer than 64 bytes: " + in_quotes(token), where(at));
     if (column_ == row_numbers_)
       return refusal(
           Code::Malformed, 30, "elements",
@@ -185,7 +185,7 @@ Status parse_number(std::string_view token, Scalar scalar, std::byte* number) {
     Outcome outcome = read_number(token.data(), end, value, next);
     if (next != end) outcome = Outcome::NotANumber;
     if (token.size() > kMaxNumberBytes)
-      return Error{Code::Malformed, "R31: a number is at most 64 bytes long"};
+      return Error{Code::Malformed, "R31: a number is longer than 64 bytes"};
     if (outcome != Outcome::Good)
       return Error{Code::Malformed, "R" + std::to_string(static_cast<int>(outcome)) + ": " +
                                         describe(outcome, token, scalar)};

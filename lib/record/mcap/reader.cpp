@@ -42,8 +42,8 @@ bool knows_channels(const Summary& summary) {
 }  // namespace
 
 Error Reader::truncated(std::uint64_t at) const {
-  return {Code::Truncated, "MCAP: the file has no end, as a recorder that was killed leaves it; " +
-                               std::to_string(at) + " of its " + std::to_string(size_) +
+  return {Code::Truncated, "MCAP: the file is truncated, as after a crash; " + std::to_string(at) +
+                               " of its " + std::to_string(size_) +
                                " bytes are complete and have been read"};
 }
 
