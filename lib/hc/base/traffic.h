@@ -12,7 +12,7 @@ struct Traffic {
   std::uint64_t messages = 0;
   /// As on the wire; without one, the elements (inproc), or the elements and the header (shm).
   std::uint64_t bytes = 0;
-  /// Messages delayed by `rate`: sent later, or counted as `throttled` too.
+  /// Messages delayed by `rate`: sent later, or also counted as dropped.
   std::uint64_t delayed = 0;
   /// Messages dropped because a newer one arrived while the reader was slow (`keep`).
   std::uint64_t dropped_newer = 0;
