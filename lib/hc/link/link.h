@@ -151,7 +151,6 @@ struct LinkOptions {
 /// Opens the receiving or the sending end of a link. doc/modules.md, "Links", lists the URIs and
 /// their options.
 ///
-///
 /// Errors: Invalid (an unknown scheme or option, or a bad value), NotFound (no such file or host),
 /// Closed (connection refused), Stopped, System (name in use, …).
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options = {});

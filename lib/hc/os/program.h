@@ -14,9 +14,9 @@ namespace hc {
 void open_standard_descriptors();
 
 /// A descriptor that becomes readable on SIGINT, SIGTERM or SIGHUP (unless that is ignored, as
-/// under nohup); they are caught from the first call on. Repeating a signal kills as usual,
-/// except within 1 s. SIGPIPE and SIGXFSZ are ignored. Always returns the same
-/// descriptor. To be called on the main thread.
+/// under nohup); they are caught from the first call on. Repeating a signal kills as usual, except
+/// within 1 s. SIGPIPE and SIGXFSZ are ignored. Always returns the same descriptor. To be called on
+/// the main thread.
 int stop_descriptor();
 
 /// Whether such a signal was received. For loops that never wait.
