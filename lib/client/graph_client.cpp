@@ -51,7 +51,6 @@ void GraphClient::end() {
   callbacks_->end();
 }
 
-/// Opens the links for commands and answers.
 Status GraphClient::open() {
   static std::atomic<unsigned> clients{0};
   reply_ = hc::format("unix:@hypercolumn-answer.{}.{}", ::getpid(), clients++);

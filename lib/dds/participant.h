@@ -33,7 +33,6 @@ class Participant {
 
   /// Queues a line for flush_log(). May be called on any thread.
   void warn(std::string line) { remarks_->add(std::move(line)); }
-  /// Logs the queued lines.
   void flush_log(const LogSink& log) { remarks_->flush(log); }
 
  private:

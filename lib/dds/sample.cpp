@@ -111,7 +111,6 @@ Error not_octets(const std::string& why) {
   return {Code::Malformed, "not a sequence of octets: " + why};
 }
 
-/// The octets of a sample.
 Result<std::span<const std::byte>> sequence_of(const MessageSample& sample) {
   // CDR in either byte order; the options hold the number of padding bytes.
   constexpr unsigned char kCdrBig = 0, kCdrLittle = 1;

@@ -268,7 +268,6 @@ class DdsSink final : public Sink {
     }
   }
 
-  /// Ends the thread and the link.
   void end() {
     abandon();
     if (thread_.joinable()) thread_.join();

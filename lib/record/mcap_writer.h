@@ -77,7 +77,6 @@ class McapWriter {
     bool moves_frames = false;      // its messages are poses of frames
     std::map<ros::Type, std::uint16_t> channels;
   };
-  /// Work for the thread.
   struct Job {
     std::function<Status()> work;
     std::size_t bytes = 0;       // memory used
@@ -88,7 +87,6 @@ class McapWriter {
   void record_fixed_frames(std::int64_t time);
   std::uint16_t add_channel(mcap::ChannelRecord channel, mcap::SchemaRecord schema);
   std::uint16_t add_channel(const std::string& topic, ros::Type type, mcap::StringMap metadata);
-  /// The channel of a stream for messages of a type.
   std::uint16_t channel(Stream& stream, ros::Type type);
   /// The channel of a topic without a stream, such as the log.
   std::uint16_t other_channel(std::string_view topic, ros::Type type);

@@ -13,7 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Merges several recordings.
 class MergedReader final : public Reader {
  public:
   struct File {

@@ -21,7 +21,6 @@ namespace hc::record {
 /// for viewers, the topic of the MTP channel with the same messages.
 inline constexpr const char *kStreamKey = "hypercolumn.stream", *kCompanionKey = "hypercolumn.mtp";
 
-/// A stream of a recording.
 struct StreamInfo {
   std::string name;  ///< "head_eyes.left"
   std::string type;  ///< of its messages: of ROS 2 in MCAP, else of MTP; may be empty

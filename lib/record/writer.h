@@ -112,7 +112,6 @@ class Writer {
   Status begin_file(const std::string& path);
   /// Removes an unused new file: an empty one would make the next attempt use another folder.
   static void remove_unused(const File& file);
-  /// Closes all files.
   Status end();
   [[nodiscard]] Error named(const File& file, const Error& error) const;
   void say(Level severity, const std::string& line) const;

@@ -13,7 +13,6 @@
 
 namespace hc::tls {
 
-/// Deletes an object of OpenSSL.
 template <auto free>
 struct Free {
   template <typename Object>

@@ -28,7 +28,6 @@ class Backoff {
   /// When the next attempt may be made; 0 before the first failure.
   [[nodiscard]] Time due() const { return due_; }
 
-  /// Records a failed attempt.
   void fail(Time now) { due_ = now + next(); }
   /// For a caller that sleeps by itself: records a failed attempt and returns the pause.
   Time next() { return std::exchange(pause_, std::min(2 * pause_, longest_)); }

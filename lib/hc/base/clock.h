@@ -14,7 +14,6 @@ namespace hc {
 /// Time since a fixed moment; never goes back, even if the wall clock is set.
 using MonotonicTime = std::chrono::nanoseconds;
 
-/// A time or period in seconds.
 constexpr double seconds(std::int64_t nanoseconds) {
   return static_cast<double>(nanoseconds) * 1e-9;
 }
@@ -30,7 +29,6 @@ constexpr std::chrono::nanoseconds duration(double seconds) {
       static_cast<std::int64_t>(std::clamp(seconds * 1e9, -kLongest, kLongest)));
 }
 
-/// A source of time.
 class Clock {
  public:
   virtual ~Clock() = default;

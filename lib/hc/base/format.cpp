@@ -13,7 +13,6 @@ namespace {
 
 constexpr int kNone = -1;
 
-/// Inserts values into a pattern.
 class Formatter {
  public:
   Formatter(std::string_view pattern, std::initializer_list<FormatValue> values)

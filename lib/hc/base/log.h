@@ -7,7 +7,6 @@
 
 namespace hc {
 
-/// The kind of a log line.
 enum class Level {
   Info,
   Warning,

@@ -15,7 +15,6 @@
 
 namespace hc {
 
-/// The types of parameters.
 using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
 
 /// Constraints on a parameter's value, and how it is set.

@@ -28,7 +28,6 @@ enum class Code {
 /// Name of a code as error lines show it, such as "Malformed".
 std::string_view name(Code code);
 
-/// The reason of a failure.
 struct Error {
   Code code = Code::System;
   std::string detail;  ///< one sentence with the values, without a line end

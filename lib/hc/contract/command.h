@@ -10,7 +10,6 @@
 
 namespace hc {
 
-/// One command.
 struct ModuleCommand {
   enum class Verb { Set, Link, Unlink, Finish, Route, WallOffset };
 

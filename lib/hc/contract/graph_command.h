@@ -36,7 +36,6 @@ struct GraphCommand {
 /// Errors: Invalid.
 Result<GraphCommand> parse_graph_command(std::string_view line);
 
-/// A message of commands.
 struct GraphRequest {
   std::string reply;               ///< `unix:` URI for the answer; empty: no answer
   std::vector<std::string> lines;  ///< one command each
@@ -44,7 +43,6 @@ struct GraphRequest {
 Message make_request(const GraphRequest& request);
 GraphRequest read_request(const Message& message);
 
-/// A graph's answer.
 struct GraphAnswer {
   bool is_ok = false;
   /// If ok, the data requested, or remarks; otherwise at least one error.

@@ -19,7 +19,6 @@ struct PortType {
   bool finite = false;      ///< an input drops and counts messages with NaN or infinity
 };
 
-/// Whether a message is of a type.
 inline bool fits(const Header& header, const PortType& type) {
   return header.info.type == type.info.type && header.info.components == type.info.components &&
          header.info.scalar == type.info.scalar &&

@@ -19,7 +19,6 @@ using Stops = std::map<std::int32_t, bool>;
 /// The parameter that `hc run` sets.
 inline constexpr const char* kStops = "stops";
 
-/// Whether any source has stopped the robot.
 bool any_stops(const Stops& stops);
 
 /// "12=1,14=0": 1 for a source that stops, 0 for one that guards.

@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::size_t kCapacity = 64;  // queued messages before a sender with `keep=all` blocks
 
-/// The state shared by the two ends.
 struct Channel {
   std::mutex mutex;
   SendQueue<Message> messages{Policy{}};

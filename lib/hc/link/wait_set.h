@@ -50,7 +50,6 @@ class WaitSet {
   /// that has read the clock before it need not read it again.
   [[nodiscard]] bool was_short() const { return was_short_; }
 
-  /// The descriptor that ends waits.
   [[nodiscard]] int stop() const { return stop_; }
 
  private:

@@ -44,7 +44,6 @@ void put_word(std::uint64_t word, char* line, std::size_t at) {
   if (shift > 0) put(to + kWord, word >> (64 - shift));
 }
 
-/// Writes a number with `size` digits.
 void put_number(std::uint64_t number, char* line, std::size_t begin, std::size_t size) {
   constexpr std::uint64_t kTenTo8 = 100'000'000;
   for (; size >= kWord; number /= kTenTo8)

@@ -51,14 +51,12 @@ class MatrixView {
   std::size_t width_ = 0, height_ = 0, components_ = 0;
 };
 
-/// Reference-counted bytes.
 using SharedBytes = std::shared_ptr<std::byte[]>;
 
 /// Uninitialised bytes, aligned to 64. Cost: one allocation; no atomic operation until they are
 /// shared.
 SharedBytes allocate_bytes(std::size_t size);
 
-/// A header and its elements.
 struct Message {
   Header header;
   /// In binary form (R33), aligned for the scalar, for both plain encodings; for zstd and jpeg, the

@@ -10,7 +10,6 @@
 
 namespace hc {
 
-/// How this end was connected.
 enum class Connected { Accepted, Dialed };
 
 /// The user that owns the other end of a TCP connection over loopback; until a dialed peer has

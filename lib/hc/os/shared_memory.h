@@ -20,7 +20,6 @@ static_assert(SharedWord<std::uint32_t>::is_always_lock_free);
 
 constexpr std::uint64_t kPageBytes = 4096;
 
-/// A mapping of shared memory.
 class SharedMemory {
  public:
   /// New zeroed memory, writable here, read-only for others. Only the first `reserved` bytes have

@@ -15,7 +15,6 @@
 
 namespace hc::mcap {
 
-/// Bytes and their owner.
 struct Bytes {
   std::span<const std::byte> span;
   std::shared_ptr<const void> owner;
@@ -35,7 +34,6 @@ struct Chunk {
   std::map<std::uint16_t, Index> indexes;   ///< by channel
 };
 
-/// Collects messages for a chunk.
 class ChunkBuilder {
  public:
   /// Messages of MTP, each stored as one or more messages of MCAP; counted by the caller.

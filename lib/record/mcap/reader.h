@@ -26,7 +26,6 @@ struct ReaderLimits {
   std::uint64_t summary_bytes = std::uint64_t{64} << 20;  ///< of all schemas and channels
 };
 
-/// The summary of a file.
 struct Summary {
   std::map<std::uint16_t, SchemaRecord> schemas;
   std::map<std::uint16_t, ChannelRecord> channels;

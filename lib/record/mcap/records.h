@@ -64,7 +64,6 @@ struct MetadataRecord {
   StringMap words;
 };
 
-/// Writes a sequence of records.
 class RecordWriter {
  public:
   std::vector<std::byte> bytes;
@@ -85,7 +84,6 @@ class RecordWriter {
   void append(std::span<const std::byte> more) {
     bytes.insert(bytes.end(), more.begin(), more.end());
   }
-  /// Overwrites a number.
   void set(std::size_t at, auto number) { std::memcpy(&bytes[at], &number, sizeof number); }
 
  private:
@@ -118,7 +116,6 @@ class RecordReader {
   [[nodiscard]] bool at_end() const { return bytes_.empty() || !is_good_; }
   [[nodiscard]] std::size_t left() const { return bytes_.size(); }
 
-  /// Reads consecutive fields.
   void get(auto&... fields) { (get_one(fields), ...); }
   std::span<const std::byte> take(std::uint64_t size) {
     is_good_ = is_good_ && size <= bytes_.size();
