@@ -288,7 +288,7 @@ g.toml:5: parameter "a" must be a string, a number, true or false
 g.toml:6: "left" must be a whole number from 0 to 2147483647
 g.toml:7: "left" must be "text", "binary", "zstd" or "jpeg"
 g.toml:9: "eye" is not MODULE.PORT
-g.toml:10: )" + std::string("option keep is all, latest, or how many messages"));
+g.toml:10: )" + std::string("option keep is all, latest, or a number of messages"));
 }
 
 }  // namespace

@@ -404,12 +404,12 @@ class Recordings(Graphs):
         self.write("cut.mcap", whole[: len(whole) * 2 // 3])
         out = self.shell("hc info cut.mcap", 1)
         self.assertRegex(out, r"noise +1[0-9]{3} .* sensor_msgs/msg/Image\n")
-        self.assertIn("the file has no end", self.err)
+        self.assertIn("the file is truncated", self.err)
         self.shell("hc record cut.mcap mended.mcap", 1)
-        self.assertIn("cut.mcap: MCAP: the file has no end", self.err)
+        self.assertIn("cut.mcap: MCAP: the file is truncated", self.err)
         self.assertIn(out.split("\n")[1], self.shell("hc info mended.mcap"))
         self.shell("hc cat --skip --raw cut.mcap >mended.mtp")
-        self.assertEqual(self.err.count("the file has no end"), 1, self.err)
+        self.assertEqual(self.err.count("the file is truncated"), 1, self.err)
 
     def test_info_of_a_folder_says_which_file_is_cut_off(self):
         self.shell(
@@ -437,10 +437,10 @@ class Recordings(Graphs):
             self.assertEqual(self.err.count("\n"), 1)
         self.shell("hc send 1 | hc record y.mtp --split 1G", 2)
         self.shell("hc send 1 | hc record y.mcap --split x", 2)
-        self.assertIn('--split: "x" is no number of bytes, such as 1G', self.err)
+        self.assertIn('--split: "x" is not a number of bytes, such as 1G', self.err)
         self.shell("hc send 1 | hc record y.mcap --split 99999999999G", 2)
         self.shell("hc send 1 | hc recorder --split x", 2)
-        self.assertIn('split: "x" is no number of bytes', self.err)
+        self.assertIn('split: "x" is not a number of bytes', self.err)
         self.shell("hc send 1 | hc record y.mcap --keep 1G", 2)
 
 

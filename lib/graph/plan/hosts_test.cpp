@@ -186,8 +186,7 @@ TEST(HostsOfAGraph, HaveImagesConvertedByTheirSender) {
 TEST(HostsOfAGraph, HaveNothingConvertedThatCannotBe) {
   EXPECT_EQ(wrong(kHosts + seen("scale = 1.5")),
             "g.toml:13: option scale is a number from 0.01 to 1");
-  EXPECT_EQ(wrong(kHosts + seen("quality = 80")),
-            "g.toml:13: option quality wants as=jpeg beside it");
+  EXPECT_EQ(wrong(kHosts + seen("quality = 80")), "g.toml:13: option quality needs as=jpeg");
   EXPECT_EQ(wrong(kHosts + seen("as = \"gif\"")),
             "g.toml:13: option as is text, binary, zstd or jpeg");
   EXPECT_EQ(wrong(kHosts + seen("as = 1.5")),

@@ -11,8 +11,7 @@ TEST_F(LiveChange, WrongCommandsAreAnsweredAndChangeNothing) {
   add("camera").known = rate();
   beside([&] {
     EXPECT_EQ(ask({"remov camera"}), Lines{"no command \"remov\", did you mean \"remove\"?"});
-    EXPECT_EQ(ask({"stop it", "restart camra"}),
-              (Lines{"the command is: stop", "no module \"camra\""}));
+    EXPECT_EQ(ask({"stop it", "restart camra"}), (Lines{"usage: stop", "no module \"camra\""}));
     EXPECT_EQ(ask({}), Lines{"there is no command"});
     EXPECT_EQ(ask({"remove camera"}), (Lines{"one problem", "another"}));
     EXPECT_EQ(ask({"remove camra"}), Lines{"no module \"camra\", did you mean \"camera\"?"});

@@ -91,7 +91,7 @@ TEST(Expand, R36_R37_NoMemoryIsSetAsideForWhatCannotCome) {
     std::array<std::byte, 200> bytes{};
     message.elements = bytes;
     const auto expanded = refused(expand(message));
-    EXPECT_NE(expanded.detail.find("200 compressed bytes cannot hold the 256000000"),
+    EXPECT_NE(expanded.detail.find("200 compressed bytes cannot expand to the header's 256000000"),
               std::string::npos)
         << expanded.detail;
   }

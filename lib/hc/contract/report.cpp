@@ -13,7 +13,7 @@ using Row = std::array<std::int64_t, kCounterColumns.size()>;
 using StateRow = std::array<std::int64_t, 4>;
 constexpr std::size_t kIgnored = 7, kAge = kIgnored + 1, kGap = kAge + 3, kMore = kGap + 3;
 
-/// Where a member of the traffic is: the last ones were added behind all others.
+/// The column of a traffic member: the last members were added after all other columns.
 constexpr std::size_t column_of(std::size_t member) {
   return member < kIgnored ? member : kMore + member - kIgnored;
 }

@@ -20,7 +20,7 @@ std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text));
 }
 
-/// Any message: every type, scalar and plain encoding, small.
+/// A random small message of any type, scalar and plain encoding.
 Message random_message(std::mt19937_64& random) {
   auto pick = [&](std::uint64_t count) { return random() % count; };
   Header header;
@@ -41,7 +41,7 @@ Message random_message(std::mt19937_64& random) {
   Draft draft = Draft::make(header);
   for (auto& byte : draft.elements()) byte = static_cast<std::byte>(random());
   if (header.info.encoding == Encoding::Text) {
-    // Text does not keep the sign and payload of what is not a number.
+    // Text loses the sign and payload of NaN.
     auto clean = [&](auto zero) {
       for (auto& number : draft.view<decltype(zero)>().numbers())
         if (std::isnan(number)) number = std::numeric_limits<decltype(zero)>::quiet_NaN();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A message in memory: a header and its elements, viewed and checked without a copy. Pure.
-// A Message is a value; copies share the elements, which nobody changes any more.
+// Messages in memory: a header and elements that are viewed without a copy. Pure.
+// A Message is a value; copies share the elements, which are immutable.
 
 #include <cstddef>
 #include <cstring>
@@ -22,10 +22,10 @@ namespace internal {
 [[noreturn]] void refuse_index(std::size_t index, std::size_t size);
 }  // namespace internal
 
-/// Numbers next to one another in memory: a std::span whose indices are checked, since how many
-/// there are is up to the peer. Iterators and data() are not checked.
+/// A std::span with checked indices, since the peer decides how many numbers a message has.
+/// Iterators and data() are not checked.
 ///
-/// Throws: std::out_of_range; a handler's message is then dropped and counted as bad.
+/// Throws: std::out_of_range; the message being handled is then dropped, and counted as bad.
 template <typename T>
 class Numbers : public std::span<T> {
  public:
@@ -50,9 +50,10 @@ class Numbers : public std::span<T> {
   }
 };
 
-/// A matrix in memory, row by row without padding: (height, width, components), row 0 on top.
-/// `T` is a scalar type, const for a matrix that is only read. Does not own what it shows.
-/// An index outside throws as that of Numbers does.
+/// A view of a matrix, row by row without padding: (height, width, components), row 0 on top.
+/// `T` is a scalar type, const for a read-only matrix. Does not own the memory.
+///
+/// Throws: std::out_of_range, as Numbers.
 template <typename T>
 class MatrixView {
  public:
@@ -68,13 +69,13 @@ class MatrixView {
   /// All numbers, row by row.
   [[nodiscard]] Numbers<T> numbers() const { return {data_, height_ * width_ * components_}; }
 
-  /// The numbers of a row, the components of an element next to one another.
+  /// The numbers of a row; the components of an element are adjacent.
   [[nodiscard]] Numbers<T> row(std::size_t y) const {
     check(y, height_);
     return {data_ + y * width_ * components_, width_ * components_};
   }
 
-  /// One number: component `k` of the element at column `x` of row `y`.
+  /// Component `k` of the element at column `x` of row `y`.
   [[nodiscard]] T& at(std::size_t y, std::size_t x, std::size_t k = 0) const {
     check(y, height_);
     check(x, width_);
@@ -92,31 +93,28 @@ class MatrixView {
   std::size_t height_ = 0, width_ = 0, components_ = 0;
 };
 
-/// Bytes that several messages and readers share; freed with the last of them.
 using SharedBytes = std::shared_ptr<std::byte[]>;
 
-/// Fresh bytes, not initialised, aligned to 64. Cost: one allocation, and no locked instruction
-/// until they are shared.
+/// Uninitialised bytes, aligned to 64. Cost: one allocation; no atomic operation until they are
+/// shared.
 SharedBytes allocate_bytes(std::size_t size);
 
-/// A header and its elements.
 struct Message {
   Header header;
-  /// In the binary form (R33) and aligned for the scalar, whatever the encoding on the wire was;
-  /// but the compressed bytes as they came when the encoding is zstd or jpeg (hc::expand opens
-  /// them).
+  /// In binary form (R33), aligned for the scalar, for both plain encodings; for zstd and jpeg, the
+  /// compressed bytes (see hc::expand).
   std::span<const std::byte> elements;
-  /// Keeps `elements` alive; null when they are somebody else's (see keep()).
+  /// Keeps `elements` alive; null if another object owns them (see keep()).
   std::shared_ptr<const void> owner;
-  /// Where the elements began in their stream, for error lines. [byte]
+  /// Offset of the elements in their stream, for errors. [byte]
   std::uint64_t byte = 0;
 
-  /// Elements that are not compressed.
+  /// Whether the elements are uncompressed.
   [[nodiscard]] bool plain() const {
     return header.info.encoding == Encoding::Text || header.info.encoding == Encoding::Binary;
   }
 
-  /// The elements as numbers of type T, without a copy; lives as long as the elements.
+  /// The elements as numbers of type T, without a copy; valid as long as the elements.
   ///
   /// Errors: Unsupported (compressed; another scalar than T).
   template <ScalarType T>
@@ -130,16 +128,16 @@ struct Message {
                                static_cast<std::size_t>(header.width), header.info.components);
   }
 
-  /// The bytes of a string, all rows one after the other.
+  /// The bytes of a string, all rows concatenated.
   [[nodiscard]] std::string_view text() const {
     return {reinterpret_cast<const char*>(elements.data()), elements.size()};
   }
 
-  /// This message, safe to hold: itself when it has an owner, else with a copy of the elements.
+  /// A message that may be stored: itself if it has an owner, else a copy.
   [[nodiscard]] Message keep() const;
 };
 
-/// A message that is being made: its elements can be written until it is finished.
+/// A message under construction: its elements are writable until finish().
 ///
 ///     auto draft = Draft::make(rgb, 600, 800);
 ///     fill(draft.view<std::uint8_t>());
@@ -147,19 +145,19 @@ struct Message {
 class Draft {
  public:
   Draft() = default;
-  /// Room for height × width elements, not initialised, with a header that says so.
+  /// Allocates height × width elements, uninitialised, and sets the header accordingly.
   /// A header that check() refuses is a bug. Cost: one allocation.
   static Draft make(const Info& info, std::int32_t height, std::int32_t width);
-  /// The same with the rest of the header given too.
+  /// With a complete header.
   static Draft make(const Header& header);
-  /// The same in memory that is there already, aligned for the scalar and as large as is needed.
+  /// In existing memory, aligned for the scalar and large enough.
   static Draft make(const Header& header, SharedBytes bytes);
 
-  Header header;  ///< everything but info, width and height may be changed
+  Header header;  ///< all fields may be changed except info, width and height
 
   [[nodiscard]] std::span<std::byte> elements() const { return {bytes_.get(), size_}; }
 
-  /// The elements as numbers of type T. Another scalar than the info's is a bug.
+  /// The elements as numbers of type T. A scalar other than the info's is a bug.
   template <ScalarType T>
   [[nodiscard]] MatrixView<T> view() const {
     HC_CHECK(header.info.scalar == scalar_for<T>(), matrix_text(header.info));

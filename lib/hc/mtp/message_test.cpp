@@ -64,7 +64,7 @@ TEST(Message, LargeMemoryBeginsWhereNoHeaderLineInAPageEnds) {
   for (std::size_t size : {65536U, 1440000U, 5000001U}) {
     auto bytes = allocate_bytes(size);
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(bytes.get()) % 4096, 512U);
-    std::memset(bytes.get(), 1, size);  // ASan reports if it were too short
+    std::memset(bytes.get(), 1, size);  // ASan reports an overrun
   }
 }
 

@@ -13,7 +13,7 @@
 namespace hc {
 namespace {
 
-/// Gives a reader what it has space for, but no more than `most`; the rest stays.
+/// Fills the reader's space with at most `most` bytes and removes them from the input.
 void feed(StreamReader& reader, std::string_view& bytes, std::size_t most = SIZE_MAX) {
   const auto space = reader.space();
   const std::size_t size = std::min({most, space.size(), bytes.size()});
@@ -22,7 +22,7 @@ void feed(StreamReader& reader, std::string_view& bytes, std::size_t most = SIZE
   bytes.remove_prefix(size);
 }
 
-/// Feeds a stream in pieces; takes all messages there are, and the error or end behind them.
+/// All messages of a stream that was fed in pieces, and the final error or end.
 struct Reading {
   std::vector<Message> messages;
   Status end;
@@ -186,7 +186,7 @@ TEST(StreamReader, R24_PromisesCostNothing) {
       std::string(1 << 20, 'a'),
       std::string("1 \0 0 0 8 0 10390 1 3 1 1\n", 26),
       "1 0x7 0 0 8 0 10390 1 3 1 1\n",
-      "1 7 0 0 8 0 40101 1 7 16000 16000\nabc",  // 256 MB promised, 3 bytes sent
+      "1 7 0 0 8 0 40101 1 7 16000 16000\nabc",  // 256 MB announced, 3 bytes sent
       "1 7 0 0 8 0 40100 1 7 16000 16000\n1 2 3",
       "1 7 0 0 8 0 40102 1 7 1 1\n268435456\nabc",
   };

@@ -82,7 +82,7 @@ TEST(SharedMemory, OfAnotherSizeIsRefused) {
   for (auto bytes : {kBytes - 1, kBytes + 1, kBytes + kPageBytes}) {
     EXPECT_EQ(
         refused(SharedMemory::map(std::move(*memory.read_only()), bytes)).text(),
-        "Malformed: the memory that was handed over has 32768 bytes, not " + std::to_string(bytes));
+        "Malformed: the received shared memory has 32768 bytes, not " + std::to_string(bytes));
   }
 }
 
