@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::seconds kMorePatience{1};  // with the others, when a host has failed
+constexpr std::chrono::seconds kMorePatience{1};  // with the others, once a host has failed
 
 Error cannot_read(const std::string& name, std::error_code why) {
   const bool is_missing = why == std::errc::no_such_file_or_directory;
@@ -43,7 +43,7 @@ Result<std::string> read_text(const std::string& name) {
   return text;
 }
 
-/// Only files, so that nothing is waited for, as a pipe would be. Errors have the whole path.
+/// Refuses pipes and devices, which could block. Errors have the absolute path.
 Result<std::string> read_file(const std::string& name) {
   std::error_code why;
   const std::string path = fs::absolute(name, why).lexically_normal().string();
@@ -54,7 +54,7 @@ Result<std::string> read_file(const std::string& name) {
   return read_text(path);
 }
 
-/// @param path  what `program` stands for, where it has a slash.
+/// @param path  of `program`, if it has a slash.
 std::string why_no_program(const std::string& program, const std::string& path) {
   std::error_code missing;
   if (path.find('/') == std::string::npos) return no_program(program);
@@ -63,8 +63,7 @@ std::string why_no_program(const std::string& program, const std::string& path) 
   return "no program \"" + program + "\"";
 }
 
-/// The path of a program; an error says why there is none.
-/// @param path  as above.
+/// Finds a program. @param path  as above. Errors: NotFound, Stopped.
 Result<std::string> path_of(const std::string& program, const std::string& path, int stop) {
   return unless_stopped(stop, [=]() -> Result<std::string> {
     auto found = find_program(path);
@@ -73,8 +72,8 @@ Result<std::string> path_of(const std::string& program, const std::string& path,
   });
 }
 
-/// Has a graph serve a page: by its module `web`, or by a new one, which can stop the robot and
-/// choose its task where the graph has a workspace.
+/// Makes the graph's module `web` open a browser, or adds one; if the graph has a workspace, the
+/// added page can stop the robot and choose its task.
 void add_page(Graph& graph, const std::string& listen, Problems& problems) {
   auto obey = [&](const std::string& line) {
     apply_command(graph, parse_graph_command(line).value(), problems);
@@ -102,7 +101,7 @@ void add_page(Graph& graph, const std::string& listen, Problems& problems) {
   if (!listen.empty()) obey("set " + page + ".listen=" + listen);
 }
 
-/// The modules that have an output `trace` of their messages.
+/// The modules with an output `trace`.
 std::vector<std::string> traced_modules(const Graph& graph, const Describe& describe) {
   std::vector<std::string> traced;
   for (const auto& module : graph.modules) {
@@ -115,7 +114,7 @@ std::vector<std::string> traced_modules(const Graph& graph, const Describe& desc
   return traced;
 }
 
-/// A description with inputs of anything.
+/// Adds inputs of any type to a description.
 Result<std::string> with_inputs(const std::string& text, const std::vector<std::string>& inputs) {
   auto description = parse_description(text);
   if (!description) return text;
@@ -142,16 +141,16 @@ class FileLoader : public GraphLoader {
  private:
   using Answers = std::map<std::string, Result<std::string>>;  // by program
 
-  /// What is known of another host.
+  /// The answers of another host.
   struct Elsewhere {
     Result<Hosts::Connected> connected;
-    Answers found;      // where its programs are,
-    Answers described;  // and what these say of themselves, by their paths
+    Answers found;      // paths, by program
+    Answers described;  // descriptions, by path
   };
   using HostAnswers = std::map<std::string, Elsewhere>;
 
   Result<LoadedGraph> read_and_plan(const Plan* running, int stop) {
-    // A graph that runs is read from files again: nobody writes into a pipe once more.
+    // A reload reads regular files only: a pipe cannot be read twice.
     const auto text = HC_TRY(unless_stopped(
         stop, [file = options_.file, read = running == nullptr ? read_text : read_file] {
           return read(file);
@@ -179,7 +178,7 @@ class FileLoader : public GraphLoader {
     if (options_.hosts != nullptr) places[""].fingerprint = options_.hosts->fingerprint();
     for (const auto& [name, there] : elsewhere) places[name] = there.connected->place;
     find_programs(graph, elsewhere, problems, stop);
-    Answers described;  // here; a failure is not tried twice
+    Answers described;  // on this host; failures are not retried
     LoadedGraph loaded{graph, {}, {}, {}};
     std::string recorder;
     if (!options_.recorder.empty()) {
@@ -212,14 +211,14 @@ class FileLoader : public GraphLoader {
     return loaded;
   }
 
-  /// Replaces names of programs by paths; one with a slash is relative to the file that names it.
-  /// Modules on a host that cannot be reached cause no further problems.
+  /// Replaces names of programs by paths; a name with a slash is relative to its graph file.
+  /// Modules on an unreachable host cause no further problems.
   static void find_programs(Graph& graph, const HostAnswers& elsewhere, Problems& problems,
                             int stop) {
     for (auto& module : graph.modules) {
       auto& [program, place] = module.program;
       const std::string given = std::exchange(program, {}), &host = module.host.value;
-      if (given.empty()) continue;  // what is wrong has been reported
+      if (given.empty()) continue;  // already reported
       if (const auto there = elsewhere.find(host); there != elsewhere.end()) {
         const auto& path = there->second.found.at(given);
         if (!path) problems.add(place, "host {}: {}", host, path.error().detail);
@@ -248,9 +247,8 @@ class FileLoader : public GraphLoader {
     return there;
   }
 
-  /// Connects to the hosts that modules run on, and asks each where its programs are and for their
-  /// descriptions: all at the same time. Problems: a host that cannot be reached; the others then
-  /// have one more second to answer.
+  /// Connects to all hosts in parallel and asks for the paths and descriptions of their programs.
+  /// Problems: an unreachable host; the others then have kMorePatience to answer.
   ///
   /// Errors: Stopped, System.
   Status ask_hosts(const Graph& graph, Problems& problems, int stop, HostAnswers& elsewhere) {
@@ -267,10 +265,10 @@ class FileLoader : public GraphLoader {
         if (module.host.value == declared.name) programs.insert(module.program.value);
       if (declared.ssh.empty() || programs.empty()) continue;
       if (options_.hosts == nullptr) {
-        problems.add(declared.place, "this program runs graphs on one host alone");
+        problems.add(declared.place, "this program runs graphs on one host only");
         break;
       }
-      programs.erase("");  // what is wrong has been reported
+      programs.erase("");  // already reported
       auto answered = [&, &declared = declared, number = asked.size()](Elsewhere there) {
         ++answers;
         if (asked[number].is_stopped()) return;
@@ -311,7 +309,7 @@ class FileLoader : public GraphLoader {
     return description;
   }
 
-  using Stamp = std::pair<fs::file_time_type, std::uintmax_t>;  // when it was written, its size
+  using Stamp = std::pair<fs::file_time_type, std::uintmax_t>;  // time of last change, size
   struct Described {
     Stamp stamp;
     std::string description;
@@ -324,7 +322,7 @@ class FileLoader : public GraphLoader {
 }  // namespace
 
 std::string graph_token() {
-  // Two graphs of one process may run side by side, and process numbers come back.
+  // A process may run two graphs, and PIDs are reused.
   return "hc-" + std::to_string(::getpid()) + "-" +
          std::to_string(std::chrono::steady_clock::now().time_since_epoch().count());
 }

@@ -189,16 +189,16 @@ TEST(Plan, TwoLinksCannotListenAtThePortOfOneHost) {
                  "\"\n");
   };
   EXPECT_EQ(listening("tcp-listen:7000", "tcp-listen:127.0.0.1:7000"),
-            "g.toml:4: another link listens at tcp-listen:127.0.0.1:7000 too");
+            "g.toml:4: another link also listens at tcp-listen:127.0.0.1:7000");
   EXPECT_EQ(listening("tcp-listen:0.0.0.0:7000", "tcp-listen:7000"),
-            "g.toml:4: another link listens at tcp-listen:7000 too");
+            "g.toml:4: another link also listens at tcp-listen:7000");
   EXPECT_EQ(listening("tcp-listen:192.0.2.1:7000", "tcp-listen:7000"), "");
 }
 
 TEST(Plan, TwoLinksCannotWriteToOneSharedMemory) {
   const auto problems =
       wrong("[modules.source]\noutputs.left = \"shm:s\"\noutputs.right = \"shm:s?keep=1\"\n");
-  EXPECT_NE(problems.find("g.toml:4: another link writes to shm:s?keep=1 too"), problems.npos)
+  EXPECT_NE(problems.find("g.toml:4: another link also writes to shm:s?keep=1"), problems.npos)
       << problems;
 }
 

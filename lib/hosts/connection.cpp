@@ -106,8 +106,8 @@ class Connection::Module final : public ModuleProcess {
   [[nodiscard]] bool runs() const override { return runs_; }
   void ask_to_end() override { send("end"); }
   void kill() override { send("kill"); }
-  void look() override {}  // its end comes over the connection
-  void let_names_go() override { send("over"); }
+  void check_end() override {}  // the agent reports it
+  void release_names() override { send("over"); }
   [[nodiscard]] bool is_listening() const override { return is_listening_; }
   bool send(const Message& command) override {
     Message handed_on = command;
@@ -121,7 +121,7 @@ class Connection::Module final : public ModuleProcess {
 
   // Events that the agent reports.
 
-  void said(std::string_view bytes) const { callbacks_.said(bytes); }
+  void said(std::string_view bytes) const { callbacks_.wrote(bytes); }
   void reported(Message report) const {
     report.header.src -= Report;
     report.header.dst = 0;
@@ -131,7 +131,7 @@ class Connection::Module final : public ModuleProcess {
     if (what == "started") process_ = order.at("process");
     if (what == "listens") {
       is_listening_ = runs_;
-      for (const auto& command : callbacks_.listens()) send(command);
+      for (const auto& command : callbacks_.connected()) send(command);
     }
     if (what != "ended") return;
     if (order.contains("error")) said(order.at("error").get<std::string>() + "\n");

@@ -65,11 +65,11 @@ TEST(HostsOfAGraph, MayHaveAddressesOfVersion6) {
 TEST(HostsOfAGraph, WithoutAnAddressHaveNoLinks) {
   const HostPlaces nowhere = {{"", {"", "", "F0"}}, {"robot", {"", "", "F1"}}};
   EXPECT_EQ(plan_hosts(far("a", "robot") + far("b", "", "a"), nowhere).error().detail,
-            "g.toml:13: host robot has no address that links can use: say address = \"…\" in its "
+            "g.toml:13: host robot has no address that links can use: set address = \"…\" in its "
             "table");
   EXPECT_EQ(plan_hosts(far("a", "") + far("b", "robot", "a"), nowhere).error().detail,
-            "g.toml:13: host robot has no address of this one that links can use: connect to it by "
-            "another, not a link-local one");
+            "g.toml:13: host robot has no address of this host that links can use: connect to it "
+            "by an address that is not link-local");
 }
 
 TEST(HostsOfAGraph, HavePlainLinksWhereTheFileSaysSo) {
@@ -109,7 +109,7 @@ TEST(HostsOfAGraph, HaveAddressesOfVersion4ForDds) {
   const auto refused = plan_hosts(far("a", "lab") + far("b", "robot", "a", ", via = \"dds\""));
   EXPECT_EQ(
       refused.error().detail,
-      "g.toml:14: dds needs the IPv4 address of host lab, not fe80::3: say address = \"…\" in "
+      "g.toml:14: dds needs the IPv4 address of host lab, not fe80::3: set address = \"…\" in "
       "its table");
   EXPECT_EQ(wrong(kHosts + "[modules.java]\nhost = \"robot\"\n" +
                   far("b", "", "java", ", via = \"dds\"")),

@@ -59,7 +59,7 @@ TEST(HeldNames, are_free_for_nobody_else_until_they_are_let_go) {
   EXPECT_TRUE(is_free("shm:" + name("in")));
   ASSERT_TRUE(names.hold({"camera", "--control", "unix:@c", "--out", "left=" + left()}));
   EXPECT_TRUE(is_free(right()));
-  names.let_go();
+  names.release();
   EXPECT_TRUE(is_free(left()));
 }
 
