@@ -402,7 +402,7 @@ class Tool(Pipes):
         ):
             text = "1 1 0 0 8 0 60100 0 0 %d 1\n%s\n" % (len(order), order)
             self.shell("hc agent >answers", 1, text.encode())
-            self.assertRegex(self.err, r"^hc agent: Malformed: an order: .*\n$")
+            self.assertRegex(self.err, r"^hc agent: Malformed: order: .*\n$")
 
     def test_describe_is_json(self):
         for module in ("camera", "depth", "view", "brightness", "depth_score"):
