@@ -71,7 +71,7 @@ TEST(Doctor, LowLimitsAreNotes) {
 
 TEST(Doctor, ParametersThatNamePaths) {
   struct Case {
-    const char *name, *value, *question;  // empty where no path is named
+    const char *name, *value, *question;  // empty: no path
   };
   const Case cases[] = {
       {"source", "/data/a.jpg", "read /data/a.jpg"},
@@ -81,7 +81,7 @@ TEST(Doctor, ParametersThatNamePaths) {
       {"save", "/out/depth.png", "write /out"},
       {"save", "pictures/", "write pictures"},
       {"log_file", "logs/a.txt", "write logs"},
-      // What could be anything is left alone.
+      // Ambiguous values are not checked.
       {"source", "0", ""},
       {"source", "a.jpg", ""},
       {"source", "http://robot/stream", ""},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Graphs within graphs, and links with the world outside.
+// Included graphs, and links to URIs.
 #include <gtest/gtest.h>
 
 #include <graph/plan/planning_test.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What hc check warns of: links that may hold what moves the robot, and loops over two actors.
+// Warnings of hc check: links that can block a module that moves the robot, loops over two actors.
 #include <gtest/gtest.h>
 
 #include <graph/plan/planning_test.h>
@@ -18,7 +18,7 @@ std::string warnings(const std::string& text,
   return lines;
 }
 
-/// A source whose messages a task makes commands of, and which others read.
+/// A task that turns a source's messages into commands, and a watcher that may read the source.
 const std::string kLoop = R"([modules.eye]
 program = "source"
 [modules.task]

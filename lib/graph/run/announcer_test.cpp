@@ -30,7 +30,7 @@ class AnnouncerTest : public ::testing::Test {
     return std::move(*source);
   }
   void turn_until(const std::function<bool()>& condition) {
-    // What another object waits for is no event of the loop.
+    // Conditions outside the loop cause no event, so turn it once per millisecond.
     while (!condition()) {
       auto soon = loop_->call_at(std::chrono::steady_clock::now() + 1ms, [] {});
       ASSERT_TRUE(loop_->turn());

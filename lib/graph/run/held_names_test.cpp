@@ -64,7 +64,7 @@ TEST(HeldNames, are_free_for_nobody_else_until_they_are_let_go) {
 }
 
 TEST(HeldNames, none_has_the_number_of_a_key) {
-  ::close(kKeyDescriptor);  // a test has no such file open, or can do without it
+  ::close(kKeyDescriptor);  // in case the test has inherited it
   HeldNames names;
   ASSERT_TRUE(names.hold(writer()));
   for (const int number : names.descriptors()) EXPECT_GT(number, kKeyDescriptor);
