@@ -68,8 +68,7 @@ void add_policy(GraphLink& link, const GraphCommand& command, Problems& problems
   if (auto valid = check_policy(policy); !valid) problems.add({}, valid.error().detail);
 }
 
-/// Adds the default policy of a link to a URI where readers come and go: never make the module
-/// wait.
+/// Default policy of a link to a URI where readers come and go: never make the module wait.
 void add_observer_policy(GraphLink& link) {
   auto uri = parse_uri(link.to.uri);
   if (!uri || !(uri->scheme == "shm" || uri->scheme.ends_with("-listen"))) return;

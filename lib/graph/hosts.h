@@ -41,8 +41,7 @@ class Host {
 
   [[nodiscard]] virtual HostPlace place() const = 0;
   [[nodiscard]] virtual HostState state() const = 0;
-  /// Runs a module's processes on that host. They end with status kHostLost when the connection is
-  /// lost.
+  /// Runs a module's processes there. If the connection is lost, they end with status kHostLost.
   virtual std::unique_ptr<ModuleProcess> make_process(const PlannedModule& module,
                                                       ModuleCallbacks callbacks) = 0;
   /// As read_in_place_here(), on that host.
@@ -72,9 +71,8 @@ class Hosts {
   /// Errors: System.
   virtual Status serve(const std::function<void()>& work) = 0;
 
-  /// Returns the declared host, connecting to it if necessary. Call this from threads other than
-  /// the loop's. Errors: Closed (unreachable, or no compatible agent; the detail says why),
-  /// Stopped.
+  /// Returns the declared host; connects to a new one. Call this from threads other than the
+  /// loop's. Errors: Closed (unreachable, or no compatible agent; the detail says why), Stopped.
   virtual Result<Connected> connect(const GraphHost& declared, int stop) = 0;
   /// A host returned by connect(); null if there is none of that name.
   [[nodiscard]] virtual std::shared_ptr<Host> find(const std::string& name) const = 0;

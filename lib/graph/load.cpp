@@ -142,12 +142,12 @@ class FileLoader : public GraphLoader {
   using Answers = std::map<std::string, Result<std::string>>;  // by program
 
   /// The answers of another host.
-  struct Elsewhere {
+  struct HostAnswer {
     Result<Hosts::Connected> connected;
     Answers found;      // paths, by program
     Answers described;  // descriptions, by path
   };
-  using HostAnswers = std::map<std::string, Elsewhere>;
+  using HostAnswers = std::map<std::string, HostAnswer>;
 
   Result<LoadedGraph> read_and_plan(const Plan* running, int stop) {
     // A reload reads regular files only: a pipe cannot be read twice.
@@ -171,13 +171,13 @@ class FileLoader : public GraphLoader {
   }
 
   LoadedGraph planned(Graph graph, Problems& problems, const Plan* running, int stop) {
-    HostAnswers elsewhere;
-    if (auto asked = ask_hosts(graph, problems, stop, elsewhere); !asked)
+    HostAnswers remote;
+    if (auto asked = ask_hosts(graph, problems, stop, remote); !asked)
       problems.add({}, asked.error().text());
     HostPlaces places;
     if (options_.hosts != nullptr) places[""].fingerprint = options_.hosts->fingerprint();
-    for (const auto& [name, there] : elsewhere) places[name] = there.connected->place;
-    find_programs(graph, elsewhere, problems, stop);
+    for (const auto& [name, there] : remote) places[name] = there.connected->place;
+    find_programs(graph, remote, problems, stop);
     Answers described;  // on this host; failures are not retried
     LoadedGraph loaded{graph, {}, {}, {}};
     std::string recorder;
@@ -189,7 +189,7 @@ class FileLoader : public GraphLoader {
     std::vector<std::string> recorded;
     auto describe = [&](const std::string& program,
                         const std::string& host) -> Result<std::string> {
-      if (!host.empty()) return elsewhere.at(host).described.at(program);
+      if (!host.empty()) return remote.at(host).described.at(program);
       auto known = described.find(program);
       if (known == described.end())
         known = described.emplace(program, describe_once(program, stop)).first;
@@ -202,7 +202,7 @@ class FileLoader : public GraphLoader {
     }
     auto hold_port = [&](const std::string& host, bool is_for_others) {
       return host.empty() ? hc::hold_port(is_for_others)
-                          : elsewhere.at(host).connected->host->hold_port(is_for_others, stop);
+                          : remote.at(host).connected->host->hold_port(is_for_others, stop);
     };
     Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running,
                           options_.holds_ports ? hold_port : HoldPort(), places);
@@ -213,13 +213,12 @@ class FileLoader : public GraphLoader {
 
   /// Replaces names of programs by paths; a name with a slash is relative to its graph file.
   /// Modules on an unreachable host cause no further problems.
-  static void find_programs(Graph& graph, const HostAnswers& elsewhere, Problems& problems,
-                            int stop) {
+  static void find_programs(Graph& graph, const HostAnswers& remote, Problems& problems, int stop) {
     for (auto& module : graph.modules) {
       auto& [program, place] = module.program;
       const std::string given = std::exchange(program, {}), &host = module.host.value;
       if (given.empty()) continue;  // already reported
-      if (const auto there = elsewhere.find(host); there != elsewhere.end()) {
+      if (const auto there = remote.find(host); there != remote.end()) {
         const auto& path = there->second.found.at(given);
         if (!path) problems.add(place, "host {}: {}", host, path.error().detail);
         program = path.value_or("");
@@ -234,9 +233,9 @@ class FileLoader : public GraphLoader {
     }
   }
 
-  static Elsewhere ask_host(Hosts& hosts, const GraphHost& declared,
-                            const std::set<std::string>& programs, int stop) {
-    Elsewhere there{hosts.connect(declared, stop), {}, {}};
+  static HostAnswer ask_host(Hosts& hosts, const GraphHost& declared,
+                             const std::set<std::string>& programs, int stop) {
+    HostAnswer there{hosts.connect(declared, stop), {}, {}};
     for (const auto& program : programs) {
       if (!there.connected) break;
       auto& host = *there.connected->host;
@@ -251,7 +250,7 @@ class FileLoader : public GraphLoader {
   /// Problems: an unreachable host; the others then have kMorePatience to answer.
   ///
   /// Errors: Stopped, System.
-  Status ask_hosts(const Graph& graph, Problems& problems, int stop, HostAnswers& elsewhere) {
+  Status ask_hosts(const Graph& graph, Problems& problems, int stop, HostAnswers& remote) {
     const auto loop = HC_TRY(Loop::make());
     std::vector<Aside> asked;
     std::size_t answers = 0;
@@ -269,11 +268,11 @@ class FileLoader : public GraphLoader {
         break;
       }
       programs.erase("");  // already reported
-      auto answered = [&, &declared = declared, number = asked.size()](Elsewhere there) {
+      auto answered = [&, &declared = declared, number = asked.size()](HostAnswer there) {
         ++answers;
         if (asked[number].is_stopped()) return;
         if (there.connected) {
-          elsewhere.emplace(declared.name, std::move(there));
+          remote.emplace(declared.name, std::move(there));
           return;
         }
         problems.add(declared.place, "host {}: {}", declared.name, there.connected.error().detail);

@@ -60,8 +60,7 @@ struct PlannedModule {
   [[nodiscard]] Status check_parameter(const std::string& parameter,
                                        const std::string& value) const;
 
-  /// Whether a new value requires a restart: the parameter is fixed, or the module takes no
-  /// commands.
+  /// Whether a new value needs a restart: the parameter is fixed, or the module takes no commands.
   [[nodiscard]] bool is_fixed(const std::string& parameter) const {
     const auto found = known.find(parameter);
     return control_uri.empty() || (found != known.end() && found->second.options.fixed);
@@ -77,7 +76,7 @@ struct PlannedLink {
   std::string sender_uri, reader_uri;         ///< empty: the end is outside
   std::string keep;                           ///< policy for a slow reader
   std::map<std::string, std::string> policy;  ///< the other keys: `rate` and so on
-  bool lasts = false;                         ///< its reader waits for its writer's next process
+  bool reconnects = false;  ///< its reader reconnects to its writer's next process
 
   /// One of its ends, without its route.
   [[nodiscard]] PlannedEnd end(bool is_input) const {
@@ -125,8 +124,7 @@ struct HostPlace {
 /// By name; the host of `hc run` (empty) needs only the fingerprint.
 using HostPlaces = std::map<std::string, HostPlace>;
 
-/// Modules with links to other hosts are started with the key file of their host open as this
-/// descriptor.
+/// The key of a module's host, for links to other hosts, is open in the module as this descriptor.
 inline constexpr int kKeyDescriptor = 3;
 inline constexpr std::string_view kKeyFile = "/proc/self/fd/3";
 

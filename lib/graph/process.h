@@ -60,7 +60,7 @@ class Process {
   /// The exit status, 128 + the signal if killed by one; nullopt while it runs.
   std::optional<int> poll_status();
 
-  /// Asks the process and its process group to end (SIGTERM), resuming stopped ones (SIGCONT).
+  /// Asks the process and its group to end (SIGTERM); resumes stopped processes (SIGCONT).
   void ask_to_end() const;
 
   /// Kills the process and its descendants; then ended() becomes readable.

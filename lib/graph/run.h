@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Runs a planned graph: starts, supervises, changes and stops its processes, and reports their
-// state.
+// Runs a planned graph: starts, supervises, changes and stops its processes, reports their state.
 
 #include <algorithm>
 #include <chrono>

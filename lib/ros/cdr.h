@@ -134,8 +134,7 @@ class CdrReader {
   /// @param bytes  a message with its encapsulation header, viewed by Numbers and Characters of the
   ///   result. Bytes behind it are ignored, since middleware pads.
   ///
-  /// Errors: Unsupported (not little-endian XCDR1); Malformed (too short; a string without its zero
-  /// byte).
+  /// Errors: Unsupported (not little-endian XCDR1); Malformed (too short; a string without a NUL).
   template <internal::HasMembers T>
   static Result<T> read(std::span<const std::byte> bytes) {
     if (bytes.size() < 4) return Error{Code::Malformed, "CDR: no encapsulation header"};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Access control of the page (spec/page.md, W1 … W3): hosts, origins, tokens and sessions. Not
-// thread-safe.
+// Access control of the page (spec/page.md, W1 … W3): hosts, origins, tokens, sessions. For one
+// thread.
 
 #include <cstdint>
 #include <deque>

@@ -11,8 +11,7 @@ namespace hc::web {
 /// The certificate and its key in PEM, from page_key.pem in a folder; makes that file if it does
 /// not exist (tls::make_key()).
 ///
-/// Errors: System (the folder cannot be written or the file not be read), Malformed (other
-/// contents).
+/// Errors: System (folder not writable, or file not readable), Malformed (other contents).
 Result<std::string> load_identity(const std::string& folder);
 
 /// The SHA-256 fingerprint of a certificate in PEM, as browsers show it: "AB:CD:…"; empty: none.

@@ -172,8 +172,7 @@ class Visitor {
   [[nodiscard]] const Peer& peer() const { return peer_; }
   [[nodiscard]] Site& site() const { return *shared_->site; }
 
-  /// Closes the oldest stranger of the peer that has most of them. @returns  false if there is
-  /// none.
+  /// Closes the oldest stranger of the peer that has most of them; false: there are none.
   static bool drop_one(Shared& shared) {
     std::map<std::string_view, std::size_t> counts;
     for (const auto* stranger : shared.strangers) ++counts[stranger->peer_.name];
@@ -209,8 +208,7 @@ Peer peer_of(tcp::socket& socket) {
   return {{bytes.begin(), bytes.begin() + kNetwork}};
 }
 
-/// A WebSocket over a stream of either kind. Handlers of the page and pending operations keep it
-/// alive.
+/// A WebSocket over a stream of either kind, kept alive by the page's handlers and by pending I/O.
 template <typename Stream>
 class Socket final : public WebSocket, public std::enable_shared_from_this<Socket<Stream>> {
  public:

@@ -75,8 +75,7 @@ class WebSocket {
   std::function<void()> on_close;
 };
 
-/// The contents of a server. Exceptions from its functions are logged, and end only the connection
-/// concerned.
+/// The contents of a server. Exceptions of its functions are logged and end only that connection.
 class Site {
  public:
   virtual ~Site() = default;

@@ -40,8 +40,7 @@ class Service {
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
 
-  /// Serves a site until the end. Call this once; from then on, use access() on the server's
-  /// thread.
+  /// Serves a site until the end. Call this once; then use access() on the server's thread only.
   template <std::derived_from<Site> S>
   S& serve(std::unique_ptr<S> site) {
     S& kept = *site;

@@ -138,8 +138,9 @@ std::vector<Finding> diagnose(const Facts& facts) {
   findings.push_back(facts.has_graphviz ? Finding{Mark::Ok, "graphviz", "dot"}
                                         : Finding{Mark::Note, "graphviz",
                                                   "dot is not installed; hc graph --svg needs it"});
-  findings.push_back(facts.modules.empty() ? Finding{Mark::Missing, "modules", "none beside hc"}
-                                           : Finding{Mark::Ok, "modules", joined(facts.modules)});
+  findings.push_back(facts.modules.empty()
+                         ? Finding{Mark::Missing, "modules", "none installed with hc"}
+                         : Finding{Mark::Ok, "modules", joined(facts.modules)});
   if (!facts.broken_modules.empty())
     findings.push_back(
         {Mark::Missing, "modules", joined(facts.broken_modules) + ": not executable"});

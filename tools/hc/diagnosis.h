@@ -50,8 +50,7 @@ Needs needs_of(const hc::Plan& plan);
 ///
 /// - a path to read, which must exist, if the value begins with /dev/ or a word of the name is
 ///   source, file, path, folder, directory, device, model or config;
-/// - a path to write, whose folder must exist, if a word of the name is save, output, log or
-/// record.
+/// - a path to write, whose folder must exist, if such a word is save, output, log or record.
 ///
 /// The words of a name are separated by _. The value must contain a / and must not be a URI, a
 /// pipeline (!), a pattern (%, *, ?) or text of several lines: those, and names without a /, are

@@ -10,7 +10,7 @@
 namespace tool {
 namespace {
 
-/// Finds the problems of a graph file or, if there are none, its needs here and findings elsewhere.
+/// Findings about a graph file and, if it has a plan, about other hosts; also sets the needs here.
 std::vector<Finding> examine_graph(hc::LoadOptions options, Needs& needs) {
   const auto hosts = make_hosts();
   options.hosts = hosts.get();

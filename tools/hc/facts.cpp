@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Features are tested by use, as hc and links use them, since kernel versions say little about
-// containers.
+// Features are tested by use: kernel versions say little about containers.
 #include "facts.h"
 
 #include <fcntl.h>

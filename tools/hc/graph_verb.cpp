@@ -88,11 +88,11 @@ void add_parameters(const RunningGraph& graph, const hc::GraphState& state, cons
       const std::string now = found == module.parameters.end() ? hc::text(standard) : found->second;
       const auto range =
           options.choices.empty() ? hc::range_in_words(options) : joined(options.choices, " or ");
-      const auto otherwise = hc::text(standard);
+      const auto default_text = hc::text(standard);
       rows.push_back(
           {hc::format("{}.{} = {}{}", module.name, name, now, unit.empty() ? "" : " " + unit),
            hc::format("{}default {}{}", range.empty() ? "" : range + ", ",
-                      otherwise.empty() ? "\"\"" : otherwise,
+                      default_text.empty() ? "\"\"" : default_text,
                       options.fixed ? ", set restarts the module" : "")});
     }
   };

@@ -140,8 +140,8 @@ void print_mcap(const std::string& path) {
                    summary.unread, summary.chunks, summary.why_unread));
   if (!summary.is_whole)
     throw Failure(path, {hc::Code::Truncated,
-                         "the file has no end, as a recorder that was killed leaves it; this "
-                         "is what it holds in whole chunks"});
+                         "the file has no end (was its recorder killed?); only whole chunks "
+                         "are counted"});
   if (summary.unread > 0) throw Failure(1);
 }
 

@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
   const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
   const bool is_verb =
       std::ranges::any_of(verbs, [&](const auto* verb) { return verb->get_name() == first; });
-  const std::string who = is_verb ? "hc " + first : "hc";
+  const std::string command = is_verb ? "hc " + first : "hc";
   try {
     if (!is_verb && !first.empty() && first[0] != '-') {
       become_module(first, argv + 1);
@@ -147,12 +147,12 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ExtrasError& error) {
-    say(hc::format("{}: {}{}", who, error.what(), meant_option(app)));
+    say(hc::format("{}: {}{}", command, error.what(), meant_option(app)));
     return kUsage;
   } catch (const CLI::ParseError& error) {
     // --help and --version are also reported as ParseError.
     if (error.get_exit_code() == 0) return app.exit(error);
-    say(hc::format("{}: {}", who, error.what()));
+    say(hc::format("{}: {}", command, error.what()));
     return kUsage;
   } catch (const Failure& failure) {
     const bool is_silent = failure.status == 0 || *failure.what() == '\0';

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Log output that never blocks its caller, even if the reader is a pager or a terminal stopped by
-// Ctrl-S.
+// Log output that never blocks its caller, even if the reader is a pager or a stopped terminal.
 
 #include <chrono>
 #include <memory>

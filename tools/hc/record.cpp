@@ -104,7 +104,7 @@ class Recording {
     Progress progress("hc record " + options_.file);
     hc::WaitSet waits(hc::stop_descriptor());
     constexpr std::chrono::milliseconds kPeriod{200};
-    while (!hc::stop_requested()) {  // then messages that have arrived are still written
+    while (!hc::stop_requested()) {
       bool any = copy();
       std::vector<hc::Source*> open;
       for (std::size_t i = 0; i < links_.size() && !is_enough(); ++i) {

@@ -72,8 +72,8 @@ void check_known(const std::string& name, const std::set<std::string>& known) {
 /// Settings "[MODULE[.PORT]=]VALUE"; the most specific one applies.
 class Settings {
  public:
-  Settings(const std::string& option, const std::vector<std::string>& words, double otherwise)
-      : otherwise_(otherwise) {
+  Settings(const std::string& option, const std::vector<std::string>& words, double default_value)
+      : default_(default_value) {
     for (const auto& word : words) {
       const auto equals = word.find('=');
       const auto number = equals == std::string::npos ? word : word.substr(equals + 1);
@@ -87,7 +87,7 @@ class Settings {
   [[nodiscard]] double of(const std::string& output) const {
     for (const auto& name : {output, output.substr(0, output.find('.')), std::string()})
       if (const auto found = values_.find(name); found != values_.end()) return found->second;
-    return otherwise_;
+    return default_;
   }
   void check(const std::set<std::string>& known) const {
     for (const auto& [name, value] : values_)
@@ -95,7 +95,7 @@ class Settings {
   }
 
  private:
-  double otherwise_;
+  double default_;
   std::map<std::string, double> values_;
 };
 
@@ -168,8 +168,7 @@ void write_messages(const GraphRecording& recording, const std::string& output, 
   if (auto closed = sink->close(); !closed) throw Failure(to.string(), closed.error());
 }
 
-/// Writes the handled messages of a link to a file, and drops steps whose message is not in the
-/// recording.
+/// Writes the handled messages of a link to a file; drops steps whose message was not recorded.
 void write_handled(const GraphRecording& recording, const std::string& output,
                    const std::string& port, std::int32_t number, std::vector<hc::TraceEvent>& steps,
                    const fs::path& to) {

@@ -108,8 +108,7 @@ std::string original(std::string_view text) {
   return result;
 }
 
-/// Replaces toml++'s messages for the commonest mistakes, and its mention of our encoded
-/// characters.
+/// Replaces toml++'s messages for the commonest mistakes and for encoded characters.
 std::string in_plain_words(std::string_view description, std::string_view toml) {
   auto says = [&](std::string_view words) {
     return description.find(words) != std::string_view::npos;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Reads the tables of a document: each key of a table has a function that takes its value. Internal
-// to graph.
+// Reads tables of a document: each key has a function that takes its value. Internal to graph.
 
 #include <array>
 #include <cstdint>

@@ -161,8 +161,8 @@ class LinkCheck {
     }
   }
 
-  /// Checks that the sender can convert messages as the policy says, and that the reader takes
-  /// them.
+  /// Checks that the sender can convert messages as requested, and that the reader takes the
+  /// result.
   void check_conversion(const GraphLink& link, const std::vector<PortType>& given,
                         const std::vector<PortType>& taken) {
     Uri options;

@@ -137,7 +137,7 @@ class LinkPlanner {
 
   /// Whether a reader waits for the next process of its writer. A reader without `control` does
   /// not, as no command could end its wait.
-  bool lasts(const GraphLink& link) const {
+  bool reconnects(const GraphLink& link) const {
     return !planning_.planned(link.to.module)->control_uri.empty();
   }
 
@@ -285,7 +285,7 @@ class LinkPlanner {
                draft.name,
                {{"readers", std::to_string(sender.readers)}, {"stay", "1"}}};
     Uri reader{std::string(draft.transport->reader), draft.name, {{"wait", "60"}}};
-    if (lasts(link)) reader.options = {{"reconnect", "86400"}};
+    if (reconnects(link)) reader.options = {{"reconnect", "86400"}};
     if (draft.transport->name == "shm") {
       if (!draft.is_common) add_keep(writer, draft.keep);
       add_policy(writer, link, kOfSender);
@@ -311,7 +311,7 @@ class LinkPlanner {
     }
     add_end(link.to, {true, link.to.port, reader.text(), draft.reader_route});
     return {link.from.text(), link.to.text(), sender.uri, reader.text(), draft.keep, {},
-            lasts(link)};
+            reconnects(link)};
   }
 
   /// Plans a link to or from a URI.

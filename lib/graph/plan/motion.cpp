@@ -12,8 +12,7 @@
 namespace hc::internal {
 namespace {
 
-/// The shortest path of at least one edge, including both ends; empty: none. Cost: linear in the
-/// edges.
+/// The shortest path of one or more edges, with both ends; empty: none. Cost: linear in the edges.
 std::vector<std::string> find_path(const Edges& edges, const std::string& from,
                                    const std::string& to) {
   std::map<std::string, std::string> before;

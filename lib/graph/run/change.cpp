@@ -24,8 +24,7 @@ std::string without_readers(const std::string& uri) {
   return parsed->text();
 }
 
-/// Sets new and changed parameters. A removed one needs a restart: only the module knows its
-/// default.
+/// Sets new and changed parameters; resets removed ones by a restart.
 void add_settings(const PlannedModule& before, const PlannedModule& after, ModuleChange& change) {
   for (const auto& [key, value] : before.parameters)
     if (!after.parameters.contains(key)) change.needs_restart = true;

@@ -26,8 +26,7 @@ class Reports {
   /// Limits of what is kept from a module's reports.
   static constexpr std::size_t kMostEnds = 4096, kMostParameters = 1024;
 
-  /// @param ends  counters of a module that does not report its links come in this order, inputs
-  /// first.
+  /// @param ends  the order of counters, inputs first, if a module does not report its links.
   explicit Reports(const std::vector<PlannedEnd>& ends) { set_ends(ends); }
   /// Replaces the ends. Reports of other ends are ignored.
   void set_ends(const std::vector<PlannedEnd>& ends);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Decides when to restart a module that has ended, and when to give up. Pure: the time is a
-// parameter.
+// Decides when to restart an ended module, and when to give up. Pure: the time is a parameter.
 
 #include <chrono>
 #include <cstdint>

@@ -244,7 +244,7 @@ void Runner::settle_links() {
     Supervised* reader = at(link.to);
     if (writer == nullptr || reader == nullptr) continue;
     if (reader->is_over() && !writer->is_over()) to_read[{link.from, link.to}] = &link;
-    if (reader->is_over() || !link.lasts) continue;
+    if (reader->is_over() || !link.reconnects) continue;
     reader->finish_input(link.end(true), writer->status() == ModuleStatus::Ended);
   }
   std::erase_if(drains_, [&](const auto& entry) { return !to_read.contains(entry.first); });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Runs a graph: its modules, the links between them, and the commands of clients. Internal to
-// graph.
+// Runs a graph: modules, the links between them, and commands of clients. Internal to graph.
 
 #include <deque>
 #include <functional>

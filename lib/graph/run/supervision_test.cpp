@@ -409,9 +409,9 @@ class StandIns : public Supervision {
     ASSERT_TRUE(report) << report.error().detail;
   }
   void add_link(const std::string& reader, const std::string& uri, const std::string& in,
-                bool lasts) {
+                bool reconnects) {
     add(reader, "exit 2");
-    plan_.links.push_back({"writer.out", reader + ".in", uri, in, "all", {}, lasts});
+    plan_.links.push_back({"writer.out", reader + ".in", uri, in, "all", {}, reconnects});
   }
 
   int failures_ = 0;
