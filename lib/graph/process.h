@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Child processes that never outlive this process, nor do their descendants.
+// Child processes that end with this process, together with all their descendants.
 //
 // Each program runs under a guard: a fork of this process that starts the program, adopts its
 // orphans (PR_SET_CHILD_SUBREAPER), and exits with its status. The guard kills all descendants of

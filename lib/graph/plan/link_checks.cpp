@@ -112,7 +112,7 @@ class LinkCheck {
       problems_.add(link.place, "module {} does not support {}: links{}", module, uri.scheme,
                     suggest(planning_, uri.scheme, known));
     else if (auto checked = is_input ? check_outlet(uri) : check_source(uri);
-             !checked && is_ours(uri))
+             !checked && is_known_here(uri))
       problems_.add(link.place, outside.uri + ": " + checked.error().detail);
   }
 
@@ -138,7 +138,7 @@ class LinkCheck {
   }
 
   /// A program in another language may support transports unknown to this one.
-  static bool is_ours(const Uri& uri) {
+  static bool is_known_here(const Uri& uri) {
     const auto schemes = transports();
     return std::find(schemes.begin(), schemes.end(), uri.scheme) != schemes.end();
   }
