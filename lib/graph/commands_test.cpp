@@ -19,7 +19,7 @@ class CommandsTest : public ::testing::Test {
     graph_.links[0].to = {"view", "image", ""};
   }
 
-  /// What is wrong with a command; empty: it has been applied.
+  /// Applies a command. Returns its problems; empty: none.
   std::string apply(const std::string& line) {
     auto command = parse_graph_command(line);
     if (!command) return command.error().detail;

@@ -99,7 +99,7 @@ TEST(Decode, points_whatever_else_they_have) {
   cloud.data.bytes = data;
   EXPECT_EQ(numbers<float>(decode(Type::PointCloud2, cdr(cloud), kPoints)),
             (std::vector<float>{1, 2, 3, 11, 2, 13}));
-  cloud.fields[0].offset = 13;  // its end is behind the point's
+  cloud.fields[0].offset = 13;  // exceeds the point
   EXPECT_EQ(decode(Type::PointCloud2, cdr(cloud), kPoints).error().code, Code::Malformed);
   cloud.fields[0].offset = 0;
   cloud.height = 2;

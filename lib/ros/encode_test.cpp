@@ -23,11 +23,11 @@ Message message_of(MatrixType type, int components, std::int32_t width, std::int
   return std::move(draft).finish();
 }
 
-/// The message as one of the type that it becomes, read again.
+/// Converts a message, and parses the result.
 template <typename T>
 T become(const Message& message, Type expected, Encoder encoder = {}) {
   EXPECT_EQ(type_for(message.header), expected);
-  static std::vector<std::byte> bytes;  // what is read views them
+  static std::vector<std::byte> bytes;  // viewed by the result
   bytes = bytes_of(must(encoder.encode(expected, message)));
   return *CdrReader::read<T>(bytes);
 }

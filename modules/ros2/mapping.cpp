@@ -120,8 +120,8 @@ hc::Result<Mapping> parse_subscribed(std::string_view entry) {
   if (auto good = read_topic(topic, each); !good) return good.error();
   if (!each.type) each.type = source->types.front();
   if (std::ranges::count(source->types, *each.type) == 0)
-    return wrong(entry, "does not fit: " + hc::ros::schema(*each.type).name + " does not become " +
-                            each.port);
+    return wrong(entry, "does not fit: " + hc::ros::schema(*each.type).name +
+                            " does not convert to " + each.port);
   if (auto good = read_options(std::span(words).subspan(1), true, each); !good) return good.error();
   if ((each.type == Type::TfMessage) == each.choice.child.empty())
     return wrong(entry, "says child=FRAME, or has to, as tf2_msgs/msg/TFMessage alone does");

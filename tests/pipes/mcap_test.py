@@ -175,7 +175,7 @@ class Recordings(Graphs):
             before = self.shell("cat %s | md5sum" % ("kept/*" if place == "kept" else place))
             out = self.shell("hc run g.toml --record %s --quiet" % place)
             self.assertRegex(out, said % second)
-            self.assertIn("%s stays; recording into %s\n" % (place, second), self.err)
+            self.assertIn("%s stays as it is; recording to %s\n" % (place, second), self.err)
             after = self.shell("cat %s | md5sum" % ("kept/*" if place == "kept" else place))
             self.assertEqual(before, after)
         # So do links to files, and what verbs write.
@@ -300,7 +300,7 @@ class Recordings(Graphs):
     def test_hc_record_on_a_disk_of_2_mb(self):
         self.noise(400)
         self.assertEqual(self.on_a_small_disk("hc record noise.mtp disk/x.mcap"), 1, self.err)
-        self.assertIn("No space left on device; what was recorded before is whole", self.err)
+        self.assertIn("No space left on device; the recording is intact up to here", self.err)
         self.assertEqual(self.err.count("\n"), 1, self.err)
         seqs = self.seqs("kept/x.mcap")  # status 0: the file is whole
         self.assertEqual(seqs, list(range(len(seqs))))
@@ -313,7 +313,7 @@ class Recordings(Graphs):
     def test_the_last_time_is_saved_on_a_signal_and_on_a_condition(self):
         process = self.start(CAMERA + " | hc record x.mcap --last 30s")
         line = process.stderr.readline().decode()
-        pid = re.search(r"keeps the last 30 s; SIGUSR1 to (\d+) saves them", line)[1]
+        pid = re.search(r"keeping the last 30 s; SIGUSR1 to (\d+) saves them", line)[1]
         os.kill(int(pid), signal.SIGUSR1)
         self.assertIn("saved x_0001.mcap", process.stderr.readline().decode())
         self.end(process)

@@ -23,11 +23,11 @@ void append_json_number(T value, std::string& json) {
   append_number(value, json);
 }
 
-constexpr std::size_t kPiece = 64 << 10;  // [bytes]
+constexpr std::size_t kPiece = 64 << 10;  // [byte]
 
 using Write = std::function<bool(std::string_view)>;
 
-/// Hands over what there is once it is long enough; false when no more is taken.
+/// Writes the text once it is long enough; false to stop.
 bool flush(std::string& json, const Write& write) {
   if (json.size() < kPiece) return true;
   const bool is_taken = write(json);

@@ -19,7 +19,7 @@ std::string to_json(const hc::Message& message) {
   return json;
 }
 
-// The vectors of spec/vectors hold the rest; tests/conformance reads them through hc cat --json.
+// spec/vectors has the other cases; tests/conformance reads them with hc cat --json.
 
 TEST(Json, IsOneLineOfNamedFields) {
   hc::Draft draft = hc::Draft::make(hc::Info(), 1, 1);

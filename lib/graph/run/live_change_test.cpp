@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is asked of a graph that runs.
+// Commands to a running graph.
 #include <graph/run/live_change_test.h>
 
 #include <atomic>
@@ -35,7 +35,7 @@ TEST_F(LiveChange, TheGraphGoesOnWhileAChangeIsPlanned) {
   plans_ = [&](int) {
     if (++plans == 1) await(again.descriptor());
   };
-  heard_ = [&](std::string_view) {
+  on_line_ = [&](std::string_view) {
     if (count("a: started") == 2) again.raise();
   };
   beside([&] {
@@ -122,7 +122,7 @@ TEST_F(LiveChange, WhoHasEndedRestsUntilThereIsMoreToRead) {
   auto& reader = add("reader", "exit 0");
   reader.ends = {{true, "in", "unix:@one?wait=1", ""}, {true, "in", "unix:@two?wait=1", ""}};
   add("stays");
-  heard_ = [this](std::string_view line) {
+  on_line_ = [this](std::string_view line) {
     if (line != "reader: ended" || thread_.joinable()) return;
     thread_ = std::thread([this] {
       Plan other = plan_;
