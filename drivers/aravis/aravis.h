@@ -23,8 +23,7 @@ class Camera {
  public:
   /// Opens a camera and starts continuous acquisition.
   ///
-  /// @param name  name, serial number or network address; "": the first; Fake_1: Aravis'
-  /// simulation.
+  /// @param name  name, serial number or network address; "": the first; Fake_1: simulated.
   /// @param pixel_format  GenICam name, such as BayerRG8; "": the camera's setting if supported,
   ///     else one of Mono8, RGB8, BGR8 and 8-bit Bayer.
   /// @param rate  of images, if the camera supports it; 0: the camera's setting [Hz].

@@ -6,7 +6,7 @@ import sys
 
 
 class Error(RuntimeError):
-    """An error of the world outside the program, with the same text as in C++ and commands.
+    """An error of the world outside the program, with the text of C++ and commands.
 
     Raised in a handler, it ends the module with this one line and status 1; with the code "Invalid"
     with status 2, since a restart would fail again.

@@ -92,7 +92,7 @@ class Parameters:
 class Port:
     """An output of a running graph, graph["head_eyes.left"], observed without disturbing it.
 
-    Each loop over it starts with new messages. A slow reader misses messages; no module waits for it.
+    Each loop over it starts with new messages. A slow reader misses some; no module waits for it.
     """
 
     def __init__(self, graph: RunningGraph, name: str) -> None:
@@ -183,8 +183,8 @@ def running() -> List[Graph]:
 
 
 def attach(name: str = "") -> Graph:
-    """The running graph NAME or NAME.PROCESS on this host; without a name, that of $HC_GRAPH, or the
-    only one."""
+    """The running graph NAME or NAME.PROCESS on this host; without a name, that of $HC_GRAPH, or
+    the only one."""
     name = name or os.environ.get("HC_GRAPH", "")
     graphs = running()
     found = [each for each in graphs if name in ("", each.name, repr(each._running))]
@@ -216,8 +216,8 @@ def start(file: "Union[str, os.PathLike[str]]", *options: str, wait: float = 60)
         with hc.start("graphs/depth.toml", "--set", "depth.disparities=96") as graph:
             assert graph["depth.depth"].read().height == 600
 
-    `options` are those of `hc run`. At entry each module runs or has ended. If the graph cannot run,
-    raises an error with the output of `hc run`.
+    `options` are those of `hc run`. At entry each module runs or has ended. If the graph cannot
+    run, raises an error with the output of `hc run`.
     """
     words = [_command(), "run", os.fspath(file), *options]
     with tempfile.TemporaryFile() as log:

@@ -29,8 +29,8 @@ def together(*inputs: Input) -> Together:
 class Module(_hypercolumn.Module):
     """A program with input ports, output ports and parameters, declared once.
 
-    Its handlers run one after another on the thread that calls run(). It has all options of a module
-    in C++, such as --help, --describe, --in and --out (doc/modules.md).
+    Its handlers run one after another on the thread that calls run(). It has all options of a
+    module in C++, such as --help, --describe, --in and --out (doc/modules.md).
     """
 
     def __init__(self, name: str, summary: str) -> None:
@@ -144,8 +144,8 @@ class Module(_hypercolumn.Module):
         return Frames(self)
 
     def run(self, arguments: Optional[Sequence[str]] = None) -> None:
-        """Runs the module with the command line, or with `arguments` (without a program name), until
-        its inputs end, its outputs lose their readers, or it is asked to stop (Ctrl-C). An error is
+        """Runs the module with the command line, or with `arguments` (no program name), until its
+        inputs end, its outputs lose their readers, or it is asked to stop (Ctrl-C). An error is
         printed as one line on standard error, and ends the program with status 1 or 2.
 
         Output of handlers goes to standard error, since standard output belongs to the links.

@@ -23,8 +23,8 @@ def open(uri: str, *, limit: Optional[int] = None) -> Stream:
 def read(
     path: "Union[str, os.PathLike[str]]", stream: str = "", *, limit: Optional[int] = None
 ) -> Stream:
-    """The messages of a recording, in the order of recording: an MTP/1 file, an MCAP file (".mcap"),
-    or a folder of `hc run --record`. `stream` selects one stream of the latter two, e.g.
+    """The messages of a recording, in the order recorded: an MTP/1 file, an MCAP file (".mcap"), or
+    a folder of `hc run --record`. `stream` selects one stream of the latter two, e.g.
     "head_eyes.left"."""
     file = "file:" + os.fspath(path)
     return Stream(file + ("?stream=" + stream if stream else ""), limit)

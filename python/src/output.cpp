@@ -210,8 +210,7 @@ void check_for(const PyOutput& self, const hc::Header& header) {
   raise_if_failed(hc::check(header));
 }
 
-/// The result of `make`. Adds the Python line to its errors, which end a module without a
-/// traceback.
+/// The result of `make`. Adds the Python line to its errors, since they end without a traceback.
 template <typename Make>
 hc::Message with_line(const Make& make) {
   try {

@@ -69,9 +69,7 @@ class Program {
   /// Holds the GIL for code called by the loop, such as a handler.
   class Inside {
    public:
-    /// @param keeps  keeps the GIL until the module waits or does anything but call handlers, so
-    /// that
-    ///               the next handler need not take it again.
+    /// @param keeps  keeps the GIL for the next handler, until the module waits or does other work.
     explicit Inside(Program& program, bool keeps = false) : program_(program), keeps_(keeps) {
       program_.acquire();
     }
