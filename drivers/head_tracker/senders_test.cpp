@@ -70,7 +70,7 @@ TEST_F(SendersTest, root_is_heard) {
 }
 
 TEST_F(SendersTest, of_other_hosts_those_that_are_named) {
-  EXPECT_EQ(admit("192.0.2.8", 5), "192.0.2.8 port 5: another host, which `sender` does not name");
+  EXPECT_EQ(admit("192.0.2.8", 5), "192.0.2.8 port 5: another host, not listed in `sender`");
   EXPECT_EQ(admit("::ffff:192.0.2.7", 5), "heard");
   now += milliseconds(1001);
   EXPECT_EQ(admit("2001:db8::7", 5), "heard");

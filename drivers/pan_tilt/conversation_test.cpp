@@ -194,8 +194,7 @@ TEST(Conversation, a_corrupted_answer_is_not_believed_for_ever) {
   line.host.bytes();
   line.host.take(line.now, "*\r\n*\r\n*\r\n* 125.1428\r\n");
   line.run(milliseconds(1000));
-  EXPECT_EQ(line.faults,
-            std::vector<std::string>{"garbage: \"185.1428\" answers nothing that was asked"});
+  EXPECT_EQ(line.faults, std::vector<std::string>{"garbage: \"185.1428\" is an unexpected answer"});
   check_recovery(line);
 }
 
@@ -330,7 +329,7 @@ TEST_F(Begun, a_place_where_it_cannot_be_is_garbage) {
   line.host.look(line.now);
   line.host.bytes();
   line.host.take(line.now, "* 2200\r\n* 0\r\n");
-  EXPECT_EQ(line.host.fault()->detail, "garbage: it cannot be at 2200");
+  EXPECT_EQ(line.host.fault()->detail, "garbage: impossible position 2200");
   EXPECT_FALSE(line.host.gaze());
 }
 

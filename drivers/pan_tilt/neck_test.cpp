@@ -120,7 +120,7 @@ TEST_F(NeckTest, drops_commands_that_are_too_old_or_cannot_be_obeyed) {
   neck_.leave();
   command(0, 0);
   EXPECT_EQ(problems_,
-            (std::vector<std::string>{"without a time: command dropped: it has no time",
+            (std::vector<std::string>{"without a time: command dropped: no time",
                                       "stale: command dropped: 0.201 s old",
                                       "stale: command dropped: 0.300 s in the future",
                                       "no unit: command dropped: pan-tilt unit not connected"}));
@@ -137,7 +137,8 @@ TEST_F(NeckTest, obeys_one_source_of_a_mode_at_a_time_and_another_mode_at_once) 
     say(1, 6, -0.5);
   }
   EXPECT_NEAR(unit_.pan(9), 557, 0.5);
-  EXPECT_EQ(problems_.front(), "second source: command of source 6 dropped: source 5 commands");
+  EXPECT_EQ(problems_.front(),
+            "second source: command of source 6 dropped: source 5 is in control");
   say(2, 6, -0.25);
   EXPECT_NEAR(unit_.pan(9), -278, 1);
   run(Neck::kTurn + milliseconds(1));

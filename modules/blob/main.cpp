@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The blob of a colour.
+// Tracks a blob of a given colour.
 #include <optional>
 
 #include <hc/base/format.h>
@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
       pointed.reset();
     } else if (pointed) {
       module.log_once("point in another image",
-                      hc::format("point: it is in coordinate system {}, and this image in {}",
+                      hc::format("point: in coordinate system {}, but the image in {}",
                                  pointed->header.coord, coord));
     }
     const auto blob =

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The smallest useful module: an image comes in, a number goes out. brightness.awk beside it does
-// the same on text.
+// The smallest useful module: images in, numbers out. brightness.awk does the same on text.
 #include <numeric>
 
 #include <hc/module/module.h>

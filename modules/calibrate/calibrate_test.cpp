@@ -115,7 +115,7 @@ TEST(Calibrate, a_pose_that_shows_little_is_dropped) {
   views[3].second.setTo(0);
   const auto found = calibrate(views, head.pair, head.mounted);
   ASSERT_FALSE(found);
-  EXPECT_EQ(found.error().detail, "too little is seen in both images as the head turns");
+  EXPECT_EQ(found.error().detail, "too few matches between the images as the head turns");
 }
 
 TEST(Calibrate, a_pair_that_was_measured_is_not_measured_worse) {
@@ -155,7 +155,7 @@ TEST(Calibrate, says_when_too_little_is_seen) {
   const std::vector<HeadView> views = {{{0, 0}, dark, dark}, {{0.2, 0}, dark, dark}};
   auto found = calibrate(views, pair, hc::gaze::mounted_eyes());
   ASSERT_FALSE(found);
-  EXPECT_EQ(found.error().detail, "too little is seen in both images of the eyes");
+  EXPECT_EQ(found.error().detail, "too few matches between the images of the eyes");
   found = calibrate(views, hc::vision::ideal_pair({640, 480}, 600, 0.1), hc::gaze::mounted_eyes());
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().detail, "the cameras' calibration is for images of 640 x 480");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A task: turns the head a little to all sides, and finds how its eyes are mounted.
+// A task: turns the head a little to all sides to calibrate the mounting of its eyes.
 #include "calibrate.h"
 
 #include <cmath>
@@ -21,9 +21,9 @@ namespace {
 
 using hc::gaze::Angles;
 
-constexpr std::int64_t kSilent = 1'000'000'000;  // nothing comes for so long: disconnected [ns]
-constexpr double kNear = 0.004;                  // of where it was sent: it is there [rad]
-constexpr std::int64_t kRests = 300'000'000;     // it is at rest after this time [ns]
+constexpr std::int64_t kSilent = 1'000'000'000;  // without a pair for longer: disconnected [ns]
+constexpr double kNear = 0.004;                  // tolerance of a commanded pose [rad]
+constexpr std::int64_t kRests = 300'000'000;     // time in tolerance until at rest [ns]
 
 }  // namespace
 
@@ -58,16 +58,16 @@ int main(int argc, char** argv) {
   hc::ModuleFrames frames{module};
 
   std::vector<HeadView> views;
-  std::vector<Angles> poses;  // that the head takes
+  std::vector<Angles> poses;  // to visit
   std::optional<hc::gaze::Eyes> mounted;
-  std::int64_t rests_from = 0;                              // 0: it moves [ns]
-  hc::vision::StereoCalibration cameras;                    // once the images' size is known
-  std::future<hc::Result<hc::gaze::HeadCalibration>> work;  // while it computes
+  std::int64_t rests_from = 0;                              // 0: moving [ns]
+  hc::vision::StereoCalibration cameras;                    // set once the images' size is known
+  std::future<hc::Result<hc::gaze::HeadCalibration>> work;  // valid while computing
   std::stop_source stop;
   std::optional<hc::gaze::HeadCalibration> found;
   bool is_done = false;
-  std::int64_t last_pair = 0;     // when both eyes saw, and the head was known [ns]
-  std::int64_t sent = 0;          // to the pose of now; 0: not yet [ns]
+  std::int64_t last_pair = 0;     // last images of both eyes with a known head pose [ns]
+  std::int64_t sent = 0;          // when the current pose was first commanded; 0: not yet [ns]
   std::int64_t paused_until = 0;  // [ns]
   std::int64_t tried = 0;         // failed attempts
 
@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
     const auto numbers = found->numbers();
     result.send(std::span(numbers));
   };
-  std::string how_found;  // for the end
+  std::string how_found;  // for the final log line
   auto finish = [&](const hc::gaze::HeadCalibration& calibration, const std::string& how) {
     is_done = true;
     how_found = how.empty() ? "by turning the head" : "from " + *file;
@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
     paused_until = module.now() + hc::duration(*pause).count();
     module.log("not calibrated: " + why + (is_done ? "; giving up" : "; retrying"));
   };
-  /// Takes in what was computed.
+  /// Takes the result of the computation.
   auto take = [&] {
     const auto calibration = work.get();
     if (!calibration) return fail(calibration.error().detail);
@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
     if (!cameras.head.empty())
       finish(hc::value_or_end(hc::gaze::HeadCalibration::of(cameras.head)), "from " + *file + ": ");
   });
-  /// A pair of images, the head being turned so.
+  /// Handles a pair of images and the head's pose at its time.
   auto look = [&](std::int64_t time, const Angles& measured, const hc::Message& one,
                   const hc::Message& other) {
     last_pair = module.now();
@@ -160,7 +160,7 @@ int main(int argc, char** argv) {
     using std::chrono_literals::operator""ms;
     const std::int64_t now = module.now();
     if (work.valid() && work.wait_for(0ms) == std::future_status::ready) take();
-    // It wants the head only while it sees with both eyes and knows how the head is turned.
+    // Bids for the head only while images of both eyes arrive with a known head pose.
     const bool sees = now - last_pair < kSilent;
     const bool wants = !is_done && now >= paused_until && (sees || work.valid());
     bid.send({wants ? *salience : 0.0}, now);
@@ -171,13 +171,13 @@ int main(int argc, char** argv) {
     const auto& wanted = work.valid() ? poses.back() : poses[views.size()];
     if (sent == 0) sent = now;
     if (!work.valid() && hc::seconds(now - sent) > *timeout)
-      return fail("the head did not come to rest where it was sent");
+      return fail("the head did not come to rest at the commanded pose");
     command.send({0.0, wanted.tilt, wanted.pan}, now);
   });
   module.every(std::chrono::seconds(1), [&] {
     if (found) publish();
   });
-  // At the end of the images the result is published; a module that is asked to stop does not wait.
+  // When the images end, the result is still published; when asked to stop, it is discarded.
   module.on_end([&] {
     if (work.valid()) take();
   });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well a head has been calibrated, compared with what a simulation was set to.
+// Compares a head calibration with the parameters of the simulation.
 #include <cmath>
 
 #include <hc/base/format.h>

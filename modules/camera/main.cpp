@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One camera, or the two of a stereo pair.
+// Sends the images of one camera or of a stereo pair.
 #include "devices.h"
 #include "sequence.h"
 
@@ -12,7 +12,7 @@
 
 namespace {
 
-constexpr std::chrono::milliseconds kTimeout{20};  // until commands are looked for again
+constexpr std::chrono::milliseconds kTimeout{20};  // maximum delay of commands
 
 void check(bool is_valid, const std::string& problem) {
   if (!is_valid) throw hc::ModuleError(hc::Error{hc::Code::Invalid, problem});
@@ -23,7 +23,7 @@ void check(bool is_valid, const std::string& problem) {
 int main(int argc, char** argv) {
   hc::add_all_transports();
   using hc::Coord;
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we log the results
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we log errors ourselves
   hc::Module module{"camera", "Sends the images of a camera, a video or image files."};
   auto left = module.output("left", hc::rgb_image(), "image of the left eye");
   auto right = module.output("right", hc::rgb_image(), "image of the right eye");
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
     if (!taken) throw hc::ModuleError(taken.error().detail);
     if (!*taken) return;
     const auto& [left_frame, right_frame] = **taken;
-    // A pair has one time, so that its images match.
+    // Both images of a pair get the same time, so that they match downstream.
     const std::int64_t time = left_frame ? left_frame->time : right_frame->time;
     if (thinning.takes(time, *rate))
       send_both(left_frame ? left_frame->image : cv::Mat(),

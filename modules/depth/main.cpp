@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
                              "depth along the optical axis [m], 0 unknown");
   auto confidence =
       module.output("confidence", hc::intensity_image().in(hc::Coord::kDisparity),
-                    "how sure a disparity is: 1 doubtful, 255 sure, 0 unknown", {.on_demand = true});
+                    "confidence of the disparity: 1 lowest, 255 highest, 0 unknown", {.on_demand = true});
   auto points = module.output("points", hc::vector_field<float>(6).in(hc::Coord::kLeftEye),
                               "point of each pixel: x, y, z [m] in the frame left_eye, red, green, "
                               "blue [0, 1]; NaN unknown", {.on_demand = true});

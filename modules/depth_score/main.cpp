@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How good a disparity map is, against ground truth.
+// Compares a disparity map with ground truth.
 #include <string>
 
 #include <hc/base/format.h>
@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
   auto truth_scale =
       module.parameter("truth_scale", 1.0, "px", "disparity of one grey level", {.min = 1e-6});
   auto threshold =
-      module.parameter("threshold", 2.0, "px", "an error above this is bad", {.min = 0});
+      module.parameter("threshold", 2.0, "px", "larger errors count as bad", {.min = 0});
 
   module.on(hc::together(disparity, truth), [&](const hc::Message& found,
                                                 const hc::Message& known) {

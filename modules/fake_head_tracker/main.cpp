@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A person who turns the head and wears a tracker, simulated: opentrack's packets, and the truth.
+// Simulates a person's head tracker: sends opentrack packets, and the ground truth.
 #include <optional>
 #include <random>
 #include <string>
@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"fake_head_tracker", "Simulated head tracker (opentrack protocol).", {.keep_running = true}};
   auto address = module.input("address", hc::string(),
-                              "where the head_tracker of its graph listens; nowhere when empty", {.keep = 1});
+                              "where the head_tracker of its graph listens; empty: sends nothing", {.keep = 1});
   auto rotation =
       module.output("rotation", hc::rotation().of(1, 1).in(hc::Coord::kSupervisor),
                     "truth: roll 0, pitch, yaw of the head [rad]");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated pan-tilt unit: answers on a pseudo-terminal as a real one does on a serial line,
-// moves in real time, and fails on request.
+// A simulated pan-tilt unit on a pseudo-terminal: speaks the protocol of a real one, moves in real
+// time, and fails on request.
 #include <optional>
 
 #include <hc/module/module.h>
@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
                               "truth: 0, tilt, pan [rad]");
   auto device = module.output("device", hc::string(),
                               "device to open; empty while unplugged; each second and on change");
-  auto received = module.output("received", hc::string(), "bytes received, in pieces as they came");
+  auto received = module.output("received", hc::string(), "bytes received");
   auto pan = module.parameter("pan", 0.0, "rad", "initial position",
                               {.min = -3.2, .max = 3.2, .fixed = true});
   auto tilt = module.parameter("tilt", 0.0, "rad", "initial position",
@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
   auto garbage = module.parameter("garbage", 0.0, "", "share of its bytes that are corrupted",
                                   {.min = 0, .max = 1});
   auto unplugged = module.parameter("unplugged", false, "",
-                                    "the line is disconnected; afterwards there is a new one");
+                                    "disconnects the line; plugging in creates a new one");
   auto bytes_per_second = module.parameter("bytes_per_second", 0.0, "1/s",
                                            "of the line, each way; 960 is 9600 baud, 0: unbounded",
                                            {.min = 0, .max = 1e9});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well a head follows another head, by the truth of a simulation.
+// Scores how well a head follows a setpoint, against the ground truth of a simulation.
 #include <algorithm>
 
 #include <frames/messages.h>
@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
       module.parameter("timeout", 60.0, "s", "to wait for a gaze of each", {.min = 1, .max = 3600});
 
   std::vector<hc::gaze::TimedAngles> wanted, turned;
-  std::int64_t waits[2] = {};  // looks since one of each
+  std::int64_t waits[2] = {};  // periods since a setpoint, a motion
   auto take = [](auto& samples, auto& wait, const auto& message) {
     wait = 0;
     const double time = hc::seconds(message.header.time);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between two graphs: what may pass gets the numbers and the encoding of the other side. A gateway
-// is one way. Its links' `rate` limits how fast.
+// Passes messages from one graph to another, with the addresses and encoding of the other graph.
+// One-way; limit its rate with `rate` on its links.
 #include "gateway.h"
 
 #include <hc/module/module.h>

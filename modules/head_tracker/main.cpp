@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The supervisor's head, by any tracker that opentrack supports.
+// Reads the pose of the supervisor's head from any tracker that opentrack supports.
 #include <string>
 #include <vector>
 
@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
   auto position = module.output("position", hc::position().in(hc::Coord::kSupervisor),
                                 "x forward, y left, z up since the zero [m]");
   auto address = module.output("address", hc::string(),
-                               "where it listens, 127.0.0.1:4242; each second and on change");
+                               "listening address, 127.0.0.1:4242; each second and on change");
   auto listen = module.parameter("listen", "", "",
                                  "[ADDRESS:]PORT of this machine to listen on by UDP, opentrack's "
                                  "is 4242, 0: a free one; empty: none",
@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   auto centre_first = module.parameter(
       "centre_first", true, "", "the first pose is the zero; else the tracker's", {.fixed = true});
   auto silence = module.parameter(
-      "silence", 1.0, "s", "time without packets until it is logged, and another sender heard",
+      "silence", 1.0, "s", "time without packets until it is logged, and another sender accepted",
       {.min = 0.01, .max = 3600, .fixed = true});
 
   const hc::SystemClock clock;
@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
     const auto senders = hc::words_of(*sender);
     hc::HostPort place;
     if (listen->empty())
-      module.log("idle: `listen` gives no port; opentrack's is 4242");
+      module.log("idle: `listen` names no port; opentrack's is 4242");
     else
       place = hc::value_or_end(hc::parse_host_port(*listen));
     if (!listen->empty() && place.host.empty()) place.host = "127.0.0.1";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The level of a sound, and its direction.
+// Measures the level and direction of sound.
 #include <hc/module/module.h>
 #include <sound/direction.h>
 #include <sound/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A person's commands to turn the head, by a game controller.
+// Reads a game controller, with which a person turns the head.
 #include <string>
 #include <utility>
 
@@ -17,13 +17,12 @@ int main(int argc, char** argv) {
   auto axes = module.output("axes", hc::table(),
                             "raw, -1 to 1: left x, y, right x, y, left and right trigger");
   auto buttons = module.output("buttons", hc::table<std::uint8_t>(),
-                               "1 where one is pressed: A, B, X, Y, back, guide, start, left and "
+                               "1 if pressed: A, B, X, Y, back, guide, start, left and "
                                "right stick, left and right shoulder, up, down, left, right, …");
-  auto dead_zone =
-      module.parameter("dead_zone", 0.1, "", "of the stick: positions nearer to the middle are 0",
-                       {.min = 0, .max = 0.9});
+  auto dead_zone = module.parameter("dead_zone", 0.1, "", "of the stick: smaller deflections are 0",
+                                    {.min = 0, .max = 0.9});
   auto rate = module.parameter("rate", 50.0, "Hz",
-                               "how often the stick is repeated while out of its middle; a silent "
+                               "repetition rate while the stick is deflected; a silent "
                                "stick counts as released",
                                {.min = 20, .max = 1000});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the markers are that an eye sees.
+// Finds markers in images, and their poses.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -84,7 +84,6 @@ int main(int argc, char** argv) {
   std::string frames_read, sides_read;
   std::vector<NamedMarker> frame_names, side_names;
   auto read_parameters = [&] {
-    // They may be set while the module runs.
     if (frames_read != *frames)
       frame_names = hc::value_or_end(read_names(frames_read = *frames, 1, 999, true));
     if (sides_read != *sides)
@@ -152,7 +151,7 @@ int main(int argc, char** argv) {
       if (*named_only && !its_side && !its_frame) continue;
       if (its_side) found.side = its_side->value;
       if (its_frame) found.frame = static_cast<std::int32_t>(its_frame->value);
-      // A hue as it is named, and not as the light has made it.
+      // The named hue, not the measured one, which depends on the light.
       if (its_frame || its_side) found.marker.id = its_frame ? its_frame->id : its_side->id;
       auto pose = hc::vision::pose_of(marker, found.side, view.camera);
       if (!pose) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ears: sound from a microphone or a WAV file.
+// Sends sound from a microphone or a WAV file.
 #include <hc/module/module.h>
 #include <transports/all.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The robot's neck: turns the head by a pan-tilt unit on a serial line, and reports where it looks.
+// The robot's neck: turns the head with a pan-tilt unit on a serial line; reports its orientation.
 #include <drivers/pan_tilt/neck.h>
 #include <frames/messages.h>
 #include <hc/module/module.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How soon a head obeys a stick, by the truth of a simulation.
+// Measures the latency from a stick to the motion of the head in a simulation.
 #include <optional>
 
 #include <frames/messages.h>
@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   auto motion = module.input("motion", hc::rotation().in(hc::Coord::kGaze),
                              "truth: roll, tilt, pan of the head [rad]");
   auto report = module.input("gaze", hc::rotation().in(hc::Coord::kGaze),
-                             "measured head orientation; with the first one it starts");
+                             "measured head orientation; the first starts the test");
   auto stick = module.output("stick", hc::table().of(1, 2), "left > 0, down > 0, -1 to 1");
   auto result = module.output("score", hc::table().of(1, 4),
                               "median and maximum time from the stick to the motion [s], "
@@ -22,13 +22,12 @@ int main(int argc, char** argv) {
   auto count = module.parameter("count", 20, "", "pushes", {.min = 1, .max = 1e6, .fixed = true});
   auto seed = module.parameter("seed", 1, "", "of the times, directions and lengths of the pushes",
                                {.min = 0, .max = 1e9, .fixed = true});
-  auto rate = module.parameter("rate", 50.0, "Hz",
-                               "how often the stick is repeated while it is out of its middle",
+  auto rate = module.parameter("rate", 50.0, "Hz", "repetition rate while the stick is deflected",
                                {.min = 1, .max = 1000});
   auto acceleration = module.parameter("acceleration", 1.795, "rad/s²", "of the unit",
                                        {.min = 0.01, .max = 1000, .fixed = true});
   auto base_speed = module.parameter("base_speed", 0.8976, "rad/s",
-                                     "up to which the unit starts and stops at once",
+                                     "speed up to which the unit starts and stops at once",
                                      {.min = 0, .max = 100, .fixed = true});
 
   std::optional<Pusher> pusher;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads letters in images, and says where they are.
+// Reads text in images, and locates it.
 #include <hc/module/module.h>
 #include <transports/all.h>
 #include <vision/messages.h>
@@ -19,12 +19,12 @@ int main(int argc, char** argv) {
                               "x, y, width of the lines [px], in the image's coordinate system");
   auto language = module.parameter("language", "eng", "", "Tesseract's name: eng, deu, eng+deu",
                                    {.fixed = true});
-  auto upper_case = module.parameter(
-      "upper_case", true, "", "nothing but capital letters, digits and - . , ! ?", {.fixed = true});
+  auto upper_case = module.parameter("upper_case", true, "",
+                                     "only capital letters, digits and - . , ! ?", {.fixed = true});
   auto least = module.parameter("confidence", 0.4, "", "minimum confidence of a text that is sent",
                                 {.min = 0, .max = 1});
   auto repeat =
-      module.parameter("repeat", 2, "", "of the last 2 repeat - 1 readings so many must agree",
+      module.parameter("repeat", 2, "", "readings that must agree among the last 2 repeat - 1",
                        {.min = 1, .max = 1000});
   auto again =
       module.parameter("again", 10.0, "s", "until an unchanged text is sent again, 0: never",

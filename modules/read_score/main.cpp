@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well a robot reads aloud what is written before it.
+// Writes texts on a board for a robot to read aloud, and scores the result.
 #include <hc/module/module.h>
 #include <sound/format.h>
 #include <transports/all.h>
@@ -9,16 +9,15 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"read_score", "Writes texts for a robot to read aloud, and scores it."};
-  auto text = module.input("text", hc::string().in(hc::Coord::kText),
-                           "what was read, with the image's time");
+  auto text =
+      module.input("text", hc::string().in(hc::Coord::kText), "text read, with the image's time");
   auto sound = module.input("sound", hc::sound(1).in(hc::Coord::kSound22k),
-                            "what is spoken, with the time of the text");
+                            "speech, with the time of the text");
   auto writing =
       module.output("writing", hc::string().in(hc::Coord::kText), "the next text for the board");
-  auto result =
-      module.output("score", hc::table().of(1, 6),
-                    "character error rate; seen to spoken, median and maximum [s]; of "
-                    "it since the image that decided, median [s]; texts; texts not spoken");
+  auto result = module.output("score", hc::table().of(1, 6),
+                              "character error rate; seen to spoken, median and maximum [s]; of "
+                              "it after the decisive image, median [s]; texts; texts not spoken");
   auto seed =
       module.parameter("seed", 1, "", "of the texts", {.min = 0, .max = 1e9, .fixed = true});
   auto count = module.parameter("count", 5, "", "texts", {.min = 1, .max = 100'000});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The images of both eyes, rectified.
+// Rectifies the images of both eyes.
 #include <array>
 #include <optional>
 #include <utility>
@@ -44,7 +44,7 @@ int main(int argc, char** argv) {
 
   std::optional<hc::vision::StereoCalibration> calibration;
   std::optional<Rectifier> rectifiers[2];
-  hc::gaze::HeadCalibration mounting;  // of the eyes, as far as it is known
+  hc::gaze::HeadCalibration mounting;  // of the eyes; the default if unknown
   bool has_message = false;            // of `calibration`
   bool is_new = true;                  // since `intrinsics` was sent
   std::optional<std::int64_t> time;    // of the last image
@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
   module.on(head, [&](const auto& message) {
     const auto found = hc::gaze::HeadCalibration::of(message.numbers());
     if (!found) return module.log_once("invalid calibration", found.error().detail);
-    if (has_message && found->numbers() == mounting.numbers()) return;  // it is sent repeatedly
+    if (has_message && found->numbers() == mounting.numbers()) return;  // sent repeatedly
     mounting = *found;
     has_message = is_new = true;
     for (auto& rectifier : rectifiers) rectifier.reset();

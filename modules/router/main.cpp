@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forwards each message by its address. The routes are on the command line (--route), which `hc
-// run` writes.
+// Forwards each message by its address. `hc run` passes the routes on the command line (--route).
 #include "router.h"
 
 #include <memory>

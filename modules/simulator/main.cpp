@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot head in a room: what its eyes see and its ears hear, and the ground truth.
+// Simulates a robot head in a room: images, sound, and the ground truth.
 #include <limits>
 #include <memory>
 #include <optional>
@@ -20,10 +20,10 @@
 
 namespace {
 
-constexpr double kTick = 250;  // how often it is looked whether an image is due [Hz]
-const Eigen::Vector3d kUnderground(0, 0, -10);  // where an absent ball is [m]
+constexpr double kTick = 250;                   // how often the schedule is checked [Hz]
+const Eigen::Vector3d kUnderground(0, 0, -10);  // position of an absent ball [m]
 
-/// What begins when the parameters are known.
+/// Made when the parameters are known.
 struct Scene {
   std::unique_ptr<hc::graphics::Renderer> renderer;
   hc::room::World world;
@@ -48,11 +48,11 @@ int main(int argc, char** argv) {
   auto right =
       module.output("right", hc::rgb_image().in(hc::Coord::kRightImage), "right eye");
   auto sound = module.output("sound", hc::sound(2).in(hc::Coord::kSound16k),
-                             "what the ears hear, left and right");
+                             "sound at the left and right ear");
   Truth truth(module);
   const Parameters parameters{module};
 
-  // The unit says itself how the head is turned.
+  // The head's pose comes from the input `gaze`.
   hc::ModuleFrames frames{module, {.input = false}};
   std::unique_ptr<Scene> scene;
   std::string last_parameter;
@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
       if (!sound.linked()) return Eigen::Vector3d::Zero();
       return frames.fixed("head", name).translation();
     };
-    // Time begins when the world is there, which takes a while.
+    // Time starts only now, since making the world takes a while.
     const std::int64_t start = *parameters.start > 0 ? *parameters.start : module.now();
     scene.reset(new Scene{std::move(renderer), std::move(world),
                           hc::room::Ball(parameters.motion()), head, parameters.camera(),

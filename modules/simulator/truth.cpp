@@ -42,7 +42,7 @@ std::array<double, 10> row_of(const hc::room::RoomMarker& marker) {
 
 Truth::Truth(hc::Module& module)
     : depth(module.output("depth", hc::intensity_image<float>().in(Coord::kDepth),
-                          "truth: depth of the left image [m], 0 where nothing is")),
+                          "truth: depth of the left image [m], 0 for background")),
       head_pose_(module.output("head_pose", in_world(Coord::kHead),
                                "truth: T_world_head as the images were taken")),
       left_pose_(module.output("left_pose", in_world(Coord::kLeftEye), "truth: T_world_left_eye")),
@@ -52,7 +52,7 @@ Truth::Truth(hc::Module& module)
                           "truth: the ball's middle [m] and velocity [m/s]")),
       ball_seen_(module.output("ball_seen", hc::table().of(1, 4),
                                "truth: u, v, radius of the ball in the left image [px], "
-                               "share of it that is seen")),
+                               "visible share")),
       markers_(module.output("markers", hc::table(),
                              "truth, a row each: kind (0 aruco, 1 apriltag, 2 colour), id, side "
                              "[m], x y z [m] and qx qy qz qw in the world")),

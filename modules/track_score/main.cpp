@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well a head follows a ball, by the truth of a simulation.
+// Scores how well a head follows a ball, against the ground truth of a simulation.
 #include <cmath>
 
 #include <frames/messages.h>
@@ -11,13 +11,14 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   constexpr auto kWorldLeftEye = hc::transform_coord(hc::Coord::kWorld, hc::Coord::kLeftEye);
-  hc::Module module{"track_score", "Compares where a head's eyes look with where a ball is."};
+  hc::Module module{"track_score",
+                    "Compares the direction of a head's eyes with the position of a ball."};
   auto eye = module.input("left_pose", hc::transformation().in(kWorldLeftEye),
                           "truth: T_world_left_eye", {.keep = 64});
   auto ball =
       module.input("ball", hc::position(6).in(hc::Coord::kWorld), "truth: of the ball [m]", {.keep = 64});
   auto seen = module.input("ball_seen", hc::table().of(1, 4),
-                           "truth, of which the last number is the share that is seen", {.keep = 64});
+                           "truth; the last number is the visible share", {.keep = 64});
   auto begin = module.input("begin", hc::table(),
                             "the first message restarts the score: as calibrate's result");
   auto result = module.output("score", hc::table().of(1, 5),
@@ -32,7 +33,7 @@ int main(int argc, char** argv) {
       module.parameter("timeout", 60.0, "s", "to wait for an image", {.min = 1, .max = 3600});
 
   hc::gaze::Track track;
-  std::int64_t waits = 0;  // looks since an image
+  std::int64_t waits = 0;  // periods since an image
   module.on(begin, [&](const auto&) { track.begin(); });
   module.on(
       hc::together(eye, ball, seen), [&](const auto& pose, const auto& place, const auto& share) {

@@ -187,10 +187,10 @@ TEST(Brake, any_number_of_sources_is_borne_and_none_is_unheard) {
   EXPECT_EQ(robot.brake.stops().size(), Brake::kMostSources + 1);
   EXPECT_FALSE(robot.takes(99, 0));
   for (std::int32_t source = 0; source < 64; ++source) robot.say(source, 0);
-  EXPECT_EQ(robot.reason(), "stopped by one of too many sources");
+  EXPECT_EQ(robot.reason(), "stopped by a source beyond the limit");
   Robot restarted;
   restarted.brake.restore(*hc::parse_stops(hc::stops_text(robot.brake.stops())));
-  EXPECT_EQ(restarted.reason(), "stopped by one of too many sources");
+  EXPECT_EQ(restarted.reason(), "stopped by a source beyond the limit");
   for (Robot* each : {&robot, &restarted}) {
     each->say(99, 2);
     EXPECT_EQ(each->reason(), "");

@@ -13,7 +13,7 @@
 
     module.run()
 
-doc/python.md is a tour of ten minutes.
+doc/python.md is a ten-minute tour.
 """
 
 import importlib.util

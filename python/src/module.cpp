@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hypercolumn._hypercolumn.Module: what hypercolumn/module.py makes its own Module of.
+// hypercolumn._hypercolumn.Module, the base of Module in hypercolumn/module.py.
 #include <pybind11/chrono.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -18,7 +18,7 @@ namespace {
 
 using Input = hc::Input<hc::AnyKind>;
 constexpr std::size_t kMostTogether = 8;
-/// Messages up to this size may come so fast that to take the GIL for each would count. [byte]
+/// Up to this size, messages can be so frequent that taking the GIL for each matters [byte].
 constexpr std::size_t kQuick = 4096;
 
 struct PyInput {
@@ -26,18 +26,18 @@ struct PyInput {
   Input input;
 };
 
-/// A parameter of any type, as Python sees it.
+/// A parameter of any type.
 struct PyParameter {
   const Program* program;
   std::shared_ptr<const hc::ParameterState> state;
 
   [[nodiscard]] py::object value() const {
-    program->check_thread();  // its loop sets the value without the GIL
+    program->check_thread();  // the loop sets the value without the GIL
     return std::visit([](const auto& each) -> py::object { return py::cast(each); }, state->value);
   }
 };
 
-/// A timer, of the module that it is of.
+/// A timer and its module.
 struct PyTimeout {
   const Program* program;
   hc::Timeout timeout;
@@ -56,11 +56,11 @@ struct PyTimeout {
 };
 
 std::chrono::nanoseconds period_of(double seconds) {
-  if (!(seconds > 0)) raise({hc::Code::Invalid, "a period is above 0 s"});
+  if (!(seconds > 0)) raise({hc::Code::Invalid, "a period must be above 0 s"});
   return hc::duration(seconds);
 }
 
-/// What every handler of messages is made of: the Python function, and what it keeps of each input.
+/// A handler of messages: the Python function, and a Keeper for each input.
 struct Handler {
   Program* program;
   Function function;
@@ -72,7 +72,7 @@ struct Handler {
       keepers.push_back(std::make_shared<Keeper>(Keeper{input.name, callee.ptr(), {}, false}));
   }
 
-  /// Hands messages to the function, one of each input.
+  /// Calls the function with messages, one of each input.
   template <std::size_t... kIndex, typename... Messages>
   void operator()(std::index_sequence<kIndex...>, Messages&&... messages) const {
     const bool is_quick = (... && (messages.elements.size() <= kQuick));
@@ -104,7 +104,7 @@ void on_each(std::index_sequence<kIndex...> indices, Program& program,
 template <std::size_t kCount = 2>
 void on_together(Program& program, const std::vector<PyInput>& inputs, const py::object& function) {
   if constexpr (kCount > kMostTogether) {
-    raise({hc::Code::Invalid, "inputs are taken together by two to eight"});
+    raise({hc::Code::Invalid, "together() takes two to eight inputs"});
   } else if (inputs.size() == kCount) {
     on_each(std::make_index_sequence<kCount>(), program, inputs, function);
   } else {
@@ -112,7 +112,7 @@ void on_together(Program& program, const std::vector<PyInput>& inputs, const py:
   }
 }
 
-/// A Python function without arguments, as the loop calls it.
+/// Wraps a Python function without arguments for the loop.
 std::function<void()> action(Program& program, const py::object& function) {
   return [&program, held = hold(function)] {
     const Program::Inside inside(program);
@@ -179,13 +179,13 @@ py::object array_of(const Eigen::Isometry3d& T) {
   return pose;
 }
 
-/// A frame by its name or number, which lives as long as the call.
+/// A frame by name or number; valid during the call.
 hc::frames::Frame frame_of(const py::object& frame) {
   if (py::isinstance<py::str>(frame)) return frame.cast<std::string_view>();
   return frame.cast<std::int32_t>();
 }
 
-/// The frames of a module's graph, in Python. The module owns them.
+/// The frames of a module's graph, owned by the module.
 class Frames {
  public:
   Frames(Program& program) : program_(program) { program.frames(); }
@@ -221,26 +221,25 @@ void add_ports(py::module_& extension) {
   py::class_<PyInput>(extension, "Input", "An input port.")
       .def_readonly("name", &PyInput::name, "Its name.");
   py::class_<PyParameter>(extension, "Parameter", "A parameter of the module.")
-      .def_property_readonly("value", &PyParameter::value, "What it is now.")
+      .def_property_readonly("value", &PyParameter::value, "The current value.")
       .def_property_readonly(
           "name", [](const PyParameter& each) { return each.state->name; }, "Its name.");
   py::class_<PyTimeout>(extension, "Timeout",
                         "A timer that fires once each time it is started: Module.after().")
       .def("restart", &PyTimeout::restart, py::arg("seconds") = py::none(),
-           "Restarts the timer with its time, or another one.")
+           "Restarts the timer, with the same or another time.")
       .def("stop", &PyTimeout::stop, "Stops the timer.");
   py::class_<Frames>(extension, "ModuleFrames",
-                     "The frames of a module's graph: where its eyes, its head and all else are "
-                     "(doc/frames.md).\nDeclares a parameter and an input `frames`.")
+                     "The tree of frames of a module's graph (doc/frames.md). Declares a parameter "
+                     "and an input `frames`.")
       .def(py::init<Program&>(), py::keep_alive<1, 2>())
       .def("lookup", &Frames::lookup, py::arg("target"), py::arg("source"), py::arg("time"),
-           "The (4, 4) matrix that takes points of a frame to another at a time.")
+           "The (4, 4) matrix that transforms points from source to target at a time.")
       .def("nearest", &Frames::nearest, py::arg("target"), py::arg("source"), py::arg("time"),
-           "The same for joints that do not move unless a pose says so.")
+           "The same, with the nearest known pose of joints without one at that time.")
       .def("when_known", &Frames::when_known, py::arg("target"), py::arg("source"), py::arg("time"),
            py::arg("handler"),
-           "Calls a function with the matrix as soon as it is known; with None where it will not "
-           "be.");
+           "Calls a function with the matrix as soon as it is known; with None if it will not be.");
 }
 
 }  // namespace
@@ -248,7 +247,7 @@ void add_ports(py::module_& extension) {
 void add_modules(py::module_& extension) {
   add_ports(extension);
   using Self = Program;
-  py::class_<Program>(extension, "Module", "What hypercolumn.Module is made of.")
+  py::class_<Program>(extension, "Module", "Base of hypercolumn.Module.")
       .def(py::init<std::string, std::string, bool, bool, bool>())
       .def("_input", add_input)
       .def("_output", add_output)
@@ -286,14 +285,14 @@ void add_modules(py::module_& extension) {
           [](const Self& self, const std::string& line, const std::string& level) {
             const auto known = hc::level_named(level);
             if (!known)
-              throw py::value_error("level is info, warning, error, result or notice, and not " +
+              throw py::value_error("level must be info, warning, error, result or notice, not " +
                                     level);
             self.log(line, *known);
           },
           py::arg("line"), py::arg("level") = "info",
-          "Logs a line: to standard error, and of another level than info to `hc run`, which "
-          "repeats "
-          "each result and error at its end. A notice is for the person at the terminal alone.")
+          "Logs a line to standard error. Lines of other levels than info are also reported to `hc "
+          "run`, which repeats results and errors at its end. A notice is only for the person at "
+          "the terminal.")
       .def(
           "log_once",
           [](Self& self, const std::string& kind, const std::string& line) {
@@ -304,8 +303,8 @@ void add_modules(py::module_& extension) {
           "end.")
       .def(
           "now", [](Self& self) { return self.module().now(); },
-          "The time for messages that begin here [ns since the Unix epoch]: the machine's, or "
-          "with --clock messages that of the messages.")
+          "The time for new messages [ns since the Unix epoch]: the machine's, or with --clock "
+          "messages that of the messages.")
       .def_property_readonly(
           "focus", [](Self& self) { return self.module().focus(); },
           "Number of the system mode in focus; 0: none.")

@@ -231,7 +231,7 @@ class Hosts(HostsTest):
         lines = self.await_lines(process, "error: recording ended")
         self.assertRegex(
             lines[-1],
-            r"ended: kept/camera\.left\.mtp: write\(\): File too large; kept holds what came before",
+            r"ended: kept/camera\.left\.mtp: write\(\): File too large; kept holds all messages before",
         )
         state = self.state(messages)
         self.flows(messages, state["links"][0]["messages"] + 50)

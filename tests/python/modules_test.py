@@ -73,11 +73,11 @@ class Declared(Modules):
             (lambda: hc.table(100), "1 … 99 components"),
             (lambda: hc.sound(1, "u8").in_("nowhere"), 'no coordinate system "nowhere"'),
             (lambda: hc.rotation(scalar="u8"), "R"),
-            (lambda: hc.table(scalar="c16"), "no scalar of messages: complex128"),
+            (lambda: hc.table(scalar="c16"), "not a scalar type of messages: complex128"),
             (lambda: module.output("o", hc.anything(), "all"), "an output has one kind"),
-            (lambda: module.every(0)(print), "a period is above 0 s"),
+            (lambda: module.every(0)(print), "a period must be above 0 s"),
             (lambda: module.keep_rate(1), "keep_rate"),
-            (lambda: sender.send(1), "send() is for the handlers of a module that runs"),
+            (lambda: sender.send(1), "send() may only be called in handlers of a running module"),
             (lambda: hc.together(module.input("x", hc.table(), "x")), "two inputs or more"),
         ):
             with self.subTest(text), self.assertRaises(hc.Error) as caught:
@@ -321,7 +321,7 @@ uses = [
         self.assertEqual(len(lines), 18)
         for line in lines:
             self.assertIn(
-                "Invalid: a module, its ports and parameters are used on the thread", line
+                "Invalid: a module, its ports and parameters may only be used on the thread", line
             )
 
     def test_a_module_owns_what_is_made_of_it(self):
