@@ -15,7 +15,7 @@ namespace {
 
 using internal::Inlet;
 using internal::kNoPort;
-using internal::LinkedSink;
+using internal::Outlet;
 using internal::Stopped;
 
 constexpr const char* kReportsKept = "64";     // for one who does not listen for a while
@@ -140,8 +140,8 @@ void Module::Loop::open_focus(const Uri& uri) {
 }
 
 /// @param keep  of an output that never waits.
-std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std::string& port,
-                                                      std::uint32_t keep) {
+std::shared_ptr<Outlet> Module::Loop::open_output(const Uri& uri, const std::string& port,
+                                                  std::uint32_t keep) {
   Uri opened = uri;
   auto conversion = take_conversion(opened);
   if (!conversion) fail(name_of(uri.text(), port), conversion.error());
@@ -159,25 +159,25 @@ std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std:
   }
   if (keep > 0) opened = without_waiting(std::move(opened), keep);
   auto options = options_for(opened, port);
-  auto link = std::make_shared<LinkedSink>();
-  options.awaits_reader = [this, sender = link.get()](bool awaits) {
-    report_state(awaits ? sender : nullptr);
+  auto outlet = std::make_shared<Outlet>();
+  options.awaits_reader = [this, blocked = outlet.get()](bool awaits) {
+    report_state(awaits ? blocked : nullptr);
   };
   if (const auto* commands = management_.commands(); commands != nullptr)
     options.interrupt = {commands->descriptor(), [this] { return obey_while_sending(); }};
   auto sink = open_sink(opened, options);
   if (!sink) fail(name_of(uri.text(), port), sink.error());
-  link->uri = uri.text();
-  link->sink = std::move(*sink);
-  link->conversion = *conversion;
-  sinks_.push_back(link);
-  return link;
+  outlet->uri = uri.text();
+  outlet->sink = std::move(*sink);
+  outlet->conversion = *conversion;
+  outlets_.push_back(outlet);
+  return outlet;
 }
 
 void Module::Loop::open_trace(const Uri& uri) {
-  auto link = open_output(uri, kTracePort);
+  auto outlet = open_output(uri, kTracePort);
   if (trace_ == nullptr) trace_ = std::make_unique<internal::Trace>(module_.clock_);
-  trace_->output.links.push_back(std::move(link));
+  trace_->output.links.push_back(std::move(outlet));
 }
 
 void Module::Loop::open_outputs(const internal::Arguments& arguments) {
@@ -196,16 +196,16 @@ void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*>
   // What is taken together is dropped together: by the loop, and not by each link for itself.
   Uri opened = uri;
   const bool is_latest = inputs.front()->together != nullptr && keeps_latest(opened);
-  Inlet link{.uri = uri.text(), .source = open(opened, inputs.front()->name)};
-  link.inputs = std::move(inputs);
-  link.is_latest = is_latest;
-  for (auto* input : link.inputs)
+  Inlet inlet{.uri = uri.text(), .source = open(opened, inputs.front()->name)};
+  inlet.inputs = std::move(inputs);
+  inlet.is_latest = is_latest;
+  for (auto* input : inlet.inputs)
     if (input->together != nullptr) input->together->matcher.begin(input->place);
-  for (const auto& each : sources_) {
-    if (each.is_same(link)) link.route = each.route;
-    if (each.inputs == link.inputs) ++link.number;
+  for (const auto& each : inlets_) {
+    if (each.is_same(inlet)) inlet.route = each.route;
+    if (each.inputs == inlet.inputs) ++inlet.number;
   }
-  sources_.push_back(std::move(link));
+  inlets_.push_back(std::move(inlet));
   join_renewed();
   choose_policies();
 }
@@ -213,8 +213,8 @@ void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*>
 /// Whether inputs that are taken together handle every set, or the newest.
 void Module::Loop::choose_policies() {
   for (auto& together : module_.together_)
-    together->is_latest = std::any_of(sources_.begin(), sources_.end(), [&](const auto& link) {
-      return link.is_latest && link.inputs.front()->together == together.get();
+    together->is_latest = std::any_of(inlets_.begin(), inlets_.end(), [&](const auto& inlet) {
+      return inlet.is_latest && inlet.inputs.front()->together == together.get();
     });
 }
 
@@ -222,20 +222,20 @@ void Module::Loop::choose_policies() {
 /// any.
 bool Module::Loop::join_renewed() {
   bool any = false;
-  for (auto link = sources_.begin(); link != sources_.end();) {
-    auto renewed = link->source != nullptr
-                       ? sources_.end()
-                       : std::find_if(link + 1, sources_.end(),
-                                      [&](const auto& each) { return each.is_same(*link); });
-    if (renewed == sources_.end()) {
-      ++link;
+  for (auto inlet = inlets_.begin(); inlet != inlets_.end();) {
+    auto renewed = inlet->source != nullptr
+                       ? inlets_.end()
+                       : std::find_if(inlet + 1, inlets_.end(),
+                                      [&](const auto& each) { return each.is_same(*inlet); });
+    if (renewed == inlets_.end()) {
+      ++inlet;
       continue;
     }
-    renewed->past += link->past;
-    renewed->ignored += link->ignored;
-    renewed->bad += link->bad;
-    renewed->number = link->number;
-    link = sources_.erase(link);
+    renewed->past += inlet->past;
+    renewed->ignored += inlet->ignored;
+    renewed->bad += inlet->bad;
+    renewed->number = inlet->number;
+    inlet = inlets_.erase(inlet);
     any = true;
   }
   return any;
@@ -313,11 +313,11 @@ void Module::Loop::take_rest() {
 /// where an input has none; one without inputs has its timers.
 bool Module::Loop::all_ended() const {
   if (module_.keeps_running_ && !module_.message_time_) return false;
-  if (sources_.empty() &&
+  if (inlets_.empty() &&
       (management_.commands() != nullptr || (module_.inputs_.empty() && !module_.timers_.empty())))
     return false;
-  return std::all_of(sources_.begin(), sources_.end(),
-                     [](const Inlet& link) { return link.source == nullptr; });
+  return std::all_of(inlets_.begin(), inlets_.end(),
+                     [](const Inlet& inlet) { return inlet.source == nullptr; });
 }
 
 void Module::Loop::fire_timers() {
@@ -366,21 +366,21 @@ MonotonicTime Module::Loop::next_timer() const {
 /// Takes a message from each link, but from those with too many that wait for others' only when
 /// nothing else has any.
 bool Module::Loop::take_each() {
-  auto is_crowded = [](const Inlet& link) {
-    return std::any_of(link.inputs.begin(), link.inputs.end(), [](const auto* input) {
+  auto is_crowded = [](const Inlet& inlet) {
+    return std::any_of(inlet.inputs.begin(), inlet.inputs.end(), [](const auto* input) {
       return input->together != nullptr && input->together->matcher.crowded(input->place);
     });
   };
   bool any = false;
   for (bool crowded : {false, true}) {
-    for (auto& link : sources_) {
+    for (auto& inlet : inlets_) {
       // For the newest set all that has come is taken; for every set, one message.
-      const auto* together = link.inputs.front()->together;
+      const auto* together = inlet.inputs.front()->together;
       const int most = together != nullptr && together->is_latest ? kMostAtOnce : 1;
       for (int i = 0; i < most; ++i) {
-        if (link.source == nullptr || is_crowded(link) != crowded) break;
+        if (inlet.source == nullptr || is_crowded(inlet) != crowded) break;
         if (any) now_ = module_.clock_.monotonic();  // the messages before have taken their time
-        if (!take_one(link)) break;
+        if (!take_one(inlet)) break;
         any = true;
       }
     }
@@ -393,56 +393,55 @@ bool Module::Loop::take_each() {
 void Module::Loop::handle_newest() {
   for (auto& together : module_.together_) {
     if (together->set.empty()) continue;
-    const auto link = std::ranges::find_if(sources_, [&](const auto& each) {
-      return each.inputs.front()->together == together.get();
-    });
-    if (link == sources_.end()) continue;  // it was unlinked
-    drop_bad(*link, link->inputs.front()->name, [&] { module_.handle(*together); });
+    const auto inlet = std::ranges::find_if(
+        inlets_, [&](const auto& each) { return each.inputs.front()->together == together.get(); });
+    if (inlet == inlets_.end()) continue;  // it was unlinked
+    drop_bad(*inlet, inlet->inputs.front()->name, [&] { module_.handle(*together); });
   }
 }
 
-bool Module::Loop::take_one(Inlet& link) {
+bool Module::Loop::take_one(Inlet& inlet) {
   Message message;
-  if (take(link, message) != Got::Message) return false;
+  if (take(inlet, message) != Got::Message) return false;
   const auto come = now_;
   const auto sensed = message.header.time;  // a handler may move the message away
-  handle(link, message);
-  if (management_.is_heard()) measure(link, sensed, come);  // what is sent does not wait for it
+  handle(inlet, message);
+  if (management_.is_heard()) measure(inlet, sensed, come);  // what is sent does not wait for it
   return true;
 }
 
-void Module::Loop::handle(Inlet& link, Message& message) {
-  if (link.inputs.empty())
-    set_focus(link, message);
+void Module::Loop::handle(Inlet& inlet, Message& message) {
+  if (inlet.inputs.empty())
+    set_focus(inlet, message);
   else
-    deliver(link, message);
+    deliver(inlet, message);
 }
 
 /// What a link has now; one that has ended is ended here too.
-Got Module::Loop::take(Inlet& link, Message& message) {
-  auto got = link.source->take(message);
-  if (!got && link.inputs.empty()) got = Got::End;  // the focus expires
+Got Module::Loop::take(Inlet& inlet, Message& message) {
+  auto got = inlet.source->take(message);
+  if (!got && inlet.inputs.empty()) got = Got::End;  // the focus expires
   if (!got) {
     bool is_of_link = got.error().code == Code::NotFound || got.error().code == Code::Closed;
-    const std::string& port = link.inputs[0]->name;
-    fail(is_of_link || link.inputs.size() > 1 ? name_of(link.uri, port) : port, got.error());
+    const std::string& port = inlet.inputs[0]->name;
+    fail(is_of_link || inlet.inputs.size() > 1 ? name_of(inlet.uri, port) : port, got.error());
   }
-  if (*got == Got::End) end(link);
+  if (*got == Got::End) end(inlet);
   return *got;
 }
 
 bool Module::Loop::is_linked(const internal::InputState& input) const {
-  return std::any_of(sources_.begin(), sources_.end(), [&](const Inlet& link) {
-    return link.source != nullptr &&
-           std::find(link.inputs.begin(), link.inputs.end(), &input) != link.inputs.end();
+  return std::any_of(inlets_.begin(), inlets_.end(), [&](const Inlet& inlet) {
+    return inlet.source != nullptr &&
+           std::find(inlet.inputs.begin(), inlet.inputs.end(), &input) != inlet.inputs.end();
   });
 }
 
-void Module::Loop::end(Inlet& link) {
-  link.past += link.source->traffic();
-  link.source.reset();
-  link.head.reset();
-  for (auto* input : link.inputs)
+void Module::Loop::end(Inlet& inlet) {
+  inlet.past += inlet.source->traffic();
+  inlet.source.reset();
+  inlet.head.reset();
+  for (auto* input : inlet.inputs)
     if (input->together != nullptr && !is_linked(*input))
       input->together->matcher.end(input->place);
 }
@@ -470,9 +469,10 @@ void Module::Loop::end_unneeded() {
   auto is_settled = [](const auto* input) {
     return input->together != nullptr && input->together->matcher.done();
   };
-  for (auto& link : sources_)
-    if (link.source != nullptr && std::all_of(link.inputs.begin(), link.inputs.end(), is_settled))
-      end(link);
+  for (auto& inlet : inlets_)
+    if (inlet.source != nullptr &&
+        std::all_of(inlet.inputs.begin(), inlet.inputs.end(), is_settled))
+      end(inlet);
 }
 
 void Module::Loop::log_dropped() {
@@ -485,43 +485,43 @@ void Module::Loop::log_dropped() {
     }
 }
 
-void Module::Loop::deliver(Inlet& link, Message& message) {
-  for (auto* input : link.inputs) {
+void Module::Loop::deliver(Inlet& inlet, Message& message) {
+  for (auto* input : inlet.inputs) {
     const bool fits_any =
         input->types.empty() ||
         std::any_of(input->types.begin(), input->types.end(),
                     [&](const PortType& type) { return fits(message.header, type); });
     if (!fits_any) continue;
-    note(TraceEvent::What::Took, input->name, message.header, link.number);
+    note(TraceEvent::What::Took, input->name, message.header, inlet.number);
     if (!input->handler) return;
     if (!module_.focus_.admits(input->is_exclusive, message.header.mode)) {
-      ++link.ignored;
+      ++inlet.ignored;
       return;
     }
-    if (input->is_raw || message.plain()) return call(*input, link, message);
+    if (input->is_raw || message.plain()) return call(*input, inlet, message);
     auto plain = expand(message);
-    if (!plain) return drop(link, input->name, plain.error().text());
-    return call(*input, link, *plain);
+    if (!plain) return drop(inlet, input->name, plain.error().text());
+    return call(*input, inlet, *plain);
   }
-  const bool is_one = link.inputs.size() == 1;
-  drop(link, is_one ? link.inputs.front()->name : link.uri, misfit_of(link, message).text());
+  const bool is_one = inlet.inputs.size() == 1;
+  drop(inlet, is_one ? inlet.inputs.front()->name : inlet.uri, misfit_of(inlet, message).text());
 }
 
 /// Drops a message; it was handed over, so that its link goes on. The first is logged.
-void Module::Loop::drop(Inlet& link, const std::string& who, std::string_view why) {
-  ++link.bad;
-  has_failed_input_ = has_failed_input_ || link.is_file();
+void Module::Loop::drop(Inlet& inlet, const std::string& who, std::string_view why) {
+  ++inlet.bad;
+  has_failed_input_ = has_failed_input_ || inlet.is_file();
   module_.log_once("bad at " + who,
                    who + ": dropped: " + std::string(why.substr(0, why.find('\n'))));
 }
 
 /// Why a message fits no input of its link.
-Error Module::Loop::misfit_of(const Inlet& link, const Message& message) {
-  const auto& only = *link.inputs.back();
-  if (link.inputs.size() == 1 && only.types.size() == 1)
+Error Module::Loop::misfit_of(const Inlet& inlet, const Message& message) {
+  const auto& only = *inlet.inputs.back();
+  if (inlet.inputs.size() == 1 && only.types.size() == 1)
     return misfit(message.header, only.types[0]);
   std::string takers;
-  for (const auto* input : link.inputs)
+  for (const auto* input : inlet.inputs)
     takers += (takers.empty() ? "" : ", ") + input->name + " takes " + in_words(input->types);
   const Header& header = message.header;
   std::string what = matrix_text(header.info, header.width, header.height);
@@ -529,28 +529,28 @@ Error Module::Loop::misfit_of(const Inlet& link, const Message& message) {
   return {Code::Malformed, what + " fits no input: " + takers};
 }
 
-void Module::Loop::call(const internal::InputState& input, Inlet& link, Message& message) {
+void Module::Loop::call(const internal::InputState& input, Inlet& inlet, Message& message) {
   if (input.is_finite && !finite(message)) {
-    ++link.ignored;
+    ++inlet.ignored;
     return module_.log_once("not finite", input.name + ": dropped: NaN or infinity");
   }
-  module_.handled_ = internal::Handled(message.header, &link.route.peer);
-  drop_bad(link, input.name, [&] {
+  module_.handled_ = internal::Handled(message.header, &inlet.route.peer);
+  drop_bad(inlet, input.name, [&] {
     if (trace_ == nullptr || input.together != nullptr) [[likely]]
       return input.handler(message);
     const Header header = message.header;  // a handler may move the message away
-    note(TraceEvent::What::Began, input.name, header, link.number);
+    note(TraceEvent::What::Began, input.name, header, inlet.number);
     input.handler(message);
-    note(TraceEvent::What::Ended, input.name, header, link.number);
+    note(TraceEvent::What::Ended, input.name, header, inlet.number);
   });
   module_.handled_ = {};
 }
 
 /// Notes how old a message is, and how long after the one before it came.
-void Module::Loop::measure(Inlet& link, std::int64_t sensed, MonotonicTime come) {
-  if (sensed != 0) link.ages.add(come.count() + wall_offset_ - sensed);
-  if (link.last_come.count() != 0) link.gaps.add((come - link.last_come).count());
-  link.last_come = come;
+void Module::Loop::measure(Inlet& inlet, std::int64_t sensed, MonotonicTime come) {
+  if (sensed != 0) inlet.ages.add(come.count() + wall_offset_ - sensed);
+  if (inlet.last_come.count() != 0) inlet.gaps.add((come - inlet.last_come).count());
+  inlet.last_come = come;
 }
 
 /// Waits for a command, a report that is due, or a time; and, perhaps, for messages and what else
@@ -559,8 +559,8 @@ bool Module::Loop::wait(bool for_messages, MonotonicTime until) {
   waited_for_.clear();
   watched_.clear();
   if (for_messages) {
-    for (const auto& link : sources_)
-      if (link.source != nullptr && !link.head) waited_for_.push_back(link.source.get());
+    for (const auto& inlet : inlets_)
+      if (inlet.source != nullptr && !inlet.head) waited_for_.push_back(inlet.source.get());
     for (const auto& watch : module_.watches_) watched_.push_back(watch.descriptor());
   }
   for (const auto& link : focus_)
@@ -598,14 +598,14 @@ void Module::Loop::close() {
   if (module_.before_waiting_) module_.before_waiting_();
   log_dropped();
   if (trace_ != nullptr) trace_->flush();
-  const LinkedSink* failed = nullptr;
+  const Outlet* failed = nullptr;
   Status failure;  // the first; the other links are closed all the same
-  for (auto& link : sinks_) {
-    if (link->sink == nullptr) continue;
-    auto closed = link->sink->close();
-    link->traffic = link->sink->traffic();
+  for (auto& outlet : outlets_) {
+    if (outlet->sink == nullptr) continue;
+    auto closed = outlet->sink->close();
+    outlet->traffic = outlet->sink->traffic();
     if (closed || closed.error().code == Code::Closed || failed != nullptr) continue;
-    failed = link.get();
+    failed = outlet.get();
     failure = closed;
   }
   report_counters();

@@ -81,7 +81,7 @@ struct Module::Loop {
   /// the module has not done its work.
   [[nodiscard]] bool has_failed_input() const { return has_failed_input_; }
   /// @param blocked  the link whose reader the module waits for; null: none.
-  void report_state(const internal::LinkedSink* blocked = nullptr);
+  void report_state(const internal::Outlet* blocked = nullptr);
   /// Notes a moment in the way of a message, while the module is traced.
   void note(TraceEvent::What what, const std::string& port, const Header& header,
             std::int32_t number = 0) {
@@ -94,8 +94,8 @@ struct Module::Loop {
   LinkOptions options_for(const Uri& uri, const std::string& port);
   void log_lines(MonotonicTime now);
   std::unique_ptr<Source> open(const Uri& uri, const std::string& port);
-  std::shared_ptr<internal::LinkedSink> open_output(const Uri& uri, const std::string& port,
-                                                    std::uint32_t keep = 0);
+  std::shared_ptr<internal::Outlet> open_output(const Uri& uri, const std::string& port,
+                                                std::uint32_t keep = 0);
   void open_outputs(const internal::Arguments& arguments);
   void open_input(const Uri& uri, std::vector<internal::InputState*> inputs);
   void open_inputs(const internal::Arguments& arguments);
@@ -107,33 +107,33 @@ struct Module::Loop {
 
   bool take_each();
   void handle_newest();
-  bool take_one(internal::Inlet& link);
-  Got take(internal::Inlet& link, Message& message);
+  bool take_one(internal::Inlet& inlet);
+  Got take(internal::Inlet& inlet, Message& message);
   [[nodiscard]] bool is_linked(const internal::InputState& input) const;
   [[nodiscard]] bool all_ended() const;
-  void end(internal::Inlet& link);
+  void end(internal::Inlet& inlet);
   void end_unlinked();
   void end_unneeded();
   void log_dropped();
-  void measure(internal::Inlet& link, std::int64_t sensed, MonotonicTime come);
-  void handle(internal::Inlet& link, Message& message);
-  void deliver(internal::Inlet& link, Message& message);
-  static Error misfit_of(const internal::Inlet& link, const Message& message);
-  void drop(internal::Inlet& link, const std::string& who, std::string_view why);
+  void measure(internal::Inlet& inlet, std::int64_t sensed, MonotonicTime come);
+  void handle(internal::Inlet& inlet, Message& message);
+  void deliver(internal::Inlet& inlet, Message& message);
+  static Error misfit_of(const internal::Inlet& inlet, const Message& message);
+  void drop(internal::Inlet& inlet, const std::string& who, std::string_view why);
   /// Handles a message, or a set of them, which may be bad: that is what any exception says that is
   /// no ModuleError, such as those of libraries that do not take every image.
   template <typename Handle>
-  void drop_bad(internal::Inlet& link, const std::string& who, const Handle& handle) {
+  void drop_bad(internal::Inlet& inlet, const std::string& who, const Handle& handle) {
     try {
       handle();
     } catch (const ModuleError&) {
       throw;
     } catch (const std::exception& why) {
       module_.handled_ = {};
-      drop(link, who, internal::thrown_in_words(why));
+      drop(inlet, who, internal::thrown_in_words(why));
     }
   }
-  void call(const internal::InputState& input, internal::Inlet& link, Message& message);
+  void call(const internal::InputState& input, internal::Inlet& inlet, Message& message);
   void fire_timers();
   void read_watched();
   [[nodiscard]] MonotonicTime next_timer() const;
@@ -156,7 +156,7 @@ struct Module::Loop {
   void serve();
   void look_at_silent();
   void receive_focus();
-  void set_focus(internal::Inlet& link, const Message& message);
+  void set_focus(internal::Inlet& inlet, const Message& message);
   void expire_focus();
   void obey(const std::string& command);
   bool obey_while_sending();
@@ -176,9 +176,9 @@ struct Module::Loop {
   Module& module_;
   LinkOptions options_;
   bool joins_ = false;  // the graph runs already: see --join
-  std::vector<internal::Inlet> sources_;
-  std::vector<std::shared_ptr<internal::LinkedSink>> sinks_;     // in the order of the command line
-  std::vector<std::shared_ptr<internal::LinkedSink>> unlinked_;  // one may still be in send()
+  std::vector<internal::Inlet> inlets_;
+  std::vector<std::shared_ptr<internal::Outlet>> outlets_;   // in the order of the command line
+  std::vector<std::shared_ptr<internal::Outlet>> unlinked_;  // one may still be in send()
   std::vector<internal::Inlet> focus_;
   std::unique_ptr<internal::Trace> trace_;  // while it is traced
   internal::Management& management_;

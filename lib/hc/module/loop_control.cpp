@@ -14,7 +14,7 @@ namespace hc {
 namespace {
 
 using internal::Inlet;
-using internal::LinkedSink;
+using internal::Outlet;
 
 /// How often a module that is busy looks for commands; one that waits is woken by them.
 constexpr std::chrono::milliseconds kHousekeepingPeriod{10};
@@ -67,26 +67,26 @@ void Module::Loop::serve() {
 /// Has links notice that their writers have died: they look at that when they are waited for, and a
 /// module that always has something to do waits for none.
 void Module::Loop::look_at_silent() {
-  for (auto* links : {&sources_, &focus_})
-    for (const auto& link : *links)
-      if (link.source != nullptr && !link.head) link.source->prepare_wait();
+  for (auto* links : {&inlets_, &focus_})
+    for (const auto& inlet : *links)
+      if (inlet.source != nullptr && !inlet.head) inlet.source->prepare_wait();
 }
 
 void Module::Loop::receive_focus() {
   if (!focus_.empty() && !module_.message_time_) {  // else in its time
     Message message;
-    for (auto& link : focus_)
-      while (link.source != nullptr && take(link, message) == Got::Message)
-        set_focus(link, message);
+    for (auto& inlet : focus_)
+      while (inlet.source != nullptr && take(inlet, message) == Got::Message)
+        set_focus(inlet, message);
   }
   expire_focus();
 }
 
-void Module::Loop::set_focus(Inlet& link, const Message& message) {
+void Module::Loop::set_focus(Inlet& inlet, const Message& message) {
   auto& focus = module_.focus_;
   const auto modes = message.view<std::int32_t>();
-  if (!modes) return drop(link, internal::kFocusPort, modes.error().detail);
-  if (modes->empty()) return drop(link, internal::kFocusPort, "it has no mode");
+  if (!modes) return drop(inlet, internal::kFocusPort, modes.error().detail);
+  if (modes->empty()) return drop(inlet, internal::kFocusPort, "it has no mode");
   note(TraceEvent::What::Took, internal::kFocusPort, message.header);
   focus.received = time();
   if (std::exchange(focus.current, modes->at(0, 0)) != focus.current) report_state();
@@ -197,7 +197,7 @@ Status Module::Loop::unlink(bool is_input, const std::string& text) {
   if (!is_input) return unlink_output(*module_.outputs_[link.port], uri);
   report_counters();  // the last of this link
   // What is taken together with this input waits for the next link, and is not ended.
-  const auto erased = std::erase_if(link.is_focus ? focus_ : sources_, [&](const Inlet& each) {
+  const auto erased = std::erase_if(link.is_focus ? focus_ : inlets_, [&](const Inlet& each) {
     return each.uri == uri &&
            (link.is_focus || each.inputs.front() == module_.inputs_[link.port].get());
   });
@@ -218,14 +218,14 @@ Status Module::Loop::unlink_output(internal::OutputState& output, const std::str
   }
   report_counters();  // the last of this link
   unlinked_.push_back(*found);
-  sinks_.erase(std::find(sinks_.begin(), sinks_.end(), *found));
+  outlets_.erase(std::find(outlets_.begin(), outlets_.end(), *found));
   links.erase(found);
   return {};
 }
 
 Status Module::Loop::finish(const std::string& text) {
   auto link = HC_TRY(internal::parse_port_link(module_, true, text));
-  for (auto& each : link.is_focus ? focus_ : sources_)
+  for (auto& each : link.is_focus ? focus_ : inlets_)
     if (each.uri == link.uri.text() && each.source != nullptr) each.source->finish();
   // That its writer has ended is no news then.
   std::erase_if(lines_, [&](const auto& line) {
@@ -236,7 +236,7 @@ Status Module::Loop::finish(const std::string& text) {
 
 /// Gives a link that there is, "PORT=URI", its route.
 void Module::Loop::set_route(const std::string& link, const internal::Route& route) {
-  for (auto& each : sources_)
+  for (auto& each : inlets_)
     for (const auto* input : each.inputs)
       if (text_of(input->name, each.uri) == link) each.route = route;
   for (const auto& output : module_.outputs_)
@@ -254,8 +254,8 @@ void Module::Loop::report() {
     report_state();
     report_links();
   }
-  for (const auto& link : sinks_) {  // not in report_counters(), which one of them may wait in
-    link->peers = number_of(link->sink ? link->sink->peers() : std::nullopt);
+  for (const auto& outlet : outlets_) {  // not in report_counters(), which one of them may wait in
+    outlet->peers = number_of(outlet->sink ? outlet->sink->peers() : std::nullopt);
   }
   report_counters();
 }
@@ -265,36 +265,36 @@ void Module::Loop::report_counters() {
   reported_ = now_;
   wall_offset_ = module_.clock_.wall() - module_.clock_.monotonic().count();
   std::vector<LinkCounters> links;
-  for (auto& link : sources_) {
+  for (auto& inlet : inlets_) {
     auto& counters = links.emplace_back();
-    counters.traffic = link.traffic();
-    counters.ignored = link.ignored;
-    counters.peers = number_of(link.source ? link.source->peers() : std::nullopt);
-    counters.age = take_durations(link.ages);
-    counters.gap = take_durations(link.gaps);
-    const auto& input = *link.inputs.front();
+    counters.traffic = inlet.traffic();
+    counters.ignored = inlet.ignored;
+    counters.peers = number_of(inlet.source ? inlet.source->peers() : std::nullopt);
+    counters.age = take_durations(inlet.ages);
+    counters.gap = take_durations(inlet.gaps);
+    const auto& input = *inlet.inputs.front();
     if (input.together != nullptr && input.together->is_latest)
       counters.traffic.dropped_newer +=
           input.together->dropped_newer + input.together->matcher.dropped(input.place).total();
   }
-  for (const auto& link : sinks_) {
+  for (const auto& outlet : outlets_) {
     auto& counters = links.emplace_back();
-    counters.traffic = link->sink ? link->sink->traffic() : link->traffic;
-    counters.peers = link->peers;
+    counters.traffic = outlet->sink ? outlet->sink->traffic() : outlet->traffic;
+    counters.peers = outlet->peers;
   }
   send(Report::Counters, make_counters(links));
 }
 
 void Module::Loop::report_links() {
   std::vector<LinkEnd> ends;
-  for (const auto& link : sources_)
-    ends.push_back({true, link.inputs.size() == 1 ? link.inputs[0]->name : "-", link.uri});
-  for (const auto& sink : sinks_) {  // standard output may be of several ports
-    const auto output = std::ranges::find_if(module_.outputs_, [&](const auto& each) {
-      return std::ranges::find(each->links, sink) != each->links.end();
+  for (const auto& inlet : inlets_)
+    ends.push_back({true, inlet.inputs.size() == 1 ? inlet.inputs[0]->name : "-", inlet.uri});
+  for (const auto& outlet : outlets_) {  // standard output may be of several ports
+    const auto port = std::ranges::find_if(module_.outputs_, [&](const auto& each) {
+      return std::ranges::find(each->links, outlet) != each->links.end();
     });
     ends.push_back(
-        {false, output == module_.outputs_.end() ? kTracePort : (*output)->name, sink->uri});
+        {false, port == module_.outputs_.end() ? kTracePort : (*port)->name, outlet->uri});
   }
   send(Report::Links, make_links(ends));
 }
@@ -314,13 +314,13 @@ void Module::Loop::report_parameters() {
   send(Report::Parameters, make_parameters(values));
 }
 
-void Module::Loop::report_state(const LinkedSink* blocked) {
+void Module::Loop::report_state(const Outlet* blocked) {
   // From its first report on a module counts as running, and a module that runs has parameters.
   if (reported_.count() == 0) report_parameters();
   const auto& focus = module_.focus_;
-  const auto found = std::find_if(sinks_.begin(), sinks_.end(),
-                                  [&](const auto& sink) { return sink.get() == blocked; });
-  const auto row = static_cast<std::int64_t>(sources_.size()) + (found - sinks_.begin()) + 1;
+  const auto found = std::find_if(outlets_.begin(), outlets_.end(),
+                                  [&](const auto& outlet) { return outlet.get() == blocked; });
+  const auto row = static_cast<std::int64_t>(inlets_.size()) + (found - outlets_.begin()) + 1;
   send(Report::State, make_state({focus.own, focus.decided != 0 ? focus.decided : focus.current,
                                   focus.in_focus(), blocked == nullptr ? 0 : row, focus.stops}));
 }

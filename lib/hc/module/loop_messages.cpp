@@ -25,11 +25,11 @@ constexpr MonotonicTime kLongestGap = std::chrono::hours(1);
 bool Module::Loop::has_heads() {
   bool all = true;
   Message message;
-  for (auto* links : {&focus_, &sources_})
-    for (auto& link : *links) {
-      if (link.source == nullptr || link.head) continue;
-      const auto got = take(link, message);
-      if (got == Got::Message) link.head = message.keep();
+  for (auto* links : {&focus_, &inlets_})
+    for (auto& inlet : *links) {
+      if (inlet.source == nullptr || inlet.head) continue;
+      const auto got = take(inlet, message);
+      if (got == Got::Message) inlet.head = message.keep();
       if (got == Got::Nothing) all = false;
     }
   return all;
@@ -39,10 +39,10 @@ bool Module::Loop::has_heads() {
 /// none has any.
 internal::Inlet* Module::Loop::earliest() {
   internal::Inlet* first = nullptr;
-  for (auto* links : {&focus_, &sources_})
-    for (auto& link : *links)
-      if (link.head && (first == nullptr || link.head->header.time < first->head->header.time))
-        first = &link;
+  for (auto* links : {&focus_, &inlets_})
+    for (auto& inlet : *links)
+      if (inlet.head && (first == nullptr || inlet.head->header.time < first->head->header.time))
+        first = &inlet;
   return first;
 }
 
@@ -56,10 +56,10 @@ void Module::Loop::begin_clock() {
     attend();
   }
   std::optional<std::int64_t> first;
-  for (const auto* links : {&focus_, &sources_})
-    for (const auto& link : *links)
-      if (link.head && link.head->header.time != 0)
-        first = std::min(first.value_or(link.head->header.time), link.head->header.time);
+  for (const auto* links : {&focus_, &inlets_})
+    for (const auto& inlet : *links)
+      if (inlet.head && inlet.head->header.time != 0)
+        first = std::min(first.value_or(inlet.head->header.time), inlet.head->header.time);
   if (first) pass_to(MonotonicTime(*first));
 }
 
@@ -72,10 +72,10 @@ bool Module::Loop::take_earliest() {
     generates_next_ = !std::exchange(has_ended_, true);
     return false;
   }
-  internal::Inlet* link = earliest();
-  if (link == nullptr) return false;  // none is linked yet
+  internal::Inlet* inlet = earliest();
+  if (inlet == nullptr) return false;  // none is linked yet
   // One without a time, or that is late, comes now.
-  const auto due = std::max(MonotonicTime(link->head->header.time), time());
+  const auto due = std::max(MonotonicTime(inlet->head->header.time), time());
   if (due - time() > kLongestGap) {
     pass_to(due);
     return true;
@@ -91,8 +91,8 @@ bool Module::Loop::take_earliest() {
   pass_to(due);
   expire_focus();
   has_generated_ = false;
-  Message message = *std::exchange(link->head, std::nullopt);
-  handle(*link, message);
+  Message message = *std::exchange(inlet->head, std::nullopt);
+  handle(*inlet, message);
   handle_newest();
   return true;
 }
@@ -136,12 +136,12 @@ bool Module::Loop::repeat_next() {
     repeat_without_message(event.number);
     return true;
   }
-  for (auto* links : {&focus_, &sources_})
-    for (auto& link : *links) {
-      const auto& port = link.inputs.empty() ? internal::kFocusPort : link.inputs.front()->name;
-      if (!link.head || link.number != event.number || port != event.port) continue;
-      Message message = *std::exchange(link.head, std::nullopt);
-      handle(link, message);
+  for (auto* links : {&focus_, &inlets_})
+    for (auto& inlet : *links) {
+      const auto& port = inlet.inputs.empty() ? internal::kFocusPort : inlet.inputs.front()->name;
+      if (!inlet.head || inlet.number != event.number || port != event.port) continue;
+      Message message = *std::exchange(inlet.head, std::nullopt);
+      handle(inlet, message);
       return true;
     }
   return true;

@@ -214,7 +214,7 @@ Message converted(const Message& message, const Conversion& conversion) {
 }
 
 /// Sends to a link; false when its reader has left, which ends the link.
-bool send_to(internal::LinkedSink& link, const std::string& port, const Message& message) {
+bool send_to(internal::Outlet& link, const std::string& port, const Message& message) {
   auto sent = link.conversion.is_none() ? link.sink->send(message)
                                         : link.sink->send(converted(message, link.conversion));
   if (sent) return true;
@@ -254,7 +254,7 @@ void internal::Trace::flush() {
   message.header.seq = output.seq++;
   message.header.time = events.front().moment;
   events.clear();
-  send_to_each(output, [&](LinkedSink& link) {
+  send_to_each(output, [&](Outlet& link) {
     if (link.sink->send(message)) return true;
     link.traffic = link.sink->traffic();
     link.sink.reset();
@@ -278,7 +278,7 @@ void internal::send(OutputState& output, Message&& message) {
   else
     message = value_or_end(compress(message, wanted));
   if (module.loop_ != nullptr) module.loop_->note(TraceEvent::What::Sent, output.name, header);
-  const bool any_ended = send_to_each(output, [&](LinkedSink& link) {
+  const bool any_ended = send_to_each(output, [&](Outlet& link) {
     return !link.route.takes(header.dst) || send_to(link, output.name, message);
   });
   if (any_ended && !module.is_read()) throw Stopped();
@@ -290,7 +290,7 @@ std::size_t internal::forward(OutputState& output, const Message& message) {
   std::size_t taken = 0;
   if (module.loop_ != nullptr)
     module.loop_->note(TraceEvent::What::Sent, output.name, message.header);
-  const bool any_ended = send_to_each(output, [&](LinkedSink& link) {
+  const bool any_ended = send_to_each(output, [&](Outlet& link) {
     if (!link.route.takes(message.header.dst)) return true;
     if (from != nullptr && !from->empty() && *from == link.route.peer) return true;
     if (!send_to(link, output.name, message)) return false;

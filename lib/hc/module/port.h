@@ -26,7 +26,7 @@ namespace internal {
 struct TogetherState;
 
 /// One end of a link, at a port.
-struct LinkedSink {
+struct Outlet {
   std::string uri;
   std::unique_ptr<Sink> sink;  ///< null once the reader has disconnected
   Conversion conversion;       ///< of what goes here
@@ -96,7 +96,7 @@ struct OutputState {
   bool is_on_demand = false;         ///< see Module::on_demand()
   std::uint32_t keep = 0;            ///< see Module::never_waits(); 0: it waits as its links say
   std::int64_t seq = 0;
-  std::vector<std::shared_ptr<LinkedSink>> links;
+  std::vector<std::shared_ptr<Outlet>> links;
   Module* module = nullptr;
 
   [[nodiscard]] const PortType& type() const { return types.at(0); }
