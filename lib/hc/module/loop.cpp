@@ -13,8 +13,8 @@
 namespace hc {
 namespace {
 
+using internal::fail;
 using internal::Inlet;
-using internal::kNoPort;
 using internal::Outlet;
 using internal::Stopped;
 
@@ -24,12 +24,6 @@ constexpr const char* kTimeoutInGraphs = "5";  // [s]; where the graph does not 
 /// A line about a link waits for so long: at the end of a graph it means nothing.
 constexpr std::chrono::milliseconds kLineDelay{200};
 constexpr int kMostAtOnce = 16;  // messages that a link gives in one turn
-
-/// Ends the module: cleanly if it is to stop, else with the name of what failed.
-[[noreturn]] void fail(const std::string& who, const Error& error) {
-  if (error.code == Code::Stopped) throw Stopped();
-  throw ModuleError(Error{error.code, who + ": " + error.detail});
-}
 
 /// Whether a link has keep=latest, which makes place for a short queue.
 bool keeps_latest(Uri& uri) {
@@ -63,6 +57,9 @@ Uri without_waiting(Uri uri, std::uint32_t keep) {
 
 Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int stop)
     : module_(module),
+      now_{module.clock_, module.message_time_},
+      trace_(module.clock_),
+      timers_(module, now_, trace_),
       management_(*(module.management_ = std::make_shared<internal::Management>())),
       waits_(stop),
       pauses_(stop) {
@@ -175,9 +172,7 @@ std::shared_ptr<Outlet> Module::Loop::open_output(const Uri& uri, const std::str
 }
 
 void Module::Loop::open_trace(const Uri& uri) {
-  auto outlet = open_output(uri, kTracePort);
-  if (trace_ == nullptr) trace_ = std::make_unique<internal::Trace>(module_.clock_);
-  trace_->output.links.push_back(std::move(outlet));
+  trace_.output.links.push_back(open_output(uri, kTracePort));
 }
 
 void Module::Loop::open_outputs(const internal::Arguments& arguments) {
@@ -252,17 +247,15 @@ void Module::Loop::open_inputs(const internal::Arguments& arguments) {
 void Module::Loop::run() {
   end_unlinked();
   end_unneeded();
-  now_ = module_.clock_.monotonic();
+  now_.read();
   attend();
   if (module_.message_time_) begin_clock();
-  for (auto& timer : module_.timers_) timer.last = time();
-  for (auto& timeout : module_.timeouts_)
-    if (timeout->due) *timeout->due += time();
+  timers_.start();
   if (module_.start_) module_.start_();
   for (bool is_now = false; true;) {
     if (stop_requested()) throw Stopped();
     // What was waited for comes first.
-    if (!std::exchange(is_now, false)) now_ = module_.clock_.monotonic();
+    if (!std::exchange(is_now, false)) now_.read();
     if (moments_) {
       if (!repeat_next()) break;
       serve();
@@ -273,18 +266,18 @@ void Module::Loop::run() {
     end_unneeded();
     if (join_renewed()) report_links();
     serve();
-    fire_timers();
+    timers_.fire_due();
     read_watched();
     if (any) continue;
     if (is_generators_turn()) {
-      note(TraceEvent::What::Began, kNoPort, {}, TraceEvent::kGenerator);
+      trace_.note(TraceEvent::What::Began, TraceEvent::kGenerator);
       const bool goes_on = generate();
-      note(TraceEvent::What::Ended, kNoPort, {}, TraceEvent::kGenerator);
+      trace_.note(TraceEvent::What::Ended, TraceEvent::kGenerator);
       if (!goes_on) break;
     } else if (all_ended()) {
       break;
     } else {
-      is_now = wait(true, next_timer());
+      is_now = wait(true, timers_.next());
     }
   }
   for (const auto& together : module_.together_)
@@ -298,10 +291,11 @@ void Module::Loop::take_rest() {
   constexpr std::chrono::milliseconds kSilence{200}, kLongest{2000};
   constexpr int kPause = 5;  // [ms]
   const auto begin = module_.clock_.monotonic();
-  for (auto last = begin; now_ - last < kSilence && now_ - begin < kLongest && !all_ended();) {
-    now_ = module_.clock_.monotonic();
+  for (auto last = begin;
+       now_.machine - last < kSilence && now_.machine - begin < kLongest && !all_ended();) {
+    now_.read();
     if (take_each())
-      last = now_;
+      last = now_.machine;
     else
       ::poll(nullptr, 0, kPause);
   }
@@ -320,47 +314,14 @@ bool Module::Loop::all_ended() const {
                      [](const Inlet& inlet) { return inlet.source == nullptr; });
 }
 
-void Module::Loop::fire_timers() {
-  std::int32_t number = -1;
-  for (auto& timer : module_.timers_) {
-    ++number;
-    const auto due = timer.due();
-    if (due > time()) continue;
-    note(TraceEvent::What::Began, kNoPort, {}, number);
-    timer.handler();
-    note(TraceEvent::What::Ended, kNoPort, {}, number);
-    now_ = module_.clock_.monotonic();
-    timer.last = std::max(due, time() - timer.period());
-  }
-  // A handler may add some. NOLINTNEXTLINE(modernize-loop-convert)
-  for (std::size_t i = 0; i < module_.timeouts_.size(); ++i) {
-    const auto timeout = module_.timeouts_[i];
-    ++number;
-    if (!timeout->due || *timeout->due > time()) continue;
-    timeout->due.reset();
-    note(TraceEvent::What::Began, kNoPort, {}, number);
-    timeout->handler();
-    note(TraceEvent::What::Ended, kNoPort, {}, number);
-    now_ = module_.clock_.monotonic();
-  }
-}
-
 /// Calls the handlers of the module's own descriptors that are readable.
 void Module::Loop::read_watched() {
   for (auto& watch : module_.watches_) {
     pollfd watched{watch.descriptor(), POLLIN, 0};
     if (watched.fd < 0 || ::poll(&watched, 1, 0) <= 0) continue;
     watch.handler();
-    now_ = module_.clock_.monotonic();
+    now_.read();
   }
-}
-
-MonotonicTime Module::Loop::next_timer() const {
-  auto next = MonotonicTime::max();
-  for (const auto& timer : module_.timers_) next = std::min(next, timer.due());
-  for (const auto& timeout : module_.timeouts_)
-    if (timeout->due) next = std::min(next, *timeout->due);
-  return next;
 }
 
 /// Takes a message from each link, but from those with too many that wait for others' only when
@@ -379,7 +340,7 @@ bool Module::Loop::take_each() {
       const int most = together != nullptr && together->is_latest ? kMostAtOnce : 1;
       for (int i = 0; i < most; ++i) {
         if (inlet.source == nullptr || is_crowded(inlet) != crowded) break;
-        if (any) now_ = module_.clock_.monotonic();  // the messages before have taken their time
+        if (any) now_.read();  // the messages before have taken their time
         if (!take_one(inlet)) break;
         any = true;
       }
@@ -403,7 +364,7 @@ void Module::Loop::handle_newest() {
 bool Module::Loop::take_one(Inlet& inlet) {
   Message message;
   if (take(inlet, message) != Got::Message) return false;
-  const auto come = now_;
+  const auto come = now_.machine;
   const auto sensed = message.header.time;  // a handler may move the message away
   handle(inlet, message);
   if (management_.is_heard()) measure(inlet, sensed, come);  // what is sent does not wait for it
@@ -492,7 +453,7 @@ void Module::Loop::deliver(Inlet& inlet, Message& message) {
         std::any_of(input->types.begin(), input->types.end(),
                     [&](const PortType& type) { return fits(message.header, type); });
     if (!fits_any) continue;
-    note(TraceEvent::What::Took, input->name, message.header, inlet.number);
+    trace_.note(TraceEvent::What::Took, input->name, message.header, inlet.number);
     if (!input->handler) return;
     if (!module_.focus_.admits(input->is_exclusive, message.header.mode)) {
       ++inlet.ignored;
@@ -536,25 +497,25 @@ void Module::Loop::call(const internal::InputState& input, Inlet& inlet, Message
   }
   module_.handled_ = internal::Handled(message.header, &inlet.route.peer);
   drop_bad(inlet, input.name, [&] {
-    if (trace_ == nullptr || input.together != nullptr) [[likely]]
+    if (!trace_.is_linked() || input.together != nullptr) [[likely]]
       return input.handler(message);
     const Header header = message.header;  // a handler may move the message away
-    note(TraceEvent::What::Began, input.name, header, inlet.number);
+    trace_.note(TraceEvent::What::Began, input.name, header, inlet.number);
     input.handler(message);
-    note(TraceEvent::What::Ended, input.name, header, inlet.number);
+    trace_.note(TraceEvent::What::Ended, input.name, header, inlet.number);
   });
   module_.handled_ = {};
 }
 
 /// Notes how old a message is, and how long after the one before it came.
 void Module::Loop::measure(Inlet& inlet, std::int64_t sensed, MonotonicTime come) {
-  if (sensed != 0) inlet.ages.add(come.count() + wall_offset_ - sensed);
+  if (sensed != 0) inlet.ages.add(come.count() + now_.wall_offset - sensed);
   if (inlet.last_come.count() != 0) inlet.gaps.add((come - inlet.last_come).count());
   inlet.last_come = come;
 }
 
 /// Waits for a command, a report that is due, or a time; and, perhaps, for messages and what else
-/// the module reads. Whether it was so short that now_ is the time still.
+/// the module reads. Whether it was so short that now_.machine is the time still.
 bool Module::Loop::wait(bool for_messages, MonotonicTime until) {
   waited_for_.clear();
   watched_.clear();
@@ -570,7 +531,8 @@ bool Module::Loop::wait(bool for_messages, MonotonicTime until) {
   if (management_.is_heard()) until = std::min(until, reported_ + kReportPeriod);
   if (!lines_.empty()) until = std::min(until, lines_.front().due);
   auto timeout = std::chrono::nanoseconds(-1);
-  if (until != MonotonicTime::max()) timeout = std::max(until - now_, std::chrono::nanoseconds(0));
+  if (until != MonotonicTime::max())
+    timeout = std::max(until - now_.machine, std::chrono::nanoseconds(0));
   auto& waits = for_messages ? waits_ : pauses_;
   if (module_.before_waiting_) module_.before_waiting_();
   auto ready = waits.wait(waited_for_, watched_, timeout);
@@ -585,11 +547,11 @@ void Module::Loop::pause(const std::function<MonotonicTime()>& due) {
     has_generated_ = false;
     while (moments_ && !moments_->empty() && moments_->front().port == internal::kFocusPort)
       repeat_next();
-    return pass_to(std::max(time(), due()));
+    return now_.pass_to(std::max(now_.time(), due()));
   }
-  for (now_ = module_.clock_.monotonic(); now_ < due(); now_ = module_.clock_.monotonic()) {
+  for (now_.read(); now_.machine < due(); now_.read()) {
     wait(false, due());
-    now_ = module_.clock_.monotonic();
+    now_.read();
     attend();
   }
 }
@@ -597,7 +559,7 @@ void Module::Loop::pause(const std::function<MonotonicTime()>& due) {
 void Module::Loop::close() {
   if (module_.before_waiting_) module_.before_waiting_();
   log_dropped();
-  if (trace_ != nullptr) trace_->flush();
+  trace_.flush();
   const Outlet* failed = nullptr;
   Status failure;  // the first; the other links are closed all the same
   for (auto& outlet : outlets_) {

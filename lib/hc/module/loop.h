@@ -4,30 +4,25 @@
 // and reports. Internal.
 
 #include <deque>
-#include <exception>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <hc/link/wait_set.h>
 #include <hc/module/arguments.h>
+#include <hc/module/ending.h>
 #include <hc/module/management.h>
 #include <hc/module/module.h>
 #include <hc/module/quantiles.h>
+#include <hc/module/timers.h>
 #include <hc/module/trace.h>
 
 namespace hc {
 
 namespace internal {
 
-/// What a trace calls the focus, and what no message causes.
-inline const std::string kFocusPort = "focus", kNoPort;
-
-/// Thrown to end a module cleanly: nobody reads it any more, or it was asked to stop.
-struct Stopped {};
-
-/// What was thrown, without where that is in the sources of a library.
-std::string thrown_in_words(const std::exception& error);
+/// The port of inlets that receive the focus.
+inline const std::string kFocusPort = "focus";
 
 /// A link whose messages come in: to one port, to all of them from standard input, or the focus.
 struct Inlet {
@@ -83,10 +78,8 @@ struct Module::Loop {
   /// @param blocked  the link whose reader the module waits for; null: none.
   void report_state(const internal::Outlet* blocked = nullptr);
   /// Notes a moment in the way of a message, while the module is traced.
-  void note(TraceEvent::What what, const std::string& port, const Header& header,
-            std::int32_t number = 0) {
-    if (trace_ != nullptr) [[unlikely]]
-      trace_->note(what, port, header, number);
+  void note(TraceEvent::What what, const std::string& port, const Header& header) {
+    trace_.note(what, port, header);
   }
 
  private:
@@ -134,9 +127,7 @@ struct Module::Loop {
     }
   }
   void call(const internal::InputState& input, internal::Inlet& inlet, Message& message);
-  void fire_timers();
   void read_watched();
-  [[nodiscard]] MonotonicTime next_timer() const;
   bool wait(bool for_messages, MonotonicTime until);
 
   // loop_messages.cpp
@@ -149,7 +140,6 @@ struct Module::Loop {
   void read_moments(const Uri& uri);
   bool repeat_next();
   void repeat_without_message(std::int32_t number);
-  void pass_to(MonotonicTime time) { module_.message_time_ = time.count(); }
 
   // loop_control.cpp
   void attend();
@@ -171,16 +161,17 @@ struct Module::Loop {
   void report_counters();
   void report_links();
   void report_parameters();
-  void report_trace();
 
   Module& module_;
+  internal::Now now_;
+  internal::Trace trace_;
+  Timers timers_;
   LinkOptions options_;
   bool joins_ = false;  // the graph runs already: see --join
   std::vector<internal::Inlet> inlets_;
   std::vector<std::shared_ptr<internal::Outlet>> outlets_;   // in the order of the command line
   std::vector<std::shared_ptr<internal::Outlet>> unlinked_;  // one may still be in send()
   std::vector<internal::Inlet> focus_;
-  std::unique_ptr<internal::Trace> trace_;  // while it is traced
   internal::Management& management_;
   WaitSet waits_, pauses_;  // for all there is; between two calls of the generator
   std::vector<Source*> waited_for_;
@@ -191,15 +182,8 @@ struct Module::Loop {
     Level level;
     MonotonicTime due;
   };
-  std::deque<Line> lines_;  // about links, not logged yet
-  /// By the module's clock, at the last look.
-  [[nodiscard]] MonotonicTime time() const {
-    return module_.message_time_ ? MonotonicTime(*module_.message_time_) : now_;
-  }
-
+  std::deque<Line> lines_;                         // about links, not logged yet
   std::optional<std::deque<TraceEvent>> moments_;  // with --clock URI: to be repeated
-  MonotonicTime now_{0};                           // of the machine, at the last look at the clock
-  std::int64_t wall_offset_ = 0;  // from monotonic to wall clock, at the last report [ns]
   MonotonicTime reported_{0}, attended_{0};
   // With --clock messages: whether the generator is called next; has been since the last message,
   // and keeps no rate; and whether all messages have been handled.

@@ -51,17 +51,17 @@ void Module::Loop::attend() {
 /// From time to time, obeys commands and reports.
 void Module::Loop::serve() {
   unlinked_.clear();
-  log_lines(now_);
-  report_trace();
-  const bool reports = management_.is_heard() && now_ - reported_ >= kReportPeriod;
-  if (now_ - attended_ < kHousekeepingPeriod && deferred_.empty() && !reports) return;
-  attended_ = now_;
+  log_lines(now_.machine);
+  trace_.flush_if_due(now_.machine);
+  const bool reports = management_.is_heard() && now_.machine - reported_ >= kReportPeriod;
+  if (now_.machine - attended_ < kHousekeepingPeriod && deferred_.empty() && !reports) return;
+  attended_ = now_.machine;
   if (module_.before_waiting_) module_.before_waiting_();
   look_at_silent();
   for (const auto& command : std::exchange(deferred_, {})) obey(command);
   for (const auto& command : management_.take_commands()) obey(command);
   report();
-  now_ = module_.clock_.monotonic();  // commands may have taken their time
+  now_.read();  // commands may have taken their time
 }
 
 /// Has links notice that their writers have died: they look at that when they are waited for, and a
@@ -87,13 +87,13 @@ void Module::Loop::set_focus(Inlet& inlet, const Message& message) {
   const auto modes = message.view<std::int32_t>();
   if (!modes) return drop(inlet, internal::kFocusPort, modes.error().detail);
   if (modes->empty()) return drop(inlet, internal::kFocusPort, "it has no mode");
-  note(TraceEvent::What::Took, internal::kFocusPort, message.header);
-  focus.received = time();
+  trace_.note(TraceEvent::What::Took, internal::kFocusPort, message.header);
+  focus.received = now_.time();
   if (std::exchange(focus.current, modes->at(0, 0)) != focus.current) report_state();
 }
 
 void Module::Loop::expire_focus() {
-  if (module_.focus_.expire(time())) report_state();
+  if (module_.focus_.expire(now_.time())) report_state();
 }
 
 void Module::Loop::obey(const std::string& command) {
@@ -141,7 +141,7 @@ Status Module::Loop::carry_out(const std::string& row) {
       if (!read_number(command.target, wall_offset))
         return Error{Code::Invalid, "wall_offset needs a number of nanoseconds"};
       internal::distant_wall.set(wall_offset, module_.clock_.monotonic());
-      wall_offset_ = module_.clock_.wall() - module_.clock_.monotonic().count();
+      now_.read_wall();
       return {};
     }
     case ModuleCommand::Verb::Link:
@@ -190,10 +190,7 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
 Status Module::Loop::unlink(bool is_input, const std::string& text) {
   auto link = HC_TRY(internal::parse_port_link(module_, is_input, text));
   auto uri = link.uri.text();
-  if (link.is_trace) {
-    if (trace_ == nullptr) return unknown_link();
-    return unlink_output(trace_->output, uri);
-  }
+  if (link.is_trace) return unlink_output(trace_.output, uri);
   if (!is_input) return unlink_output(*module_.outputs_[link.port], uri);
   report_counters();  // the last of this link
   // What is taken together with this input waits for the next link, and is not ended.
@@ -249,7 +246,7 @@ void Module::Loop::send(Report report, Message message) {
 }
 
 void Module::Loop::report() {
-  if (!management_.is_heard() || now_ - reported_ < kReportPeriod) return;
+  if (!management_.is_heard() || now_.machine - reported_ < kReportPeriod) return;
   if (reported_.count() == 0) {
     report_state();
     report_links();
@@ -262,8 +259,8 @@ void Module::Loop::report() {
 
 /// Also where there is no link: that a module reports shows that it is not stuck.
 void Module::Loop::report_counters() {
-  reported_ = now_;
-  wall_offset_ = module_.clock_.wall() - module_.clock_.monotonic().count();
+  reported_ = now_.machine;
+  now_.read_wall();
   std::vector<LinkCounters> links;
   for (auto& inlet : inlets_) {
     auto& counters = links.emplace_back();
@@ -297,14 +294,6 @@ void Module::Loop::report_links() {
         {false, port == module_.outputs_.end() ? kTracePort : (*port)->name, outlet->uri});
   }
   send(Report::Links, make_links(ends));
-}
-
-void Module::Loop::report_trace() {
-  if (trace_ == nullptr) return;
-  if (trace_->output.links.empty()) return trace_.reset();
-  if (!trace_->events.empty() &&
-      (trace_->events.size() >= internal::Trace::kMany || now_ - trace_->sent >= kReportPeriod))
-    trace_->flush();
 }
 
 void Module::Loop::report_parameters() {

@@ -48,11 +48,11 @@ internal::Inlet* Module::Loop::earliest() {
 
 /// The clock begins with the trace, or the first message that has a time.
 void Module::Loop::begin_clock() {
-  if (moments_ && !moments_->empty()) return pass_to(MonotonicTime(moments_->front().moment));
+  if (moments_ && !moments_->empty()) return now_.pass_to(MonotonicTime(moments_->front().moment));
   while (!has_heads()) {
     if (stop_requested()) throw Stopped();
     wait(true, MonotonicTime::max());
-    now_ = module_.clock_.monotonic();
+    now_.read();
     attend();
   }
   std::optional<std::int64_t> first;
@@ -60,7 +60,7 @@ void Module::Loop::begin_clock() {
     for (const auto& inlet : *links)
       if (inlet.head && inlet.head->header.time != 0)
         first = std::min(first.value_or(inlet.head->header.time), inlet.head->header.time);
-  if (first) pass_to(MonotonicTime(*first));
+  if (first) now_.pass_to(MonotonicTime(*first));
 }
 
 /// Handles the earliest message if its time has come, else lets time pass to what is due next.
@@ -75,20 +75,20 @@ bool Module::Loop::take_earliest() {
   internal::Inlet* inlet = earliest();
   if (inlet == nullptr) return false;  // none is linked yet
   // One without a time, or that is late, comes now.
-  const auto due = std::max(MonotonicTime(inlet->head->header.time), time());
-  if (due - time() > kLongestGap) {
-    pass_to(due);
+  const auto due = std::max(MonotonicTime(inlet->head->header.time), now_.time());
+  if (due - now_.time() > kLongestGap) {
+    now_.pass_to(due);
     return true;
   }
-  if (const auto timer = next_timer(); timer > time() && timer <= due) {
-    pass_to(timer);
+  if (const auto timer = timers_.next(); timer > now_.time() && timer <= due) {
+    now_.pass_to(timer);
     return true;
   }
-  if (module_.generate_ && due > time() && !has_generated_) {
+  if (module_.generate_ && due > now_.time() && !has_generated_) {
     generates_next_ = true;
     return false;
   }
-  pass_to(due);
+  now_.pass_to(due);
   expire_focus();
   has_generated_ = false;
   Message message = *std::exchange(inlet->head, std::nullopt);
@@ -114,7 +114,7 @@ void Module::Loop::read_moments(const Uri& uri) {
   Message message;
   while (true) {
     const auto any = receive(*source, message);
-    if (!any) throw ModuleError(Error{any.error().code, uri.text() + ": " + any.error().detail});
+    if (!any) internal::fail(uri.text(), any.error());
     if (!*any) return;
     for (auto& event : read_trace(message)) moments_->push_back(std::move(event));
   }
@@ -130,7 +130,7 @@ bool Module::Loop::repeat_next() {
   const TraceEvent event = std::move(moments_->front());
   moments_->pop_front();
   if (event.what != TraceEvent::What::Began) return true;
-  pass_to(std::max(time(), MonotonicTime(event.moment)));
+  now_.pass_to(std::max(now_.time(), MonotonicTime(event.moment)));
   expire_focus();
   if (event.port.empty()) {
     repeat_without_message(event.number);
@@ -149,15 +149,10 @@ bool Module::Loop::repeat_next() {
 
 /// Calls a timer, a time-out or the generator; a module that was changed may have fewer.
 void Module::Loop::repeat_without_message(std::int32_t number) {
-  const auto index = static_cast<std::size_t>(number), timers = module_.timers_.size();
   if (number == TraceEvent::kGenerator) {
     if (module_.generate_ && !generate()) moments_->clear();
-  } else if (index < timers) {
-    module_.timers_[index].handler();
-  } else if (index - timers < module_.timeouts_.size()) {
-    const auto timeout = module_.timeouts_[index - timers];
-    timeout->due.reset();
-    timeout->handler();
+  } else {
+    timers_.fire(static_cast<std::size_t>(number));
   }
 }
 

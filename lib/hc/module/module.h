@@ -328,7 +328,8 @@ class Module {
   friend void internal::send(internal::OutputState&, Message&&);
   friend std::size_t internal::forward(internal::OutputState&, const Message&);
   friend class Timeout;
-  struct Loop;
+  struct Loop;  // and its parts
+  class Timers;
   using Period = std::function<MonotonicTime()>;
   struct Timer {
     Period period;

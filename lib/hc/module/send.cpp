@@ -28,11 +28,9 @@ bool send_to(internal::Outlet& link, const std::string& port, const Message& mes
   auto sent = link.conversion.is_none() ? link.sink->send(message)
                                         : link.sink->send(converted(message, link.conversion));
   if (sent) return true;
-  if (sent.error().code == Code::Stopped) throw internal::Stopped();
-  if (sent.error().code != Code::Closed)
-    throw ModuleError(Error{
-        sent.error().code,
-        (sent.error().code == Code::NotFound ? link.uri : port) + ": " + sent.error().detail});
+  const auto& error = sent.error();
+  if (error.code != Code::Closed)
+    internal::fail(error.code == Code::NotFound ? link.uri : port, error);
   link.traffic = link.sink->traffic();
   link.sink.reset();
   return false;
@@ -56,14 +54,14 @@ bool send_to_each(internal::OutputState& output, const SendOne& send_one) {
 }  // namespace
 
 void internal::Trace::flush() {
-  sent = clock.monotonic();
-  if (lost > 0) events.push_back({TraceEvent::What::Lost, "", 0, lost, 0, clock.wall()});
-  lost = 0;
-  if (events.empty()) return;
-  Message message = make_trace(events);
+  flushed_ = clock_.monotonic();
+  if (lost_ > 0) events_.push_back({TraceEvent::What::Lost, "", 0, lost_, 0, clock_.wall()});
+  lost_ = 0;
+  if (events_.empty()) return;
+  Message message = make_trace(events_);
   message.header.seq = output.seq++;
-  message.header.time = events.front().moment;
-  events.clear();
+  message.header.time = events_.front().moment;
+  events_.clear();
   send_to_each(output, [&](Outlet& link) {
     if (link.sink->send(message)) return true;
     link.traffic = link.sink->traffic();
