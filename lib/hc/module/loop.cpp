@@ -21,9 +21,7 @@ using internal::Stopped;
 constexpr const char* kReportsKept = "64";     // for one who does not listen for a while
 constexpr const char* kSetsKept = "4";         // by links whose newest complete set is handled
 constexpr const char* kTimeoutInGraphs = "5";  // [s]; where the graph does not say (G16)
-/// A line about a link waits for so long: at the end of a graph it means nothing.
-constexpr std::chrono::milliseconds kLineDelay{200};
-constexpr int kMostAtOnce = 16;  // messages that a link gives in one turn
+constexpr int kMostAtOnce = 16;                // messages that a link gives in one turn
 
 /// Whether a link has keep=latest, which makes place for a short queue.
 bool keeps_latest(Uri& uri) {
@@ -60,12 +58,11 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
       now_{module.clock_, module.message_time_},
       trace_(module.clock_),
       timers_(module, now_, trace_),
+      opener_(module, {.limits = arguments.limits, .log = {}, .stop = stop}),
       management_(*(module.management_ = std::make_shared<internal::Management>())),
       waits_(stop),
       pauses_(stop) {
   joins_ = arguments.joins;
-  options_.limits = arguments.limits;
-  options_.stop = stop;
   module_.focus_ = arguments.focus;
   // What the process before has reported counts until this one knows better.
   for (const auto& parameter : module_.parameters_)
@@ -82,7 +79,7 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
     reports = std::move(*sink);
   }
   management_.open(std::move(reports),
-                   arguments.control ? open(*arguments.control, "commands") : nullptr);
+                   arguments.control ? opener_.open(*arguments.control, "commands") : nullptr);
   open_outputs(arguments);
   open_inputs(arguments);
   joins_ = true;  // with links that are added
@@ -93,46 +90,12 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
 }
 
 Module::Loop::~Loop() {
-  if (!stop_requested()) log_lines(MonotonicTime::max());
+  if (!stop_requested()) opener_.log_lines(MonotonicTime::max());
   module_.loop_ = nullptr;
 }
 
-/// What a link is called in the log: by its port where `hc run` has made it, else by its URI.
-std::string Module::Loop::name_of(const std::string& uri, const std::string& port) const {
-  const bool is_of_graph = uri.starts_with("shm:") || uri.find(":@") != std::string::npos;
-  return management_.commands() != nullptr && is_of_graph ? port : uri;
-}
-
-/// Options of a link. What those of a graph log waits in lines_.
-LinkOptions Module::Loop::options_for(const Uri& uri, const std::string& port) {
-  LinkOptions options = options_;
-  options.log = [this, uri = uri.text(), port](Level level, std::string_view line) {
-    if (uri.starts_with("file:") && line.starts_with(uri)) {
-      // After an error the work goes on; `hc run` repeats it at its end.
-      return module_.log(port + std::string(line.substr(uri.size())), level);
-    }
-    const std::string name = name_of(uri, port);
-    if (name == uri || !line.starts_with(uri)) return module_.log(line, level);
-    lines_.push_back({uri, name + std::string(line.substr(uri.size())), level,
-                      module_.clock_.monotonic() + kLineDelay});
-  };
-  return options;
-}
-
-/// Logs what links have had to say for a while.
-void Module::Loop::log_lines(MonotonicTime now) {
-  for (; !lines_.empty() && lines_.front().due <= now; lines_.pop_front())
-    module_.log(lines_.front().text, lines_.front().level);
-}
-
-std::unique_ptr<Source> Module::Loop::open(const Uri& uri, const std::string& port) {
-  auto source = open_source(uri, options_for(uri, port));
-  if (!source) fail(name_of(uri.text(), port), source.error());
-  return std::move(*source);
-}
-
 void Module::Loop::open_focus(const Uri& uri) {
-  focus_.push_back({.uri = uri.text(), .source = open(uri, "focus")});
+  focus_.push_back({.uri = uri.text(), .source = opener_.open(uri, "focus")});
   module_.focus_.is_linked = true;
 }
 
@@ -141,8 +104,8 @@ std::shared_ptr<Outlet> Module::Loop::open_output(const Uri& uri, const std::str
                                                   std::uint32_t keep) {
   Uri opened = uri;
   auto conversion = take_conversion(opened);
-  if (!conversion) fail(name_of(uri.text(), port), conversion.error());
-  const bool is_of_graph = management_.commands() != nullptr;
+  if (!conversion) fail(opener_.name_of(uri.text(), port), conversion.error());
+  const bool is_of_graph = opener_.is_in_graph();
   auto add = [&](const char* option, const char* value) {
     if (opened.option(option, "").empty()) opened.options.emplace_back(option, value);
   };
@@ -155,7 +118,7 @@ std::shared_ptr<Outlet> Module::Loop::open_output(const Uri& uri, const std::str
       add("wait", is_on_this_host(opened) ? "1" : kTimeoutInGraphs);
   }
   if (keep > 0) opened = without_waiting(std::move(opened), keep);
-  auto options = options_for(opened, port);
+  auto options = opener_.options_for(opened, port);
   auto outlet = std::make_shared<Outlet>();
   options.awaits_reader = [this, blocked = outlet.get()](bool awaits) {
     report_state(awaits ? blocked : nullptr);
@@ -163,7 +126,7 @@ std::shared_ptr<Outlet> Module::Loop::open_output(const Uri& uri, const std::str
   if (const auto* commands = management_.commands(); commands != nullptr)
     options.interrupt = {commands->descriptor(), [this] { return obey_while_sending(); }};
   auto sink = open_sink(opened, options);
-  if (!sink) fail(name_of(uri.text(), port), sink.error());
+  if (!sink) fail(opener_.name_of(uri.text(), port), sink.error());
   outlet->uri = uri.text();
   outlet->sink = std::move(*sink);
   outlet->conversion = *conversion;
@@ -191,7 +154,7 @@ void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*>
   // What is taken together is dropped together: by the loop, and not by each link for itself.
   Uri opened = uri;
   const bool is_latest = inputs.front()->together != nullptr && keeps_latest(opened);
-  Inlet inlet{.uri = uri.text(), .source = open(opened, inputs.front()->name)};
+  Inlet inlet{.uri = uri.text(), .source = opener_.open(opened, inputs.front()->name)};
   inlet.inputs = std::move(inputs);
   inlet.is_latest = is_latest;
   for (auto* input : inlet.inputs)
@@ -385,7 +348,8 @@ Got Module::Loop::take(Inlet& inlet, Message& message) {
   if (!got) {
     bool is_of_link = got.error().code == Code::NotFound || got.error().code == Code::Closed;
     const std::string& port = inlet.inputs[0]->name;
-    fail(is_of_link || inlet.inputs.size() > 1 ? name_of(inlet.uri, port) : port, got.error());
+    fail(is_of_link || inlet.inputs.size() > 1 ? opener_.name_of(inlet.uri, port) : port,
+         got.error());
   }
   if (*got == Got::End) end(inlet);
   return *got;
@@ -529,7 +493,7 @@ bool Module::Loop::wait(bool for_messages, MonotonicTime until) {
   if (management_.commands() != nullptr) waited_for_.push_back(management_.commands());
   if (module_.message_time_) until = MonotonicTime::max();  // it is messages that pass the time
   if (management_.is_heard()) until = std::min(until, reported_ + kReportPeriod);
-  if (!lines_.empty()) until = std::min(until, lines_.front().due);
+  until = std::min(until, opener_.due());
   auto timeout = std::chrono::nanoseconds(-1);
   if (until != MonotonicTime::max())
     timeout = std::max(until - now_.machine, std::chrono::nanoseconds(0));

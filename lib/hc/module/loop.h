@@ -11,6 +11,7 @@
 #include <hc/link/wait_set.h>
 #include <hc/module/arguments.h>
 #include <hc/module/ending.h>
+#include <hc/module/link_opener.h>
 #include <hc/module/management.h>
 #include <hc/module/module.h>
 #include <hc/module/quantiles.h>
@@ -83,10 +84,6 @@ struct Module::Loop {
   }
 
  private:
-  [[nodiscard]] std::string name_of(const std::string& uri, const std::string& port) const;
-  LinkOptions options_for(const Uri& uri, const std::string& port);
-  void log_lines(MonotonicTime now);
-  std::unique_ptr<Source> open(const Uri& uri, const std::string& port);
   std::shared_ptr<internal::Outlet> open_output(const Uri& uri, const std::string& port,
                                                 std::uint32_t keep = 0);
   void open_outputs(const internal::Arguments& arguments);
@@ -166,7 +163,7 @@ struct Module::Loop {
   internal::Now now_;
   internal::Trace trace_;
   Timers timers_;
-  LinkOptions options_;
+  LinkOpener opener_;
   bool joins_ = false;  // the graph runs already: see --join
   std::vector<internal::Inlet> inlets_;
   std::vector<std::shared_ptr<internal::Outlet>> outlets_;   // in the order of the command line
@@ -177,12 +174,6 @@ struct Module::Loop {
   std::vector<Source*> waited_for_;
   std::vector<int> watched_;
   std::vector<std::string> deferred_;  // commands for when nothing is being handled or sent
-  struct Line {
-    std::string uri, text;
-    Level level;
-    MonotonicTime due;
-  };
-  std::deque<Line> lines_;                         // about links, not logged yet
   std::optional<std::deque<TraceEvent>> moments_;  // with --clock URI: to be repeated
   MonotonicTime reported_{0}, attended_{0};
   // With --clock messages: whether the generator is called next; has been since the last message,

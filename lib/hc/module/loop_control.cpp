@@ -51,7 +51,7 @@ void Module::Loop::attend() {
 /// From time to time, obeys commands and reports.
 void Module::Loop::serve() {
   unlinked_.clear();
-  log_lines(now_.machine);
+  opener_.log_lines(now_.machine);
   trace_.flush_if_due(now_.machine);
   const bool reports = management_.is_heard() && now_.machine - reported_ >= kReportPeriod;
   if (now_.machine - attended_ < kHousekeepingPeriod && deferred_.empty() && !reports) return;
@@ -225,9 +225,7 @@ Status Module::Loop::finish(const std::string& text) {
   for (auto& each : link.is_focus ? focus_ : inlets_)
     if (each.uri == link.uri.text() && each.source != nullptr) each.source->finish();
   // That its writer has ended is no news then.
-  std::erase_if(lines_, [&](const auto& line) {
-    return line.uri.starts_with(link.uri.scheme + ":" + link.uri.rest + "?");
-  });
+  opener_.drop_lines(link.uri.scheme + ":" + link.uri.rest + "?");
   return {};
 }
 

@@ -109,7 +109,7 @@ bool Module::Loop::generate() {
 
 /// Reads what the module is to do again: what it began, and when.
 void Module::Loop::read_moments(const Uri& uri) {
-  const auto source = open(uri, "clock");
+  const auto source = opener_.open(uri, "clock");
   moments_.emplace();
   Message message;
   while (true) {

@@ -329,6 +329,7 @@ class Module {
   friend std::size_t internal::forward(internal::OutputState&, const Message&);
   friend class Timeout;
   struct Loop;  // and its parts
+  class LinkOpener;
   class Timers;
   using Period = std::function<MonotonicTime()>;
   struct Timer {
