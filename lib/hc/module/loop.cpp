@@ -18,10 +18,9 @@ using internal::Inlet;
 using internal::Outlet;
 using internal::Stopped;
 
-constexpr const char* kReportsKept = "64";     // for one who does not listen for a while
-constexpr const char* kSetsKept = "4";         // by links whose newest complete set is handled
-constexpr const char* kTimeoutInGraphs = "5";  // [s]; where the graph does not say (G16)
-constexpr int kMostAtOnce = 16;                // messages that a link gives in one turn
+constexpr const char* kReportsKept = "64";  // for one who does not listen for a while
+constexpr const char* kSetsKept = "4";      // by links whose newest complete set is handled
+constexpr int kMostAtOnce = 16;             // messages that a link gives in one turn
 
 /// Whether a link has keep=latest, which makes place for a short queue.
 bool keeps_latest(Uri& uri) {
@@ -33,24 +32,6 @@ bool keeps_latest(Uri& uri) {
   return false;
 }
 
-/// Whether readers of an output are on this host, and so connect at once unless they hang.
-bool is_on_this_host(const Uri& uri) {
-  return uri.scheme == "shm" || uri.scheme == "unix-listen" || !uri.option("same_user", "").empty();
-}
-
-/// An output's end that waits neither for the first reader nor for a slow one
-/// (Module::never_waits()).
-Uri without_waiting(Uri uri, std::uint32_t keep) {
-  auto set = [](Uri& changed, const std::string& key, const std::string& value) {
-    std::erase_if(changed.options, [&](const auto& option) { return option.first == key; });
-    changed.options.emplace_back(key, value);
-  };
-  if (uri.option("keep", "all") == "all") set(uri, "keep", std::to_string(keep));
-  Uri unread = uri;
-  set(unread, "readers", "0");
-  return check_sink(unread) ? unread : uri;  // it may be of a kind that nobody comes to
-}
-
 }  // namespace
 
 Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int stop)
@@ -60,9 +41,11 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
       timers_(module, now_, trace_),
       opener_(module, {.limits = arguments.limits, .log = {}, .stop = stop}),
       management_(*(module.management_ = std::make_shared<internal::Management>())),
+      outlets_(module, trace_, opener_,
+               {[this](const Outlet* blocked) { report_state(blocked); },
+                [this] { return obey_while_sending(); }}),
       waits_(stop),
       pauses_(stop) {
-  joins_ = arguments.joins;
   module_.focus_ = arguments.focus;
   // What the process before has reported counts until this one knows better.
   for (const auto& parameter : module_.parameters_)
@@ -80,10 +63,10 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
   }
   management_.open(std::move(reports),
                    arguments.control ? opener_.open(*arguments.control, "commands") : nullptr);
-  open_outputs(arguments);
+  outlets_.open(arguments);
   open_inputs(arguments);
-  joins_ = true;  // with links that are added
-  for (const auto& uri : arguments.focus_links) open_focus(uri);
+  for (const auto& link : arguments.inputs)
+    if (link.is_focus) open_focus(link.uri);
   for (const auto& [link, route] : arguments.routes) set_route(link, route);
   if (arguments.clock) read_moments(*arguments.clock);
   module_.loop_ = this;
@@ -97,57 +80,6 @@ Module::Loop::~Loop() {
 void Module::Loop::open_focus(const Uri& uri) {
   focus_.push_back({.uri = uri.text(), .source = opener_.open(uri, "focus")});
   module_.focus_.is_linked = true;
-}
-
-/// @param keep  of an output that never waits.
-std::shared_ptr<Outlet> Module::Loop::open_output(const Uri& uri, const std::string& port,
-                                                  std::uint32_t keep) {
-  Uri opened = uri;
-  auto conversion = take_conversion(opened);
-  if (!conversion) fail(opener_.name_of(uri.text(), port), conversion.error());
-  const bool is_of_graph = opener_.is_in_graph();
-  auto add = [&](const char* option, const char* value) {
-    if (opened.option(option, "").empty()) opened.options.emplace_back(option, value);
-  };
-  // In a graph a full disk ends a recording, and not the module.
-  if (is_of_graph && opened.scheme == "file") add("optional", "1");
-  // By the clock of messages nothing is ever lost.
-  if (is_of_graph && !module_.message_time_) {
-    add("timeout", kTimeoutInGraphs);
-    if (joins_ && opened.option("stay", "") == "1" && opened.option("timeout", "") != "0")
-      add("wait", is_on_this_host(opened) ? "1" : kTimeoutInGraphs);
-  }
-  if (keep > 0) opened = without_waiting(std::move(opened), keep);
-  auto options = opener_.options_for(opened, port);
-  auto outlet = std::make_shared<Outlet>();
-  options.awaits_reader = [this, blocked = outlet.get()](bool awaits) {
-    report_state(awaits ? blocked : nullptr);
-  };
-  if (const auto* commands = management_.commands(); commands != nullptr)
-    options.interrupt = {commands->descriptor(), [this] { return obey_while_sending(); }};
-  auto sink = open_sink(opened, options);
-  if (!sink) fail(opener_.name_of(uri.text(), port), sink.error());
-  outlet->uri = uri.text();
-  outlet->sink = std::move(*sink);
-  outlet->conversion = *conversion;
-  outlets_.push_back(outlet);
-  return outlet;
-}
-
-void Module::Loop::open_trace(const Uri& uri) {
-  trace_.output.links.push_back(open_output(uri, kTracePort));
-}
-
-void Module::Loop::open_outputs(const internal::Arguments& arguments) {
-  for (const auto& uri : arguments.trace_links) open_trace(uri);
-  for (const auto& [port, uri] : arguments.outputs) {
-    auto& output = *module_.outputs_[port];
-    output.links.push_back(open_output(uri, output.name, output.keep));
-  }
-  if (!arguments.outputs.empty() || module_.outputs_.empty() || arguments.control) return;
-  auto standard_output = open_output({"-", "", {}}, "-");
-  for (auto& output : module_.outputs_)
-    if (!output->is_on_demand) output->links.push_back(standard_output);
 }
 
 void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*> inputs) {
@@ -200,8 +132,11 @@ bool Module::Loop::join_renewed() {
 }
 
 void Module::Loop::open_inputs(const internal::Arguments& arguments) {
-  for (const auto& [port, uri] : arguments.inputs) open_input(uri, {module_.inputs_[port].get()});
-  if (!arguments.inputs.empty() || module_.inputs_.empty() || arguments.control) return;
+  for (const auto& link : arguments.inputs)
+    if (!link.is_focus) open_input(link.uri, {module_.inputs_[link.port].get()});
+  if (!std::ranges::all_of(arguments.inputs, &internal::PortLink::is_focus) ||
+      module_.inputs_.empty() || arguments.control)
+    return;
   std::vector<internal::InputState*> all;
   for (auto& input : module_.inputs_) all.push_back(input.get());
   open_input({"-", "", {}}, std::move(all));
@@ -524,18 +459,9 @@ void Module::Loop::close() {
   if (module_.before_waiting_) module_.before_waiting_();
   log_dropped();
   trace_.flush();
-  const Outlet* failed = nullptr;
-  Status failure;  // the first; the other links are closed all the same
-  for (auto& outlet : outlets_) {
-    if (outlet->sink == nullptr) continue;
-    auto closed = outlet->sink->close();
-    outlet->traffic = outlet->sink->traffic();
-    if (closed || closed.error().code == Code::Closed || failed != nullptr) continue;
-    failed = outlet.get();
-    failure = closed;
-  }
+  const auto closed = outlets_.close();
   report_counters();
-  if (failed != nullptr) fail(failed->uri, failure.error());
+  if (!closed) fail(closed.error());
 }
 
 }  // namespace hc

@@ -14,6 +14,7 @@
 #include <hc/module/link_opener.h>
 #include <hc/module/management.h>
 #include <hc/module/module.h>
+#include <hc/module/outlets.h>
 #include <hc/module/quantiles.h>
 #include <hc/module/timers.h>
 #include <hc/module/trace.h>
@@ -84,13 +85,9 @@ struct Module::Loop {
   }
 
  private:
-  std::shared_ptr<internal::Outlet> open_output(const Uri& uri, const std::string& port,
-                                                std::uint32_t keep = 0);
-  void open_outputs(const internal::Arguments& arguments);
   void open_input(const Uri& uri, std::vector<internal::InputState*> inputs);
   void open_inputs(const internal::Arguments& arguments);
   void open_focus(const Uri& uri);
-  void open_trace(const Uri& uri);
   bool join_renewed();
   void choose_policies();
   void set_route(const std::string& link, const internal::Route& route);
@@ -151,7 +148,6 @@ struct Module::Loop {
   Status set_parameter(const std::string& name, const std::string& value);
   Status link(bool is_input, const std::string& text);
   Status unlink(bool is_input, const std::string& text);
-  Status unlink_output(internal::OutputState& output, const std::string& uri);
   Status finish(const std::string& text);
   void send(Report report, Message message);
   void report();
@@ -164,12 +160,10 @@ struct Module::Loop {
   internal::Trace trace_;
   Timers timers_;
   LinkOpener opener_;
-  bool joins_ = false;  // the graph runs already: see --join
   std::vector<internal::Inlet> inlets_;
-  std::vector<std::shared_ptr<internal::Outlet>> outlets_;   // in the order of the command line
-  std::vector<std::shared_ptr<internal::Outlet>> unlinked_;  // one may still be in send()
   std::vector<internal::Inlet> focus_;
   internal::Management& management_;
+  Outlets outlets_;
   WaitSet waits_, pauses_;  // for all there is; between two calls of the generator
   std::vector<Source*> waited_for_;
   std::vector<int> watched_;

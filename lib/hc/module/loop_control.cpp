@@ -50,7 +50,7 @@ void Module::Loop::attend() {
 
 /// From time to time, obeys commands and reports.
 void Module::Loop::serve() {
-  unlinked_.clear();
+  outlets_.free_removed();
   opener_.log_lines(now_.machine);
   trace_.flush_if_due(now_.machine);
   const bool reports = management_.is_heard() && now_.machine - reported_ >= kReportPeriod;
@@ -173,13 +173,10 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
     if (link.is_focus) {
       std::erase_if(focus_, [uri = link.uri.text()](const auto& each) { return each.uri == uri; });
       open_focus(link.uri);
-    } else if (link.is_trace) {
-      open_trace(link.uri);
     } else if (is_input) {
       open_input(link.uri, {module_.inputs_[link.port].get()});
     } else {
-      auto& output = *module_.outputs_[link.port];
-      output.links.push_back(open_output(link.uri, output.name, output.keep));
+      outlets_.open(link);
     }
   } catch (const ModuleError& error) {
     return Error{Code::System, error.what()};
@@ -190,34 +187,19 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
 Status Module::Loop::unlink(bool is_input, const std::string& text) {
   auto link = HC_TRY(internal::parse_port_link(module_, is_input, text));
   auto uri = link.uri.text();
-  if (link.is_trace) return unlink_output(trace_.output, uri);
-  if (!is_input) return unlink_output(*module_.outputs_[link.port], uri);
+  const auto outlet = is_input ? nullptr : outlets_.abandon(link);
+  if (!is_input && outlet == nullptr) return unknown_link();
   report_counters();  // the last of this link
+  if (!is_input) {
+    outlets_.remove(link, outlet);
+    return {};
+  }
   // What is taken together with this input waits for the next link, and is not ended.
   const auto erased = std::erase_if(link.is_focus ? focus_ : inlets_, [&](const Inlet& each) {
     return each.uri == uri &&
            (link.is_focus || each.inputs.front() == module_.inputs_[link.port].get());
   });
   return erased == 0 ? unknown_link() : Status();
-}
-
-Status Module::Loop::unlink_output(internal::OutputState& output, const std::string& uri) {
-  auto& links = output.links;
-  auto found =
-      std::find_if(links.begin(), links.end(), [&](const auto& each) { return each->uri == uri; });
-  if (found == links.end()) return unknown_link();
-  // Closing would wait for who is slow; nobody is to have these messages any more.
-  if (auto* sink = (*found)->sink.get()) {
-    const auto before = sink->traffic().dropped_disconnect;
-    sink->abandon();
-    if (const auto lost = sink->traffic().dropped_disconnect - before; lost > 0)
-      module_.log(output.name + ": " + std::to_string(lost) + " waiting, lost with the link");
-  }
-  report_counters();  // the last of this link
-  unlinked_.push_back(*found);
-  outlets_.erase(std::find(outlets_.begin(), outlets_.end(), *found));
-  links.erase(found);
-  return {};
 }
 
 Status Module::Loop::finish(const std::string& text) {
@@ -234,9 +216,7 @@ void Module::Loop::set_route(const std::string& link, const internal::Route& rou
   for (auto& each : inlets_)
     for (const auto* input : each.inputs)
       if (text_of(input->name, each.uri) == link) each.route = route;
-  for (const auto& output : module_.outputs_)
-    for (auto& each : output->links)
-      if (text_of(output->name, each->uri) == link) each->route = route;
+  outlets_.set_route(link, route);
 }
 
 void Module::Loop::send(Report report, Message message) {
@@ -249,9 +229,7 @@ void Module::Loop::report() {
     report_state();
     report_links();
   }
-  for (const auto& outlet : outlets_) {  // not in report_counters(), which one of them may wait in
-    outlet->peers = number_of(outlet->sink ? outlet->sink->peers() : std::nullopt);
-  }
+  outlets_.count_peers();  // not in report_counters(), which may be called in send()
   report_counters();
 }
 
@@ -272,11 +250,7 @@ void Module::Loop::report_counters() {
       counters.traffic.dropped_newer +=
           input.together->dropped_newer + input.together->matcher.dropped(input.place).total();
   }
-  for (const auto& outlet : outlets_) {
-    auto& counters = links.emplace_back();
-    counters.traffic = outlet->sink ? outlet->sink->traffic() : outlet->traffic;
-    counters.peers = outlet->peers;
-  }
+  outlets_.add_counters(links);
   send(Report::Counters, make_counters(links));
 }
 
@@ -284,13 +258,7 @@ void Module::Loop::report_links() {
   std::vector<LinkEnd> ends;
   for (const auto& inlet : inlets_)
     ends.push_back({true, inlet.inputs.size() == 1 ? inlet.inputs[0]->name : "-", inlet.uri});
-  for (const auto& outlet : outlets_) {  // standard output may be of several ports
-    const auto port = std::ranges::find_if(module_.outputs_, [&](const auto& each) {
-      return std::ranges::find(each->links, outlet) != each->links.end();
-    });
-    ends.push_back(
-        {false, port == module_.outputs_.end() ? kTracePort : (*port)->name, outlet->uri});
-  }
+  outlets_.add_ends(ends);
   send(Report::Links, make_links(ends));
 }
 
@@ -305,9 +273,7 @@ void Module::Loop::report_state(const Outlet* blocked) {
   // From its first report on a module counts as running, and a module that runs has parameters.
   if (reported_.count() == 0) report_parameters();
   const auto& focus = module_.focus_;
-  const auto found = std::find_if(outlets_.begin(), outlets_.end(),
-                                  [&](const auto& outlet) { return outlet.get() == blocked; });
-  const auto row = static_cast<std::int64_t>(inlets_.size()) + (found - outlets_.begin()) + 1;
+  const auto row = static_cast<std::int64_t>(inlets_.size() + outlets_.index_of(blocked) + 1);
   send(Report::State, make_state({focus.own, focus.decided != 0 ? focus.decided : focus.current,
                                   focus.in_focus(), blocked == nullptr ? 0 : row, focus.stops}));
 }

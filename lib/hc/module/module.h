@@ -330,6 +330,7 @@ class Module {
   friend class Timeout;
   struct Loop;  // and its parts
   class LinkOpener;
+  class Outlets;
   class Timers;
   using Period = std::function<MonotonicTime()>;
   struct Timer {

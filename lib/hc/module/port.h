@@ -25,14 +25,19 @@ namespace internal {
 
 struct TogetherState;
 
-/// One end of a link, at a port.
+/// A link by which messages of an output leave.
 struct Outlet {
-  std::string uri;
+  std::string uri, port;
   std::unique_ptr<Sink> sink;  ///< null once the reader has disconnected
-  Conversion conversion;       ///< of what goes here
+  Conversion conversion;       ///< of its messages
   Traffic traffic;             ///< as it was when the link ended
   std::int64_t peers = -1;     ///< at the last report; see LinkCounters
-  Route route;                 ///< which messages go here
+  Route route;                 ///< which messages it takes
+
+  void end() {
+    traffic = sink->traffic();
+    sink.reset();
+  }
 };
 
 struct InputState {

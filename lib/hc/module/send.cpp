@@ -9,6 +9,8 @@
 namespace hc {
 namespace {
 
+using internal::Outlet;
+
 /// A message as a link wants it; what it cannot be made of (an output may send anything) stays.
 Message converted(const Message& message, const Conversion& conversion) {
   Message made = message;
@@ -23,16 +25,16 @@ Message converted(const Message& message, const Conversion& conversion) {
   return value_or_end(compress(made, *conversion.as, conversion.quality.value_or(kJpegQuality)));
 }
 
-/// Sends to a link; false when its reader has left, which ends the link.
-bool send_to(internal::Outlet& link, const std::string& port, const Message& message) {
-  auto sent = link.conversion.is_none() ? link.sink->send(message)
-                                        : link.sink->send(converted(message, link.conversion));
+/// Sends to a link; false when its reader has left, which ends the outlet.
+bool send_to(Outlet& outlet, const std::string& port, const Message& message) {
+  auto sent = outlet.conversion.is_none()
+                  ? outlet.sink->send(message)
+                  : outlet.sink->send(converted(message, outlet.conversion));
   if (sent) return true;
   const auto& error = sent.error();
   if (error.code != Code::Closed)
-    internal::fail(error.code == Code::NotFound ? link.uri : port, error);
-  link.traffic = link.sink->traffic();
-  link.sink.reset();
+    internal::fail(error.code == Code::NotFound ? outlet.uri : port, error);
+  outlet.end();
   return false;
 }
 
@@ -42,9 +44,9 @@ template <typename SendOne>
 bool send_to_each(internal::OutputState& output, const SendOne& send_one) {
   bool any_ended = false;
   for (std::size_t i = 0; i < output.links.size();) {
-    auto* link = output.links[i].get();
-    const bool ended = link->sink != nullptr && !send_one(*link);
-    if (i >= output.links.size() || output.links[i].get() != link) continue;  // it was unlinked
+    auto* outlet = output.links[i].get();
+    const bool ended = outlet->sink != nullptr && !send_one(*outlet);
+    if (i >= output.links.size() || output.links[i].get() != outlet) continue;  // it was removed
     any_ended = any_ended || ended;
     ++i;
   }
@@ -62,11 +64,10 @@ void internal::Trace::flush() {
   message.header.seq = output.seq++;
   message.header.time = events_.front().moment;
   events_.clear();
-  send_to_each(output, [&](Outlet& link) {
-    if (link.sink->send(message)) return true;
-    link.traffic = link.sink->traffic();
-    link.sink.reset();
-    return false;
+  send_to_each(output, [&](Outlet& outlet) {
+    const bool is_sent = outlet.sink->send(message).has_value();
+    if (!is_sent) outlet.end();
+    return is_sent;
   });
 }
 
@@ -86,8 +87,8 @@ void internal::send(OutputState& output, Message&& message) {
   else
     message = value_or_end(compress(message, wanted));
   if (module.loop_ != nullptr) module.loop_->note(TraceEvent::What::Sent, output.name, header);
-  const bool any_ended = send_to_each(output, [&](Outlet& link) {
-    return !link.route.takes(header.dst) || send_to(link, output.name, message);
+  const bool any_ended = send_to_each(output, [&](Outlet& outlet) {
+    return !outlet.route.takes(header.dst) || send_to(outlet, output.name, message);
   });
   if (any_ended && !module.is_read()) throw Stopped();
 }
@@ -98,10 +99,10 @@ std::size_t internal::forward(OutputState& output, const Message& message) {
   std::size_t taken = 0;
   if (module.loop_ != nullptr)
     module.loop_->note(TraceEvent::What::Sent, output.name, message.header);
-  const bool any_ended = send_to_each(output, [&](Outlet& link) {
-    if (!link.route.takes(message.header.dst)) return true;
-    if (from != nullptr && !from->empty() && *from == link.route.peer) return true;
-    if (!send_to(link, output.name, message)) return false;
+  const bool any_ended = send_to_each(output, [&](Outlet& outlet) {
+    if (!outlet.route.takes(message.header.dst)) return true;
+    if (from != nullptr && !from->empty() && *from == outlet.route.peer) return true;
+    if (!send_to(outlet, output.name, message)) return false;
     ++taken;
     return true;
   });
