@@ -10,8 +10,8 @@
 
 namespace hc {
 
-/// Opens links. In a graph they are called by their ports, and their log lines are delayed, since at
-/// the end of a graph, when all its modules stop, such lines mean nothing.
+/// Opens links. In a graph they are called by their ports, and their log lines are delayed, since
+/// at the end of a graph, when all its modules stop, such lines mean nothing.
 class Module::LinkOpener {
  public:
   /// @param options  of all links.

@@ -19,32 +19,17 @@ using internal::Outlet;
 /// How often a module that is busy looks for commands; one that waits is woken by them.
 constexpr std::chrono::milliseconds kHousekeepingPeriod{10};
 
-/// "PORT=URI" of a link at a port.
-std::string text_of(const std::string& port, const std::string& uri) {
-  return port + "=" + uri;
-}
-
 Status unknown_link() {
   return Error{Code::NotFound, "there is no such link"};
-}
-
-/// As a report has it: -1 of what is unknown.
-std::int64_t number_of(std::optional<std::size_t> peers) {
-  return peers ? static_cast<std::int64_t>(*peers) : -1;
-}
-
-/// What has come since the last report; the next begins with none.
-Durations take_durations(internal::Quantiles& quantiles) {
-  if (quantiles.empty()) return {-1, -1, -1};
-  const Durations taken = {quantiles.quantile(0.5), quantiles.quantile(0.99), quantiles.max()};
-  quantiles.clear();
-  return taken;
 }
 
 }  // namespace
 
 void Module::Loop::attend() {
-  receive_focus();
+  if (module_.message_time_)
+    delivery_.expire_focus();
+  else
+    inlets_.receive_focus();
   serve();
 }
 
@@ -57,43 +42,14 @@ void Module::Loop::serve() {
   if (now_.machine - attended_ < kHousekeepingPeriod && deferred_.empty() && !reports) return;
   attended_ = now_.machine;
   if (module_.before_waiting_) module_.before_waiting_();
-  look_at_silent();
+  // Links look for writers that have died when they are waited for, which a busy module never does.
+  inlets_.for_each([](Inlet& inlet) {
+    if (inlet.is_open()) inlet.source->prepare_wait();
+  });
   for (const auto& command : std::exchange(deferred_, {})) obey(command);
   for (const auto& command : management_.take_commands()) obey(command);
   report();
   now_.read();  // commands may have taken their time
-}
-
-/// Has links notice that their writers have died: they look at that when they are waited for, and a
-/// module that always has something to do waits for none.
-void Module::Loop::look_at_silent() {
-  for (auto* links : {&inlets_, &focus_})
-    for (const auto& inlet : *links)
-      if (inlet.source != nullptr && !inlet.head) inlet.source->prepare_wait();
-}
-
-void Module::Loop::receive_focus() {
-  if (!focus_.empty() && !module_.message_time_) {  // else in its time
-    Message message;
-    for (auto& inlet : focus_)
-      while (inlet.source != nullptr && take(inlet, message) == Got::Message)
-        set_focus(inlet, message);
-  }
-  expire_focus();
-}
-
-void Module::Loop::set_focus(Inlet& inlet, const Message& message) {
-  auto& focus = module_.focus_;
-  const auto modes = message.view<std::int32_t>();
-  if (!modes) return drop(inlet, internal::kFocusPort, modes.error().detail);
-  if (modes->empty()) return drop(inlet, internal::kFocusPort, "it has no mode");
-  trace_.note(TraceEvent::What::Took, internal::kFocusPort, message.header);
-  focus.received = now_.time();
-  if (std::exchange(focus.current, modes->at(0, 0)) != focus.current) report_state();
-}
-
-void Module::Loop::expire_focus() {
-  if (module_.focus_.expire(now_.time())) report_state();
 }
 
 void Module::Loop::obey(const std::string& command) {
@@ -170,14 +126,7 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
   auto link = HC_TRY(internal::parse_port_link(module_, is_input, text));
   // What cannot be opened is an error, and changes nothing.
   try {
-    if (link.is_focus) {
-      std::erase_if(focus_, [uri = link.uri.text()](const auto& each) { return each.uri == uri; });
-      open_focus(link.uri);
-    } else if (is_input) {
-      open_input(link.uri, {module_.inputs_[link.port].get()});
-    } else {
-      outlets_.open(link);
-    }
+    is_input ? inlets_.open(link) : outlets_.open(link);
   } catch (const ModuleError& error) {
     return Error{Code::System, error.what()};
   }
@@ -186,7 +135,6 @@ Status Module::Loop::link(bool is_input, const std::string& text) {
 
 Status Module::Loop::unlink(bool is_input, const std::string& text) {
   auto link = HC_TRY(internal::parse_port_link(module_, is_input, text));
-  auto uri = link.uri.text();
   const auto outlet = is_input ? nullptr : outlets_.abandon(link);
   if (!is_input && outlet == nullptr) return unknown_link();
   report_counters();  // the last of this link
@@ -194,18 +142,12 @@ Status Module::Loop::unlink(bool is_input, const std::string& text) {
     outlets_.remove(link, outlet);
     return {};
   }
-  // What is taken together with this input waits for the next link, and is not ended.
-  const auto erased = std::erase_if(link.is_focus ? focus_ : inlets_, [&](const Inlet& each) {
-    return each.uri == uri &&
-           (link.is_focus || each.inputs.front() == module_.inputs_[link.port].get());
-  });
-  return erased == 0 ? unknown_link() : Status();
+  return inlets_.remove(link) ? Status() : unknown_link();
 }
 
 Status Module::Loop::finish(const std::string& text) {
   auto link = HC_TRY(internal::parse_port_link(module_, true, text));
-  for (auto& each : link.is_focus ? focus_ : inlets_)
-    if (each.uri == link.uri.text() && each.source != nullptr) each.source->finish();
+  inlets_.finish(link);
   // That its writer has ended is no news then.
   opener_.drop_lines(link.uri.scheme + ":" + link.uri.rest + "?");
   return {};
@@ -213,9 +155,7 @@ Status Module::Loop::finish(const std::string& text) {
 
 /// Gives a link that there is, "PORT=URI", its route.
 void Module::Loop::set_route(const std::string& link, const internal::Route& route) {
-  for (auto& each : inlets_)
-    for (const auto* input : each.inputs)
-      if (text_of(input->name, each.uri) == link) each.route = route;
+  inlets_.set_route(link, route);
   outlets_.set_route(link, route);
 }
 
@@ -238,26 +178,14 @@ void Module::Loop::report_counters() {
   reported_ = now_.machine;
   now_.read_wall();
   std::vector<LinkCounters> links;
-  for (auto& inlet : inlets_) {
-    auto& counters = links.emplace_back();
-    counters.traffic = inlet.traffic();
-    counters.ignored = inlet.ignored;
-    counters.peers = number_of(inlet.source ? inlet.source->peers() : std::nullopt);
-    counters.age = take_durations(inlet.ages);
-    counters.gap = take_durations(inlet.gaps);
-    const auto& input = *inlet.inputs.front();
-    if (input.together != nullptr && input.together->is_latest)
-      counters.traffic.dropped_newer +=
-          input.together->dropped_newer + input.together->matcher.dropped(input.place).total();
-  }
+  inlets_.add_counters(links);
   outlets_.add_counters(links);
   send(Report::Counters, make_counters(links));
 }
 
 void Module::Loop::report_links() {
   std::vector<LinkEnd> ends;
-  for (const auto& inlet : inlets_)
-    ends.push_back({true, inlet.inputs.size() == 1 ? inlet.inputs[0]->name : "-", inlet.uri});
+  inlets_.add_ends(ends);
   outlets_.add_ends(ends);
   send(Report::Links, make_links(ends));
 }

@@ -25,13 +25,12 @@ constexpr MonotonicTime kLongestGap = std::chrono::hours(1);
 bool Module::Loop::has_heads() {
   bool all = true;
   Message message;
-  for (auto* links : {&focus_, &inlets_})
-    for (auto& inlet : *links) {
-      if (inlet.source == nullptr || inlet.head) continue;
-      const auto got = take(inlet, message);
-      if (got == Got::Message) inlet.head = message.keep();
-      if (got == Got::Nothing) all = false;
-    }
+  inlets_.for_each([&](internal::Inlet& inlet) {
+    if (!inlet.is_open()) return;
+    const auto got = inlets_.take(inlet, message);
+    if (got == Got::Message) inlet.head = message.keep();
+    if (got == Got::Nothing) all = false;
+  });
   return all;
 }
 
@@ -39,10 +38,9 @@ bool Module::Loop::has_heads() {
 /// none has any.
 internal::Inlet* Module::Loop::earliest() {
   internal::Inlet* first = nullptr;
-  for (auto* links : {&focus_, &inlets_})
-    for (auto& inlet : *links)
-      if (inlet.head && (first == nullptr || inlet.head->header.time < first->head->header.time))
-        first = &inlet;
+  inlets_.for_each([&](internal::Inlet& inlet) {
+    if (inlet.head && (first == nullptr || inlet.time() < first->time())) first = &inlet;
+  });
   return first;
 }
 
@@ -56,10 +54,10 @@ void Module::Loop::begin_clock() {
     attend();
   }
   std::optional<std::int64_t> first;
-  for (const auto* links : {&focus_, &inlets_})
-    for (const auto& inlet : *links)
-      if (inlet.head && inlet.head->header.time != 0)
-        first = std::min(first.value_or(inlet.head->header.time), inlet.head->header.time);
+  inlets_.for_each([&](const internal::Inlet& inlet) {
+    const auto time = inlet.head ? inlet.head->header.time : 0;
+    if (time != 0) first = std::min(first.value_or(time), time);
+  });
   if (first) now_.pass_to(MonotonicTime(*first));
 }
 
@@ -68,7 +66,7 @@ void Module::Loop::begin_clock() {
 bool Module::Loop::take_earliest() {
   generates_next_ = false;
   if (!has_heads()) return false;
-  if (all_ended()) {
+  if (inlets_.all_ended()) {
     generates_next_ = !std::exchange(has_ended_, true);
     return false;
   }
@@ -89,11 +87,11 @@ bool Module::Loop::take_earliest() {
     return false;
   }
   now_.pass_to(due);
-  expire_focus();
+  delivery_.expire_focus();
   has_generated_ = false;
   Message message = *std::exchange(inlet->head, std::nullopt);
-  handle(*inlet, message);
-  handle_newest();
+  delivery_.handle(*inlet, message);
+  inlets_.sets().handle_newest();
   return true;
 }
 
@@ -131,19 +129,20 @@ bool Module::Loop::repeat_next() {
   moments_->pop_front();
   if (event.what != TraceEvent::What::Began) return true;
   now_.pass_to(std::max(now_.time(), MonotonicTime(event.moment)));
-  expire_focus();
+  delivery_.expire_focus();
   if (event.port.empty()) {
     repeat_without_message(event.number);
     return true;
   }
-  for (auto* links : {&focus_, &inlets_})
-    for (auto& inlet : *links) {
-      const auto& port = inlet.inputs.empty() ? internal::kFocusPort : inlet.inputs.front()->name;
-      if (!inlet.head || inlet.number != event.number || port != event.port) continue;
-      Message message = *std::exchange(inlet.head, std::nullopt);
-      handle(inlet, message);
-      return true;
-    }
+  internal::Inlet* found = nullptr;
+  inlets_.for_each([&](internal::Inlet& inlet) {
+    if (found == nullptr && inlet.head && inlet.number == event.number &&
+        inlet.port() == event.port)
+      found = &inlet;
+  });
+  if (found == nullptr) return true;
+  Message message = *std::exchange(found->head, std::nullopt);
+  delivery_.handle(*found, message);
   return true;
 }
 

@@ -329,8 +329,11 @@ class Module {
   friend std::size_t internal::forward(internal::OutputState&, const Message&);
   friend class Timeout;
   struct Loop;  // and its parts
+  class Delivery;
+  class Inlets;
   class LinkOpener;
   class Outlets;
+  class Sets;
   class Timers;
   using Period = std::function<MonotonicTime()>;
   struct Timer {
