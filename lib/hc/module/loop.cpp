@@ -13,10 +13,10 @@ namespace {
 
 using internal::fail;
 using internal::Inlet;
-using internal::Outlet;
 using internal::Stopped;
 
-constexpr const char* kReportsKept = "64";  // for one who does not listen for a while
+/// How often a busy module looks for commands; one that waits is woken by them.
+constexpr std::chrono::milliseconds kHousekeepingPeriod{10};
 }  // namespace
 
 Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int stop)
@@ -25,14 +25,15 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
       trace_(module.clock_),
       timers_(module, now_, trace_),
       opener_(module, {.limits = arguments.limits, .log = {}, .stop = stop}),
-      management_(*(module.management_ = std::make_shared<internal::Management>())),
-      delivery_(module, now_, trace_, [this] { report_state(); }),
+      delivery_(module, now_, trace_, [this] { remote_.report_state(); }),
       inlets_(module, now_, opener_, delivery_),
       outlets_(module, trace_, opener_,
-               {[this](const Outlet* blocked) { report_state(blocked); },
-                [this] { return obey_while_sending(); }}),
+               {[this](const internal::Outlet* blocked) { remote_.report_state(blocked); },
+                [this] { return remote_.obey_while_sending(); }}),
+      remote_(module, now_, opener_, inlets_, outlets_),
       waits_(stop),
       pauses_(stop) {
+  module_.management_ = std::make_shared<internal::Management>();
   module_.focus_ = arguments.focus;
   // What the process before has reported counts until this one knows better.
   for (const auto& parameter : module_.parameters_)
@@ -40,19 +41,13 @@ Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int sto
       module_.focus_.stops = value_or_end(parse_stops(text(parameter->value)));
   if (arguments.wall_offset)
     internal::distant_wall.set(*arguments.wall_offset, module_.clock_.monotonic());
-  std::unique_ptr<Sink> reports;
-  if (arguments.manage) {
-    Uri uri = *arguments.manage;
-    if (uri.option("keep", "").empty()) uri.options.emplace_back("keep", kReportsKept);
-    auto sink = open_sink(uri);  // it outlives this loop
-    if (!sink) fail(uri.text(), sink.error());
-    reports = std::move(*sink);
-  }
-  management_.open(std::move(reports),
-                   arguments.control ? opener_.open(*arguments.control, "commands") : nullptr);
+  remote_.open(arguments);
   outlets_.open(arguments);
   inlets_.open(arguments);
-  for (const auto& [link, route] : arguments.routes) set_route(link, route);
+  for (const auto& [link, route] : arguments.routes) {
+    inlets_.set_route(link, route);
+    outlets_.set_route(link, route);
+  }
   if (arguments.clock) read_moments(*arguments.clock);
   module_.loop_ = this;
 }
@@ -85,7 +80,7 @@ void Module::Loop::run() {
       inlets_.receive_focus();
     const bool any = module_.message_time_ ? take_earliest() : inlets_.take_each();
     inlets_.end_unneeded();
-    if (inlets_.join_renewed()) report_links();
+    if (inlets_.join_renewed()) remote_.report_links();
     serve();
     timers_.fire_due();
     read_watched();
@@ -144,10 +139,9 @@ bool Module::Loop::wait(bool for_messages, MonotonicTime until) {
   });
   if (for_messages)
     for (const auto& watch : module_.watches_) watched_.push_back(watch.descriptor());
-  if (management_.commands() != nullptr) waited_for_.push_back(management_.commands());
+  if (remote_.commands() != nullptr) waited_for_.push_back(remote_.commands());
   if (module_.message_time_) until = MonotonicTime::max();  // it is messages that pass the time
-  if (management_.is_heard()) until = std::min(until, reported_ + kReportPeriod);
-  until = std::min(until, opener_.due());
+  until = std::min({until, remote_.due(), opener_.due()});
   auto timeout = std::chrono::nanoseconds(-1);
   if (until != MonotonicTime::max())
     timeout = std::max(until - now_.machine, std::chrono::nanoseconds(0));
@@ -155,8 +149,7 @@ bool Module::Loop::wait(bool for_messages, MonotonicTime until) {
   if (module_.before_waiting_) module_.before_waiting_();
   auto ready = waits.wait(waited_for_, watched_, timeout);
   if (!ready) fail("wait", ready.error());
-  if (management_.commands() != nullptr && waits.was_woken_by(*management_.commands()))
-    attended_ = {};
+  if (remote_.commands() != nullptr && waits.was_woken_by(*remote_.commands())) attended_ = {};
   return waits.was_short();
 }
 
@@ -174,12 +167,36 @@ void Module::Loop::pause(const std::function<MonotonicTime()>& due) {
   }
 }
 
+void Module::Loop::attend() {
+  if (module_.message_time_)
+    delivery_.expire_focus();
+  else
+    inlets_.receive_focus();
+  serve();
+}
+
+/// From time to time, obeys commands and reports.
+void Module::Loop::serve() {
+  outlets_.free_removed();
+  opener_.log_lines(now_.machine);
+  trace_.flush_if_due(now_.machine);
+  if (now_.machine - attended_ < kHousekeepingPeriod && now_.machine < remote_.due()) return;
+  attended_ = now_.machine;
+  if (module_.before_waiting_) module_.before_waiting_();
+  // Links look for writers that have died when they are waited for, which a busy module never does.
+  inlets_.for_each([](Inlet& inlet) {
+    if (inlet.is_open()) inlet.source->prepare_wait();
+  });
+  remote_.serve();
+  now_.read();  // commands may have taken their time
+}
+
 void Module::Loop::close() {
   if (module_.before_waiting_) module_.before_waiting_();
   inlets_.sets().log_dropped();
   trace_.flush();
   const auto closed = outlets_.close();
-  report_counters();
+  remote_.report_counters();
   if (!closed) fail(closed.error());
 }
 

@@ -13,17 +13,15 @@
 #include <hc/module/ending.h>
 #include <hc/module/inlets.h>
 #include <hc/module/link_opener.h>
-#include <hc/module/management.h>
 #include <hc/module/module.h>
 #include <hc/module/outlets.h>
+#include <hc/module/remote.h>
 #include <hc/module/timers.h>
 #include <hc/module/trace.h>
 
 namespace hc {
 
 struct Module::Loop {
-  static constexpr std::chrono::milliseconds kReportPeriod{500};
-
   /// Opens the links: outputs first, since those that listen must be there before anybody waits.
   Loop(Module& module, const internal::Arguments& arguments, int stop);
   ~Loop();
@@ -41,16 +39,13 @@ struct Module::Loop {
   /// Whether a file or standard input had messages that were dropped since they were bad, so that
   /// the module has not done its work.
   [[nodiscard]] bool has_failed_input() const { return delivery_.has_failed_input(); }
-  /// @param blocked  the link whose reader the module waits for; null: none.
-  void report_state(const internal::Outlet* blocked = nullptr);
+  void report_state() { remote_.report_state(); }
   /// Notes a moment in the way of a message, while the module is traced.
   void note(TraceEvent::What what, const std::string& port, const Header& header) {
     trace_.note(what, port, header);
   }
 
  private:
-  void set_route(const std::string& link, const internal::Route& route);
-
   void read_watched();
   bool wait(bool for_messages, MonotonicTime until);
 
@@ -65,37 +60,23 @@ struct Module::Loop {
   bool repeat_next();
   void repeat_without_message(std::int32_t number);
 
-  // loop_control.cpp
   void attend();
   void serve();
-  void obey(const std::string& command);
-  bool obey_while_sending();
-  Status carry_out(const std::string& row);
-  Status set_parameter(const std::string& name, const std::string& value);
-  Status link(bool is_input, const std::string& text);
-  Status unlink(bool is_input, const std::string& text);
-  Status finish(const std::string& text);
-  void send(Report report, Message message);
-  void report();
-  void report_counters();
-  void report_links();
-  void report_parameters();
 
   Module& module_;
   internal::Now now_;
   internal::Trace trace_;
   Timers timers_;
   LinkOpener opener_;
-  internal::Management& management_;
   Delivery delivery_;
   Inlets inlets_;
   Outlets outlets_;
+  Remote remote_;
   WaitSet waits_, pauses_;  // for all there is; between two calls of the generator
   std::vector<Source*> waited_for_;
   std::vector<int> watched_;
-  std::vector<std::string> deferred_;  // commands for when nothing is being handled or sent
   std::optional<std::deque<TraceEvent>> moments_;  // with --clock URI: to be repeated
-  MonotonicTime reported_{0}, attended_{0};
+  MonotonicTime attended_{0};
   // With --clock messages: whether the generator is called next; has been since the last message,
   // and keeps no rate; and whether all messages have been handled.
   bool generates_next_ = false, has_generated_ = false, has_ended_ = false;

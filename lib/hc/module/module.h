@@ -333,6 +333,7 @@ class Module {
   class Inlets;
   class LinkOpener;
   class Outlets;
+  class Remote;
   class Sets;
   class Timers;
   using Period = std::function<MonotonicTime()>;
