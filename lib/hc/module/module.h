@@ -334,6 +334,7 @@ class Module {
   class LinkOpener;
   class Outlets;
   class Remote;
+  class Schedule;
   class Sets;
   class Timers;
   using Period = std::function<MonotonicTime()>;
