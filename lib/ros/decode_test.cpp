@@ -63,7 +63,7 @@ TEST(Decode, depth_is_in_metres) {
 
 TEST(Decode, a_compressed_image_stays_so) {
   const std::vector<std::uint8_t> pixels(16 * 8 * 3, 200);
-  const auto jpeg = must(compress(rgb_image<std::uint8_t>(16, 8, pixels), Encoding::Jpeg));
+  const auto jpeg = must(compress(rgb_image().message(8, 16, pixels), Encoding::Jpeg));
   const auto image =
       decode(Type::CompressedImage, cdr(CompressedImage{kStamp, "jpeg", {jpeg.elements}}), kRgb);
   ASSERT_TRUE(image) << image.error().detail;

@@ -143,12 +143,7 @@ class Parser {
 
   Status read_link(bool is_input, const std::string& value) {
     auto link = HC_TRY(parse_port_link(module_, is_input, value));
-    if (link.is_focus)
-      arguments_.focus_links.push_back(link.uri);
-    else if (link.is_trace)
-      arguments_.trace_links.push_back(link.uri);
-    else
-      (is_input ? arguments_.inputs : arguments_.outputs).emplace_back(link.port, link.uri);
+    (is_input ? arguments_.inputs : arguments_.outputs).push_back(std::move(link));
     return {};
   }
 

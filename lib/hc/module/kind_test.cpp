@@ -104,7 +104,7 @@ TEST(Finite, NeitherNaNNorInfinity) {
 }
 
 TEST(Fits, NamesTheRuleOfTheFieldThatDoesNot) {
-  auto type = transformation<double>(4, 3).in(7004).type;
+  auto type = transformation(3, 4).in(7004).type;
   Header header;
   header.info = type.info;
   header.width = 4;

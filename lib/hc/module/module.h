@@ -287,7 +287,15 @@ class Module {
   friend void internal::send(internal::OutputState&, Message&&);
   friend std::size_t internal::forward(internal::OutputState&, const Message&);
   friend class Timeout;
-  struct Loop;
+  struct Loop;  // and its parts
+  class Delivery;
+  class Inlets;
+  class LinkOpener;
+  class Outlets;
+  class Remote;
+  class Schedule;
+  class Sets;
+  class Timers;
   using Period = std::function<MonotonicTime()>;
   struct Timer {
     Period period;

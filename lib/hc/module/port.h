@@ -48,14 +48,19 @@ namespace internal {
 
 struct TogetherState;
 
-/// One end of a link, at a port.
-struct LinkedSink {
-  std::string uri;
+/// A link by which messages of an output leave.
+struct Outlet {
+  std::string uri, port;
   std::unique_ptr<Sink> sink;  ///< null once the reader has disconnected
-  Conversion conversion;       ///< of what goes here
+  Conversion conversion;       ///< of its messages
   Traffic traffic;             ///< as it was when the link ended
   std::int64_t peers = -1;     ///< at the last report; see LinkCounters
-  Route route;                 ///< which messages go here
+  Route route;                 ///< which messages it takes
+
+  void end() {
+    traffic = sink->traffic();
+    sink.reset();
+  }
 };
 
 struct InputState {
@@ -117,7 +122,7 @@ struct OutputState {
   std::optional<Encoding> encoding;  ///< asked for on the command line
   OutputOptions options;
   std::int64_t seq = 0;
-  std::vector<std::shared_ptr<LinkedSink>> links;
+  std::vector<std::shared_ptr<Outlet>> links;
   Module* module = nullptr;
 
   [[nodiscard]] const PortType& type() const { return types.at(0); }
