@@ -50,7 +50,7 @@ TEST_F(Models, a_texture_lies_beside_the_file) {
   write("square.mtl", "newmtl paint\nmap_Kd none.png\n");
   parts = read_model(folder / "square.obj");
   ASSERT_FALSE(parts);
-  EXPECT_NE(parts.error().detail.find("none.png: is no image"), std::string::npos);
+  EXPECT_NE(parts.error().detail.find("none.png: not an image"), std::string::npos);
 }
 
 TEST_F(Models, what_is_no_model_is_refused) {
