@@ -48,14 +48,14 @@ TEST(Rigid, RefusesWhatIsNot) {
       }
   Eigen::Matrix4d projective = one, scaled = one, sheared = one, mirrored = one, huge = one;
   projective(3, 3) = 2;
-  EXPECT_EQ(refusal(projective), "frames: the transformation has no last row 0 0 0 1");
+  EXPECT_EQ(refusal(projective), "frames: the transformation has another last row than 0 0 0 1");
   scaled.topLeftCorner<3, 3>() *= 1.001;
   sheared(0, 1) = 0.01;
   huge(2, 2) = 1e200;
   for (const auto& matrix : {scaled, sheared, huge, Eigen::Matrix4d(one.col(3).asDiagonal())})
     EXPECT_NE(refusal(matrix).find("not rigid: its axes"), std::string::npos) << matrix;
   mirrored(1, 1) = -1;
-  EXPECT_EQ(refusal(mirrored), "frames: the transformation is not rigid: it mirrors");
+  EXPECT_EQ(refusal(mirrored), "frames: the transformation is not rigid: it is a reflection");
 }
 
 TEST(Rigid, TakesAQuaternionOfAnyLengthAndEitherSign) {
