@@ -90,9 +90,9 @@ TEST_P(EachMatcher, SaysWhatItDoesNotTake) {
   EXPECT_EQ(error(image, cv::Mat(100, 201, CV_8U)),
             "the left image is 200 x 100, the right one 201 x 100");
   EXPECT_EQ(error(cv::Mat(100, 200, CV_16U), image),
-            "the left image is no u8 image of one or three channels");
+            "the left image is not u8 with one or three channels");
   EXPECT_EQ(error(image, cv::Mat(100, 200, CV_8UC4)),
-            "the right image is no u8 image of one or three channels");
+            "the right image is not u8 with one or three channels");
   EXPECT_EQ(error(image, image), "") << "without any texture";
 }
 
