@@ -93,7 +93,7 @@ TEST(GraphFrames, ErrorsNameTheFrameAndWhatWouldBeRight) {
   EXPECT_EQ(refusal(many), "TooLarge: frames: 1001 frames are more than 1000");
 }
 
-/// As lib/graph writes it (G31), which has no Eigen.
+/// The format of lib/graph (G31), which does not use Eigen.
 std::string text_of(const Eigen::Isometry3d& joint) {
   std::ostringstream text;
   text.precision(17);

@@ -20,7 +20,7 @@ Message message_of(std::string_view bytes) {
   return message.keep();
 }
 
-// A head turned to the left by a right angle, 0.3 m above its robot, as one would type it.
+// A head turned 90° to the left, 0.3 m above its robot, as typed by hand.
 constexpr std::string_view kHeadPose =
     "1 7 0 0 8 1763683200123456789 70190 1 2003 4 4\n"
     "0 -1 0 0\n1 0 0 0\n0 0 1 0.3\n0 0 0 1\n";

@@ -52,7 +52,7 @@ TEST(Tree, FollowsTheHeadAtTheTimeOfAnImage) {
 }
 
 TEST(Tree, AsksNothingThatIsNotOnTheWay) {
-  Tree tree = head_tree();  // whose head was never fed
+  Tree tree = head_tree();  // without a pose of the head
   auto T_right_left = tree.lookup("right_eye", "left_eye", 0);
   ASSERT_TRUE(T_right_left);
   EXPECT_TRUE(T_right_left->isApprox(shift(0, 0.2)));
@@ -128,7 +128,7 @@ TEST(Tree, KnownIsTheLatestSpanWithoutAGapOfAnyJoint) {
   ASSERT_TRUE(tree.join("head", "supervisor", {.gap = std::chrono::nanoseconds(10)}));
   for (int time : {12, 40, 60}) ASSERT_TRUE(tree.feed("robot", "head", time, shift(0)));
   for (int time : {10, 20, 25, 70}) ASSERT_TRUE(tree.feed("head", "supervisor", time, shift(0)));
-  // Of the last 60 nothing is known of the supervisor, back to 25.
+  // No pose of the supervisor is known for the last 60, back to 25.
   EXPECT_EQ(*tree.known("world", "supervisor"), (TimeSpan{12, 25}));
   Tree apart = Tree::standard();
   ASSERT_TRUE(apart.join("robot", "head", {.gap = std::chrono::nanoseconds(10)}));
@@ -229,8 +229,8 @@ TEST(Tree, RefusesWhatCannotBeFed) {
   EXPECT_TRUE(tree.join("world", "supervisor", {.poses = 1}));
 }
 
-/// What a tree ought to say, by matrices of 4 × 4, general inverses and a search through a graph
-/// without direction.
+/// The expected result of a tree, from 4 × 4 matrices, general inverses and a search through an
+/// undirected graph.
 struct Reference {
   struct Edge {
     int parent, child;
@@ -253,7 +253,7 @@ struct Reference {
   };
   std::vector<Edge> edges;
 
-  /// T_target_source, searched from `at`; `from` is where the search came from.
+  /// T_target_source, searched from `at`, which was reached from `from`.
   [[nodiscard]] std::optional<Eigen::Matrix4d> find(int target, int at, int from,
                                                     std::int64_t time) const {
     if (target == at) return Eigen::Matrix4d::Identity();
@@ -310,7 +310,7 @@ TEST(Tree, IsWhatBruteForceFinds) {
       (got ? found : missed)++;
       if (!got) continue;
       EXPECT_LT((got->matrix() - *expected).norm(), 1e-8);
-      // The way back is the inverse, and a stop on the way changes nothing.
+      // The reverse is the inverse, and an intermediate frame changes nothing.
       EXPECT_LT(((*tree.lookup(source, target, time) * *got).matrix() - Eigen::Matrix4d::Identity())
                     .norm(),
                 1e-12);

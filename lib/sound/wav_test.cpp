@@ -76,10 +76,10 @@ TEST_F(Wav, what_was_written_is_read) {
   auto writer = hc::must(WavWriter::create(path, {22050, 2}));
   EXPECT_TRUE(samples().empty());
   ASSERT_TRUE(writer.write(std::span(some).first(600)));
-  // Whole at this moment too, with the writer still at it.
+  // Also complete while the writer is still open.
   EXPECT_EQ(samples(), std::vector<std::int16_t>(some.begin(), some.begin() + 600));
   ASSERT_TRUE(writer.write(std::span(some).subspan(600)));
-  EXPECT_EQ(samples(7), some);  // three frames at once, and half a frame of room
+  EXPECT_EQ(samples(7), some);  // room for three and a half frames
   EXPECT_EQ(WavReader::open(path)->format(), (Format{22050, 2}));
   EXPECT_EQ(WavReader::open(path)->frames(), 1000);
 }

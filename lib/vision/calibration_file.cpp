@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Calibration files. They are untrusted: everything is checked.
+// SPDX-License-Identifier: Apache-2.0
+// Calibration files. They are untrusted: everything is checked.
 #include <vision/calibration.h>
 
 #include <algorithm>

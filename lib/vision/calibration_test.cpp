@@ -31,7 +31,7 @@ struct Pairs {
   cv::Size size;
 };
 
-/// Corners as OpenCV's sample stereo_calib finds them.
+/// Corners found as in OpenCV's sample stereo_calib.
 BoardView view_of_sample(const cv::Mat& left, const cv::Mat& right) {
   BoardView view;
   for (auto [image, corners] : {std::pair{&left, &view.left}, {&right, &view.right}}) {
@@ -65,7 +65,7 @@ Pairs photographs(bool as_sample) {
   return pairs;
 }
 
-/// Views of a board by two cameras that are known, with noise [px].
+/// Views of a board by two known cameras, with noise [px].
 Pairs made_up(const StereoCalibration& truth, int count, double noise) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> spread(-1, 1);
@@ -219,7 +219,7 @@ TEST(StereoCalibration, TheRightCameraTurnsAboutItsOwnMiddle) {
   turn(c, R);
   EXPECT_NEAR((c.R_left_right() - R).norm(), 0, 1e-12);
   EXPECT_NEAR(cv::norm(-(c.R.t() * c.T) - middle), 0, 1e-12);
-  // Forward of the right camera, as the left one has it.
+  // Forward of the right camera in the left camera's frame.
   const cv::Vec3d forward = c.R.t() * cv::Vec3d(0, 0, 1);
   EXPECT_NEAR((Eigen::Vector3d(forward[0], forward[1], forward[2]) - R.col(2)).norm(), 0, 1e-12);
   EXPECT_NE(c.R1, as_it_is.R1);
@@ -261,7 +261,7 @@ TEST(CalibrationFile, ComesBackAsItWas) {
   EXPECT_EQ(write_calibration("/no/such/folder/c.yml", truth).error().code, Code::NotFound);
 }
 
-// As OpenCV's sample writes them: two files, without a size and an rms, T in squares.
+// In the format of OpenCV's sample: two files, without size and rms, T in squares.
 TEST(CalibrationFile, OpenCvsOwnFilesAreRead) {
   const auto truth = squinting();
   cv::FileStorage intrinsics("i.yml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
