@@ -61,7 +61,7 @@ TEST(Driver, what_comes_is_of_now_and_addressed_to_nobody) {
       EXPECT_EQ(orders.front().message.header.time, kWall);
       EXPECT_EQ(orders.front().message.header.dst, 0);
     }
-    // A target keeps the time of its image, which is to be a recent one.
+    // A target keeps the time of its image, which must be recent.
     auto target = from(Control::Target, hc::position().message({1., 1., 0.}), 7, 5);
     target.header.time = time;
     EXPECT_EQ(hc::refused(driver.take(target, kModes, kWall, {})).code, hc::Code::Invalid);
@@ -79,7 +79,7 @@ TEST(Driver, anything_else_is_refused) {
       stick(1.1, 0),
       stick(kNan, 0),
       from(Control::Stick, hc::table().message({0.0})),
-      from(Control::Stick, hc::table().message({0.f, 0.f})),
+      from(Control::Stick, hc::table<float>().message({0, 0})),
       from(Control::Rotation, hc::rotation().message({0., 0., 0.}), 3),
       from(Control::Target, hc::position().message({0., 0., 0.}), hc::Coord::kWorld),
       from(Control::Target, hc::position().message({kNan, 0., 0.}), hc::Coord::kLeftImage),
@@ -87,7 +87,7 @@ TEST(Driver, anything_else_is_refused) {
       from(Control::Text, hc::string().message(std::string(4097, 'a'))),
       bid(2, 1),
       bid(0.5, 0),
-      bid(0.5, 2),  // a mode that the graph has not
+      bid(0.5, 2),  // a mode unknown to the graph
       from(Control::Text, hc::string().message("hello"), 0, 2),
       from(static_cast<Control>(6), hc::table().message({0.0})),
       from(static_cast<Control>(2147483647), hc::table().message({0.0}))};
@@ -116,7 +116,7 @@ TEST(Driver, who_is_silent_for_200_ms_commands_nothing) {
   EXPECT_EQ(ended[1].message.header.mode, 5);
   EXPECT_EQ(number(ended[1]), 0);
   EXPECT_TRUE(driver.tick(kWall, begin + milliseconds(300)).empty());
-  // And is obeyed again.
+  // And its bids are accepted again.
   EXPECT_EQ(driver.take(stick(1, 0), kModes, kWall, begin + milliseconds(400))->size(), 1U);
 }
 
@@ -136,7 +136,7 @@ TEST(Driver, another_task_takes_the_place_of_the_one_before) {
   ASSERT_TRUE(driver.take(bid(1, 4), kModes, kWall, {}));
   const auto orders = driver.take(bid(1, 5), kModes, kWall, {});
   ASSERT_EQ(orders->size(), 2U);
-  // First the new one, so that no other task has the focus between them.
+  // The new bid comes first, so that no other task gets the focus in between.
   EXPECT_EQ((*orders)[0].message.header.mode, 5);
   EXPECT_EQ(number((*orders)[0]), 1);
   EXPECT_EQ((*orders)[1].message.header.mode, 4);

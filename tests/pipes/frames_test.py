@@ -119,9 +119,9 @@ class Frames(Pipes):
         # A fixed one needs no recording.
         self.assertIn("robot to world, fixed\n", self.shell("hc frames graph.toml robot world"))
         self.shell("hc frames graph.toml left_eye word --in kept", status=1)
-        self.assertIn('graph.toml: frames: there is no frame "word", did you mean', self.err)
+        self.assertIn('graph.toml: frames: no frame "word", did you mean', self.err)
         self.shell("hc frames graph.toml left_eye nose", status=1)
-        self.assertIn('there is no frame "nose"; known: head, left_eye, robot, world', self.err)
+        self.assertIn('no frame "nose"; known: head, left_eye, robot, world', self.err)
         self.shell("hc frames graph.toml left_eye world --in kept --at %d" % (START - 1), status=1)
         self.assertIn("too early", self.err)
 

@@ -76,7 +76,7 @@ class Tool(Pipes):
             (
                 "DISPLAY=:9797 hc view --window yes",
                 1,
-                "view: window: there is no display",
+                "view: window: no display",
             ),
             ("hc send --type position 1 2 x", 1, 'hc send: Malformed: elements: R27: "x" is not'),
         ]:

@@ -106,7 +106,7 @@ test("the layout is the same for the same structure, from left to right, nothing
   boxes.slice(1).forEach((box, i) => {
     assert.ok(box.x - box.width / 2 > boxes[i]!.x + boxes[i]!.width / 2);
   });
-  // Its members are far apart: each has its own box.
+  // Its members are far apart, so each has its own box.
   assert.deepEqual(
     layout.groups.map(({ group }) => group),
     ["head", "head"],
