@@ -31,7 +31,7 @@ TEST(SoundMessage, has_the_format_that_it_was_made_of) {
 }
 
 TEST(SoundMessage, of_no_sounds_coordinate_system_has_no_format) {
-  auto found = format_of(sound(1).in(hc::Coord::kText).message(kSome));
+  auto found = format_of(hc::sound(1).in(hc::Coord::kText).message(kSome));
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, hc::Code::Unsupported);
   EXPECT_EQ(found.error().detail, "coordinate system text has no sample rate");

@@ -55,8 +55,7 @@ TEST(OpenCv, HasTheDepthOfEachScalarThatItKnows) {
   for (const auto& [scalar, depth] : depths) EXPECT_EQ(*cv_depth(scalar), depth);
   for (Scalar scalar : {Scalar::U32, Scalar::U64, Scalar::I64})
     EXPECT_EQ(cv_depth(scalar).error().code, Code::Unsupported);
-  const std::array<std::uint32_t, 1> number = {1};
-  EXPECT_FALSE(as_mat(Message(table<std::uint32_t>(number))));
+  EXPECT_FALSE(as_mat(Message(table<std::uint32_t>().message({1}))));
 }
 
 TEST(OpenCv, CompressedIsRefused) {

@@ -11,10 +11,11 @@ int main(int argc, char** argv) {
   auto image = module.input("image", hc::image(), "camera image");
   auto mean = module.output("mean", hc::table(), "mean of all its numbers, 0 … 255");
 
-  module.on(image, [&](const hc::Message& message) {
-    auto numbers = hc::value_or_drop(message.view<std::uint8_t>()).numbers();
-    auto sum = std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
-    mean.send({static_cast<double>(sum) / static_cast<double>(numbers.size())});
+  module.on(image, [&](const hc::Image& image) {
+    const auto pixels = image.pixels();
+    if (pixels.empty()) return;
+    const auto sum = std::accumulate(pixels.begin(), pixels.end(), std::uint64_t{0});
+    mean.send({static_cast<double>(sum) / static_cast<double>(pixels.size())});
   });
   return module.run(argc, argv);
 }
