@@ -13,16 +13,21 @@
 
 namespace hc::internal {
 
+/// Where a link begins or ends at a module: the port, and its URI.
+struct PortLink {
+  bool is_focus = false;  ///< the input that every module has
+  bool is_trace = false;  ///< the output that every module has
+  std::size_t port = 0;
+  Uri uri;
+};
+
 /// What a command line asks for. Parameters, and what it says of ports, are set in the module
 /// itself.
 struct Arguments {
   enum class Task { Run, Help, Describe };
   Task task = Task::Run;
   std::string instance;                               ///< --name
-  std::vector<std::pair<std::size_t, Uri>> inputs;    ///< port, link
-  std::vector<std::pair<std::size_t, Uri>> outputs;   ///< port, link
-  std::vector<Uri> focus_links;                       ///< --in focus=URI
-  std::vector<Uri> trace_links;                       ///< --out trace=URI
+  std::vector<PortLink> inputs, outputs;              ///< --in, --out
   std::vector<std::pair<std::string, Route>> routes;  ///< --route: "PORT=URI", and what it says
   Focus focus;                                        ///< --mode, --modes
   bool by_messages = false;                           ///< --clock messages, or a trace
@@ -38,14 +43,6 @@ struct Arguments {
 ///
 /// Errors: Invalid, with what is wrong and what there would be.
 Result<Arguments> parse_arguments(const Module& module, const std::vector<std::string>& words);
-
-/// Where a link begins or ends at a module: the port, and its URI.
-struct PortLink {
-  bool is_focus = false;  ///< the input that every module has
-  bool is_trace = false;  ///< the output that every module has
-  std::size_t port = 0;
-  Uri uri;
-};
 
 /// Reads `[PORT=]URI`, as --in and --out have it. Errors: Invalid.
 Result<PortLink> parse_port_link(const Module& module, bool is_input, const std::string& text);

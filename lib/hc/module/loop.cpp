@@ -4,612 +4,158 @@
 #include <poll.h>
 
 #include <algorithm>
-#include <tuple>
-#include <utility>
 
-#include <hc/compress/compress.h>
 #include <hc/os/program.h>
 
 namespace hc {
 namespace {
 
-using internal::Inlet;
-using internal::kNoPort;
-using internal::LinkedSink;
-using internal::Stopped;
-
-constexpr const char* kReportsKept = "64";     // for one who does not listen for a while
-constexpr const char* kSetsKept = "4";         // by links whose newest complete set is handled
-constexpr const char* kTimeoutInGraphs = "5";  // [s]; where the graph does not say (G16)
-/// A line about a link waits for so long: at the end of a graph it means nothing.
-constexpr std::chrono::milliseconds kLineDelay{200};
-constexpr int kMostAtOnce = 16;  // messages that a link gives in one turn
-
-/// Ends the module: cleanly if it is to stop, else with the name of what failed.
-[[noreturn]] void fail(const std::string& who, const Error& error) {
-  if (error.code == Code::Stopped) throw Stopped();
-  throw ModuleError(Error{error.code, who + ": " + error.detail});
-}
-
-/// Whether a link has keep=latest, which makes place for a short queue.
-bool keeps_latest(Uri& uri) {
-  for (auto& [key, value] : uri.options)
-    if (key == "keep" && (value == "latest" || value == "1")) {
-      value = kSetsKept;
-      return true;
-    }
-  return false;
-}
-
-/// Whether readers of an output are on this host, and so connect at once unless they hang.
-bool is_on_this_host(const Uri& uri) {
-  return uri.scheme == "shm" || uri.scheme == "unix-listen" || !uri.option("same_user", "").empty();
-}
-
-/// An output's end that waits neither for the first reader nor for a slow one
-/// (Module::never_waits()).
-Uri without_waiting(Uri uri, std::uint32_t keep) {
-  auto set = [](Uri& changed, const std::string& key, const std::string& value) {
-    std::erase_if(changed.options, [&](const auto& option) { return option.first == key; });
-    changed.options.emplace_back(key, value);
-  };
-  if (uri.option("keep", "all") == "all") set(uri, "keep", std::to_string(keep));
-  Uri unread = uri;
-  set(unread, "readers", "0");
-  return check_sink(unread) ? unread : uri;  // it may be of a kind that nobody comes to
-}
+/// How often a busy module looks for commands; one that waits is woken by them.
+constexpr std::chrono::milliseconds kHousekeepingPeriod{10};
 
 }  // namespace
 
-Module::Loop::Loop(Module& module, const internal::Arguments& arguments, int stop)
-    : module_(module),
-      management_(*(module.management_ = std::make_shared<internal::Management>())),
+Module::Loop::Loop(Module& served, const internal::Arguments& arguments, int stop)
+    : module(served),
+      now{served.clock_, served.message_time_},
+      trace(served.clock_),
+      timers(served, now, trace),
+      opener(served, {.limits = arguments.limits, .log = {}, .stop = stop}),
+      delivery(served, now, trace, [this] { remote.report_state(); }),
+      inlets(served, now, opener, delivery),
+      outlets(served, trace, opener,
+              {[this](const internal::Outlet* blocked) { remote.report_state(blocked); },
+               [this] { return remote.obey_while_sending(); }}),
+      remote(served, now, opener, inlets, outlets),
       waits_(stop),
       pauses_(stop) {
-  joins_ = arguments.joins;
-  options_.limits = arguments.limits;
-  options_.stop = stop;
-  module_.focus_ = arguments.focus;
-  // What the process before has reported counts until this one knows better.
-  for (const auto& parameter : module_.parameters_)
+  module.management_ = std::make_shared<internal::Management>();
+  module.focus_ = arguments.focus;
+  // The stops that its process before this one reported count until it reports others.
+  for (const auto& parameter : module.parameters_)
     if (parameter->name == kStops)
-      module_.focus_.stops = value_or_end(parse_stops(text(parameter->value)));
+      module.focus_.stops = value_or_end(parse_stops(text(parameter->value)));
   if (arguments.wall_offset)
-    internal::distant_wall.set(*arguments.wall_offset, module_.clock_.monotonic());
-  std::unique_ptr<Sink> reports;
-  if (arguments.manage) {
-    Uri uri = *arguments.manage;
-    if (uri.option("keep", "").empty()) uri.options.emplace_back("keep", kReportsKept);
-    auto sink = open_sink(uri);  // it outlives this loop
-    if (!sink) fail(uri.text(), sink.error());
-    reports = std::move(*sink);
+    internal::distant_wall.set(*arguments.wall_offset, module.clock_.monotonic());
+  remote.open(arguments);
+  outlets.open(arguments);
+  inlets.open(arguments);
+  for (const auto& [link, route] : arguments.routes) {
+    inlets.set_route(link, route);
+    outlets.set_route(link, route);
   }
-  management_.open(std::move(reports),
-                   arguments.control ? open(*arguments.control, "commands") : nullptr);
-  open_outputs(arguments);
-  open_inputs(arguments);
-  joins_ = true;  // with links that are added
-  for (const auto& uri : arguments.focus_links) open_focus(uri);
-  for (const auto& [link, route] : arguments.routes) set_route(link, route);
-  if (arguments.clock) read_moments(*arguments.clock);
-  module_.loop_ = this;
+  if (arguments.clock)
+    schedule_ = Schedule::replay(*this, *arguments.clock);
+  else
+    schedule_ = module.message_time_ ? Schedule::by_messages(*this) : Schedule::live(*this);
+  module.loop_ = this;
 }
 
 Module::Loop::~Loop() {
-  if (!stop_requested()) log_lines(MonotonicTime::max());
-  module_.loop_ = nullptr;
-}
-
-/// What a link is called in the log: by its port where `hc run` has made it, else by its URI.
-std::string Module::Loop::name_of(const std::string& uri, const std::string& port) const {
-  const bool is_of_graph = uri.starts_with("shm:") || uri.find(":@") != std::string::npos;
-  return management_.commands() != nullptr && is_of_graph ? port : uri;
-}
-
-/// Options of a link. What those of a graph log waits in lines_.
-LinkOptions Module::Loop::options_for(const Uri& uri, const std::string& port) {
-  LinkOptions options = options_;
-  options.log = [this, uri = uri.text(), port](Level level, std::string_view line) {
-    if (uri.starts_with("file:") && line.starts_with(uri)) {
-      // After an error the work goes on; `hc run` repeats it at its end.
-      return module_.log(port + std::string(line.substr(uri.size())), level);
-    }
-    const std::string name = name_of(uri, port);
-    if (name == uri || !line.starts_with(uri)) return module_.log(line, level);
-    lines_.push_back({uri, name + std::string(line.substr(uri.size())), level,
-                      module_.clock_.monotonic() + kLineDelay});
-  };
-  return options;
-}
-
-/// Logs what links have had to say for a while.
-void Module::Loop::log_lines(MonotonicTime now) {
-  for (; !lines_.empty() && lines_.front().due <= now; lines_.pop_front())
-    module_.log(lines_.front().text, lines_.front().level);
-}
-
-std::unique_ptr<Source> Module::Loop::open(const Uri& uri, const std::string& port) {
-  auto source = open_source(uri, options_for(uri, port));
-  if (!source) fail(name_of(uri.text(), port), source.error());
-  return std::move(*source);
-}
-
-void Module::Loop::open_focus(const Uri& uri) {
-  focus_.push_back({.uri = uri.text(), .source = open(uri, "focus")});
-  module_.focus_.is_linked = true;
-}
-
-/// @param keep  of an output that never waits.
-std::shared_ptr<LinkedSink> Module::Loop::open_output(const Uri& uri, const std::string& port,
-                                                      std::uint32_t keep) {
-  Uri opened = uri;
-  auto conversion = take_conversion(opened);
-  if (!conversion) fail(name_of(uri.text(), port), conversion.error());
-  const bool is_of_graph = management_.commands() != nullptr;
-  auto add = [&](const char* option, const char* value) {
-    if (opened.option(option, "").empty()) opened.options.emplace_back(option, value);
-  };
-  // In a graph a full disk ends a recording, and not the module.
-  if (is_of_graph && opened.scheme == "file") add("optional", "1");
-  // By the clock of messages nothing is ever lost.
-  if (is_of_graph && !module_.message_time_) {
-    add("timeout", kTimeoutInGraphs);
-    if (joins_ && opened.option("stay", "") == "1" && opened.option("timeout", "") != "0")
-      add("wait", is_on_this_host(opened) ? "1" : kTimeoutInGraphs);
-  }
-  if (keep > 0) opened = without_waiting(std::move(opened), keep);
-  auto options = options_for(opened, port);
-  auto link = std::make_shared<LinkedSink>();
-  options.awaits_reader = [this, sender = link.get()](bool awaits) {
-    report_state(awaits ? sender : nullptr);
-  };
-  if (const auto* commands = management_.commands(); commands != nullptr)
-    options.interrupt = {commands->descriptor(), [this] { return obey_while_sending(); }};
-  auto sink = open_sink(opened, options);
-  if (!sink) fail(name_of(uri.text(), port), sink.error());
-  link->uri = uri.text();
-  link->sink = std::move(*sink);
-  link->conversion = *conversion;
-  sinks_.push_back(link);
-  return link;
-}
-
-void Module::Loop::open_trace(const Uri& uri) {
-  auto link = open_output(uri, kTracePort);
-  if (trace_ == nullptr) trace_ = std::make_unique<internal::Trace>(module_.clock_);
-  trace_->output.links.push_back(std::move(link));
-}
-
-void Module::Loop::open_outputs(const internal::Arguments& arguments) {
-  for (const auto& uri : arguments.trace_links) open_trace(uri);
-  for (const auto& [port, uri] : arguments.outputs) {
-    auto& output = *module_.outputs_[port];
-    output.links.push_back(open_output(uri, output.name, output.keep));
-  }
-  if (!arguments.outputs.empty() || module_.outputs_.empty() || arguments.control) return;
-  auto standard_output = open_output({"-", "", {}}, "-");
-  for (auto& output : module_.outputs_)
-    if (!output->is_on_demand) output->links.push_back(standard_output);
-}
-
-void Module::Loop::open_input(const Uri& uri, std::vector<internal::InputState*> inputs) {
-  // What is taken together is dropped together: by the loop, and not by each link for itself.
-  Uri opened = uri;
-  const bool is_latest = inputs.front()->together != nullptr && keeps_latest(opened);
-  Inlet link{.uri = uri.text(), .source = open(opened, inputs.front()->name)};
-  link.inputs = std::move(inputs);
-  link.is_latest = is_latest;
-  for (auto* input : link.inputs)
-    if (input->together != nullptr) input->together->matcher.begin(input->place);
-  for (const auto& each : sources_) {
-    if (each.is_same(link)) link.route = each.route;
-    if (each.inputs == link.inputs) ++link.number;
-  }
-  sources_.push_back(std::move(link));
-  join_renewed();
-  choose_policies();
-}
-
-/// Whether inputs that are taken together handle every set, or the newest.
-void Module::Loop::choose_policies() {
-  for (auto& together : module_.together_)
-    together->is_latest = std::any_of(sources_.begin(), sources_.end(), [&](const auto& link) {
-      return link.is_latest && link.inputs.front()->together == together.get();
-    });
-}
-
-/// Has links that were opened again count on from those that ended before them; whether there are
-/// any.
-bool Module::Loop::join_renewed() {
-  bool any = false;
-  for (auto link = sources_.begin(); link != sources_.end();) {
-    auto renewed = link->source != nullptr
-                       ? sources_.end()
-                       : std::find_if(link + 1, sources_.end(),
-                                      [&](const auto& each) { return each.is_same(*link); });
-    if (renewed == sources_.end()) {
-      ++link;
-      continue;
-    }
-    renewed->past += link->past;
-    renewed->ignored += link->ignored;
-    renewed->bad += link->bad;
-    renewed->number = link->number;
-    link = sources_.erase(link);
-    any = true;
-  }
-  return any;
-}
-
-void Module::Loop::open_inputs(const internal::Arguments& arguments) {
-  for (const auto& [port, uri] : arguments.inputs) open_input(uri, {module_.inputs_[port].get()});
-  if (!arguments.inputs.empty() || module_.inputs_.empty() || arguments.control) return;
-  std::vector<internal::InputState*> all;
-  for (auto& input : module_.inputs_) all.push_back(input.get());
-  open_input({"-", "", {}}, std::move(all));
+  if (!stop_requested()) opener.log_lines(MonotonicTime::max());
+  module.loop_ = nullptr;
 }
 
 void Module::Loop::run() {
-  end_unlinked();
-  end_unneeded();
-  now_ = module_.clock_.monotonic();
-  attend();
-  if (module_.message_time_) begin_clock();
-  for (auto& timer : module_.timers_) timer.last = time();
-  for (auto& timeout : module_.timeouts_)
-    if (timeout->due) *timeout->due += time();
-  if (module_.start_) module_.start_();
-  for (bool is_now = false; true;) {
-    if (stop_requested()) throw Stopped();
-    // What was waited for comes first.
-    if (!std::exchange(is_now, false)) now_ = module_.clock_.monotonic();
-    if (moments_) {
-      if (!repeat_next()) break;
-      serve();
-      continue;
-    }
-    receive_focus();
-    const bool any = module_.message_time_ ? take_earliest() : take_each();
-    end_unneeded();
-    if (join_renewed()) report_links();
-    serve();
-    fire_timers();
-    read_watched();
-    if (any) continue;
-    if (is_generators_turn()) {
-      note(TraceEvent::What::Began, kNoPort, {}, TraceEvent::kGenerator);
-      const bool goes_on = generate();
-      note(TraceEvent::What::Ended, kNoPort, {}, TraceEvent::kGenerator);
-      if (!goes_on) break;
-    } else if (all_ended()) {
-      break;
-    } else {
-      is_now = wait(true, next_timer());
-    }
-  }
-  for (const auto& together : module_.together_)
-    for (const auto& input : together->inputs) together->matcher.end(input->place);
-  module_.handled_ = {};
-  if (module_.end_) module_.end_();
+  inlets.sets().end_unlinked(opener.is_in_graph());
+  inlets.end_unneeded();
+  schedule_->begin();
+  timers.start();
+  if (module.start_) module.start_();
+  while (!module.is_done_ && schedule_->turn())
+    if (stop_requested()) throw internal::Stopped();
+  inlets.sets().end_all();
+  end();
 }
 
-/// Module::finish_when_stopped().
+void Module::Loop::end() {
+  module.handled_ = {};
+  if (module.end_) module.end_();
+}
+
 void Module::Loop::take_rest() {
   constexpr std::chrono::milliseconds kSilence{200}, kLongest{2000};
   constexpr int kPause = 5;  // [ms]
-  const auto begin = module_.clock_.monotonic();
-  for (auto last = begin; now_ - last < kSilence && now_ - begin < kLongest && !all_ended();) {
-    now_ = module_.clock_.monotonic();
-    if (take_each())
-      last = now_;
+  const auto begin = module.clock_.monotonic();
+  for (auto last = begin;
+       now.machine - last < kSilence && now.machine - begin < kLongest && !inlets.all_ended();) {
+    now.read();
+    if (inlets.take_each())
+      last = now.machine;
     else
       ::poll(nullptr, 0, kPause);
   }
-  module_.handled_ = {};
-  if (module_.end_) module_.end_();
+  end();
 }
 
-/// Whether nothing can come any more. A module that takes commands waits for a new link
-/// where an input has none; one without inputs has its timers.
-bool Module::Loop::all_ended() const {
-  if (module_.keeps_running_ && !module_.message_time_) return false;
-  if (sources_.empty() &&
-      (management_.commands() != nullptr || (module_.inputs_.empty() && !module_.timers_.empty())))
-    return false;
-  return std::all_of(sources_.begin(), sources_.end(),
-                     [](const Inlet& link) { return link.source == nullptr; });
+void Module::Loop::serve() {
+  outlets.free_removed();
+  opener.log_lines(now.machine);
+  trace.flush_if_due(now.machine);
+  if (now.machine - served_ < kHousekeepingPeriod && now.machine < remote.due()) return;
+  served_ = now.machine;
+  if (module.before_waiting_) module.before_waiting_();
+  // Links look for writers that have died when they are waited for, which a busy module never does.
+  inlets.for_each([](internal::Inlet& inlet) {
+    if (inlet.is_open()) inlet.source->prepare_wait();
+  });
+  remote.serve();
+  now.read();
 }
 
-void Module::Loop::fire_timers() {
-  std::int32_t number = -1;
-  for (auto& timer : module_.timers_) {
-    ++number;
-    const auto due = timer.due();
-    if (due > time()) continue;
-    note(TraceEvent::What::Began, kNoPort, {}, number);
-    timer.handler();
-    note(TraceEvent::What::Ended, kNoPort, {}, number);
-    now_ = module_.clock_.monotonic();
-    timer.last = std::max(due, time() - timer.period());
-  }
-  // A handler may add some. NOLINTNEXTLINE(modernize-loop-convert)
-  for (std::size_t i = 0; i < module_.timeouts_.size(); ++i) {
-    const auto timeout = module_.timeouts_[i];
-    ++number;
-    if (!timeout->due || *timeout->due > time()) continue;
-    timeout->due.reset();
-    note(TraceEvent::What::Began, kNoPort, {}, number);
-    timeout->handler();
-    note(TraceEvent::What::Ended, kNoPort, {}, number);
-    now_ = module_.clock_.monotonic();
-  }
+void Module::Loop::work_between_messages() {
+  inlets.end_unneeded();
+  if (inlets.join_renewed()) remote.report_links();
+  serve();
+  timers.fire_due();
+  read_watched();
+}
+
+void Module::Loop::generate() {
+  trace.note(TraceEvent::What::Began, TraceEvent::kGenerator);
+  module.generate_();
+  trace.note(TraceEvent::What::Ended, TraceEvent::kGenerator);
 }
 
 /// Calls the handlers of the module's own descriptors that are readable.
 void Module::Loop::read_watched() {
-  for (auto& watch : module_.watches_) {
+  for (auto& watch : module.watches_) {
     pollfd watched{watch.descriptor(), POLLIN, 0};
     if (watched.fd < 0 || ::poll(&watched, 1, 0) <= 0) continue;
     watch.handler();
-    now_ = module_.clock_.monotonic();
+    now.read();
   }
 }
 
-MonotonicTime Module::Loop::next_timer() const {
-  auto next = MonotonicTime::max();
-  for (const auto& timer : module_.timers_) next = std::min(next, timer.due());
-  for (const auto& timeout : module_.timeouts_)
-    if (timeout->due) next = std::min(next, *timeout->due);
-  return next;
-}
-
-/// Takes a message from each link, but from those with too many that wait for others' only when
-/// nothing else has any.
-bool Module::Loop::take_each() {
-  auto is_crowded = [](const Inlet& link) {
-    return std::any_of(link.inputs.begin(), link.inputs.end(), [](const auto* input) {
-      return input->together != nullptr && input->together->matcher.crowded(input->place);
-    });
-  };
-  bool any = false;
-  for (bool crowded : {false, true}) {
-    for (auto& link : sources_) {
-      // For the newest set all that has come is taken; for every set, one message.
-      const auto* together = link.inputs.front()->together;
-      const int most = together != nullptr && together->is_latest ? kMostAtOnce : 1;
-      for (int i = 0; i < most; ++i) {
-        if (link.source == nullptr || is_crowded(link) != crowded) break;
-        if (any) now_ = module_.clock_.monotonic();  // the messages before have taken their time
-        if (!take_one(link)) break;
-        any = true;
-      }
-    }
-    if (any) break;
-  }
-  handle_newest();
-  return any;
-}
-
-void Module::Loop::handle_newest() {
-  for (auto& together : module_.together_) {
-    if (together->set.empty()) continue;
-    const auto link = std::ranges::find_if(sources_, [&](const auto& each) {
-      return each.inputs.front()->together == together.get();
-    });
-    if (link == sources_.end()) continue;  // it was unlinked
-    drop_bad(*link, link->inputs.front()->name, [&] { module_.handle(*together); });
-  }
-}
-
-bool Module::Loop::take_one(Inlet& link) {
-  Message message;
-  if (take(link, message) != Got::Message) return false;
-  const auto come = now_;
-  const auto sensed = message.header.time;  // a handler may move the message away
-  handle(link, message);
-  if (management_.is_heard()) measure(link, sensed, come);  // what is sent does not wait for it
-  return true;
-}
-
-void Module::Loop::handle(Inlet& link, Message& message) {
-  if (link.inputs.empty())
-    set_focus(link, message);
-  else
-    deliver(link, message);
-}
-
-/// What a link has now; one that has ended is ended here too.
-Got Module::Loop::take(Inlet& link, Message& message) {
-  auto got = link.source->take(message);
-  if (!got && link.inputs.empty()) got = Got::End;  // the focus expires
-  if (!got) {
-    bool is_of_link = got.error().code == Code::NotFound || got.error().code == Code::Closed;
-    const std::string& port = link.inputs[0]->name;
-    fail(is_of_link || link.inputs.size() > 1 ? name_of(link.uri, port) : port, got.error());
-  }
-  if (*got == Got::End) end(link);
-  return *got;
-}
-
-bool Module::Loop::is_linked(const internal::InputState& input) const {
-  return std::any_of(sources_.begin(), sources_.end(), [&](const Inlet& link) {
-    return link.source != nullptr &&
-           std::find(link.inputs.begin(), link.inputs.end(), &input) != link.inputs.end();
-  });
-}
-
-void Module::Loop::end(Inlet& link) {
-  link.past += link.source->traffic();
-  link.source.reset();
-  link.head.reset();
-  for (auto* input : link.inputs)
-    if (input->together != nullptr && !is_linked(*input))
-      input->together->matcher.end(input->place);
-}
-
-/// Ends inputs that are taken together and have no link, and cannot get one by a command.
-void Module::Loop::end_unlinked() {
-  const bool is_controlled = management_.commands() != nullptr;
-  for (const auto& together : module_.together_) {
-    std::string unlinked;
-    for (const auto& input : together->inputs) {
-      if (is_linked(*input)) continue;
-      unlinked = input->name;
-      if (!is_controlled) together->matcher.end(input->place);
-    }
-    for (const auto& input : together->inputs)
-      if (!unlinked.empty() && is_linked(*input))
-        module_.log(input->name + (is_controlled ? ": waits as long as " : ": not read, since ") +
-                    unlinked + " has no link");
-  }
-}
-
-/// Ends the links whose messages can have no partners any more.
-void Module::Loop::end_unneeded() {
-  if (module_.together_.empty()) return;
-  auto is_settled = [](const auto* input) {
-    return input->together != nullptr && input->together->matcher.done();
-  };
-  for (auto& link : sources_)
-    if (link.source != nullptr && std::all_of(link.inputs.begin(), link.inputs.end(), is_settled))
-      end(link);
-}
-
-void Module::Loop::log_dropped() {
-  for (const auto& together : module_.together_)
-    for (const auto& input : together->inputs) {
-      const auto& dropped = together->matcher.dropped(input->place);
-      if (dropped.total() == 0 || together->is_latest) continue;
-      module_.log(input->name + ": dropped " + std::to_string(dropped.unmatched) + " unmatched, " +
-                  std::to_string(dropped.crowded) + " on queue overflow");
-    }
-}
-
-void Module::Loop::deliver(Inlet& link, Message& message) {
-  for (auto* input : link.inputs) {
-    const bool fits_any =
-        input->types.empty() ||
-        std::any_of(input->types.begin(), input->types.end(),
-                    [&](const PortType& type) { return fits(message.header, type); });
-    if (!fits_any) continue;
-    note(TraceEvent::What::Took, input->name, message.header, link.number);
-    if (!input->handler) return;
-    if (!module_.focus_.admits(input->is_exclusive, message.header.mode)) {
-      ++link.ignored;
-      return;
-    }
-    if (input->is_raw || message.plain()) return call(*input, link, message);
-    auto plain = expand(message);
-    if (!plain) return drop(link, input->name, plain.error().text());
-    return call(*input, link, *plain);
-  }
-  const bool is_one = link.inputs.size() == 1;
-  drop(link, is_one ? link.inputs.front()->name : link.uri, misfit_of(link, message).text());
-}
-
-/// Drops a message; it was handed over, so that its link goes on. The first is logged.
-void Module::Loop::drop(Inlet& link, const std::string& who, std::string_view why) {
-  ++link.bad;
-  has_failed_input_ = has_failed_input_ || link.is_file();
-  module_.log_once("bad at " + who,
-                   who + ": dropped: " + std::string(why.substr(0, why.find('\n'))));
-}
-
-/// Why a message fits no input of its link.
-Error Module::Loop::misfit_of(const Inlet& link, const Message& message) {
-  const auto& only = *link.inputs.back();
-  if (link.inputs.size() == 1 && only.types.size() == 1)
-    return misfit(message.header, only.types[0]);
-  std::string takers;
-  for (const auto* input : link.inputs)
-    takers += (takers.empty() ? "" : ", ") + input->name + " takes " + in_words(input->types);
-  const Header& header = message.header;
-  std::string what = matrix_text(header.info, header.width, header.height);
-  if (header.coord != 0) what += " in coordinate system " + coord_and_number(header.coord);
-  return {Code::Malformed, what + " fits no input: " + takers};
-}
-
-void Module::Loop::call(const internal::InputState& input, Inlet& link, Message& message) {
-  if (input.is_finite && !finite(message)) {
-    ++link.ignored;
-    return module_.log_once("not finite", input.name + ": dropped: NaN or infinity");
-  }
-  module_.handled_ = internal::Handled(message.header, &link.route.peer);
-  drop_bad(link, input.name, [&] {
-    if (trace_ == nullptr || input.together != nullptr) [[likely]]
-      return input.handler(message);
-    const Header header = message.header;  // a handler may move the message away
-    note(TraceEvent::What::Began, input.name, header, link.number);
-    input.handler(message);
-    note(TraceEvent::What::Ended, input.name, header, link.number);
-  });
-  module_.handled_ = {};
-}
-
-/// Notes how old a message is, and how long after the one before it came.
-void Module::Loop::measure(Inlet& link, std::int64_t sensed, MonotonicTime come) {
-  if (sensed != 0) link.ages.add(come.count() + wall_offset_ - sensed);
-  if (link.last_come.count() != 0) link.gaps.add((come - link.last_come).count());
-  link.last_come = come;
-}
-
-/// Waits for a command, a report that is due, or a time; and, perhaps, for messages and what else
-/// the module reads. Whether it was so short that now_ is the time still.
 bool Module::Loop::wait(bool for_messages, MonotonicTime until) {
   waited_for_.clear();
   watched_.clear();
-  if (for_messages) {
-    for (const auto& link : sources_)
-      if (link.source != nullptr && !link.head) waited_for_.push_back(link.source.get());
-    for (const auto& watch : module_.watches_) watched_.push_back(watch.descriptor());
-  }
-  for (const auto& link : focus_)
-    if (link.source != nullptr && !link.head) waited_for_.push_back(link.source.get());
-  if (management_.commands() != nullptr) waited_for_.push_back(management_.commands());
-  if (module_.message_time_) until = MonotonicTime::max();  // it is messages that pass the time
-  if (management_.is_heard()) until = std::min(until, reported_ + kReportPeriod);
-  if (!lines_.empty()) until = std::min(until, lines_.front().due);
+  inlets.for_each([&](internal::Inlet& inlet) {
+    if (inlet.is_open() && (for_messages || inlet.inputs.empty()))
+      waited_for_.push_back(inlet.source.get());
+  });
+  if (for_messages)
+    for (const auto& watch : module.watches_) watched_.push_back(watch.descriptor());
+  if (remote.commands() != nullptr) waited_for_.push_back(remote.commands());
+  until = std::min({until, remote.due(), opener.due()});
   auto timeout = std::chrono::nanoseconds(-1);
-  if (until != MonotonicTime::max()) timeout = std::max(until - now_, std::chrono::nanoseconds(0));
+  if (until != MonotonicTime::max())
+    timeout = std::max(until - now.machine, std::chrono::nanoseconds(0));
   auto& waits = for_messages ? waits_ : pauses_;
-  if (module_.before_waiting_) module_.before_waiting_();
-  auto ready = waits.wait(waited_for_, watched_, timeout);
-  if (!ready) fail("wait", ready.error());
-  if (management_.commands() != nullptr && waits.was_woken_by(*management_.commands()))
-    attended_ = {};
+  if (module.before_waiting_) module.before_waiting_();
+  const auto ready = waits.wait(waited_for_, watched_, timeout);
+  if (!ready) internal::fail("wait", ready.error());
+  if (remote.commands() != nullptr && waits.was_woken_by(*remote.commands())) served_ = {};
   return waits.was_short();
 }
 
-void Module::Loop::pause(const std::function<MonotonicTime()>& due) {
-  if (module_.message_time_) {
-    has_generated_ = false;
-    while (moments_ && !moments_->empty() && moments_->front().port == internal::kFocusPort)
-      repeat_next();
-    return pass_to(std::max(time(), due()));
-  }
-  for (now_ = module_.clock_.monotonic(); now_ < due(); now_ = module_.clock_.monotonic()) {
-    wait(false, due());
-    now_ = module_.clock_.monotonic();
-    attend();
-  }
-}
-
 void Module::Loop::close() {
-  if (module_.before_waiting_) module_.before_waiting_();
-  log_dropped();
-  if (trace_ != nullptr) trace_->flush();
-  const LinkedSink* failed = nullptr;
-  Status failure;  // the first; the other links are closed all the same
-  for (auto& link : sinks_) {
-    if (link->sink == nullptr) continue;
-    auto closed = link->sink->close();
-    link->traffic = link->sink->traffic();
-    if (closed || closed.error().code == Code::Closed || failed != nullptr) continue;
-    failed = link.get();
-    failure = closed;
-  }
-  report_counters();
-  if (failed != nullptr) fail(failed->uri, failure.error());
+  if (module.before_waiting_) module.before_waiting_();
+  inlets.sets().log_dropped();
+  trace.flush();
+  const auto closed = outlets.close();
+  remote.report_counters();
+  if (!closed) internal::fail(closed.error());
 }
 
 }  // namespace hc

@@ -1,210 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A module at work: takes messages from its links and hands them to the handlers, obeys commands,
-// and reports. Internal.
+// A module at work: its links, its timers and its schedule. Internal.
 
-#include <deque>
-#include <exception>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <hc/link/wait_set.h>
 #include <hc/module/arguments.h>
-#include <hc/module/management.h>
-#include <hc/module/module.h>
-#include <hc/module/quantiles.h>
-#include <hc/module/trace.h>
+#include <hc/module/ending.h>
+#include <hc/module/inlets.h>
+#include <hc/module/link_opener.h>
+#include <hc/module/outlets.h>
+#include <hc/module/remote.h>
+#include <hc/module/schedule.h>
+#include <hc/module/timers.h>
 
 namespace hc {
 
-namespace internal {
-
-/// What a trace calls the focus, and what no message causes.
-inline const std::string kFocusPort = "focus", kNoPort;
-
-/// Thrown to end a module cleanly: nobody reads it any more, or it was asked to stop.
-struct Stopped {};
-
-/// What was thrown, without where that is in the sources of a library.
-std::string thrown_in_words(const std::exception& error);
-
-/// A link whose messages come in: to one port, to all of them from standard input, or the focus.
-struct Inlet {
-  std::string uri;
-  std::unique_ptr<Source> source = {};   ///< null once it has ended
-  std::vector<InputState*> inputs = {};  ///< none: the focus
-  std::optional<Message> head =
-      {};                          ///< with --clock messages: taken, and to be handled in its time
-  Route route = {};                ///< who is at the other end
-  std::int32_t number = 0;         ///< of the links of its port
-  bool is_latest = false;          ///< keep=latest, of an input that is taken together with others
-  Traffic past = {};               ///< of sources that have ended
-  std::uint64_t ignored = 0;       ///< messages that no handler got: another mode has the focus
-  std::uint64_t bad = 0;           ///< messages that were dropped; see BadMessage
-  Quantiles ages = {}, gaps = {};  ///< of the messages since the last report; gaps between them
-  MonotonicTime last_come{0};      ///< the message before; 0: none
-
-  [[nodiscard]] Traffic traffic() const {
-    Traffic all = past;
-    if (source != nullptr) all += source->traffic();
-    all.bad += bad;
-    return all;
-  }
-  /// Whether it cannot go on, once all has been read: a file, or standard input.
-  [[nodiscard]] bool is_file() const { return uri == "-" || uri.starts_with("file:"); }
-  [[nodiscard]] bool is_same(const Inlet& other) const {
-    return uri == other.uri && inputs == other.inputs;
-  }
-};
-
-}  // namespace internal
-
 struct Module::Loop {
-  static constexpr std::chrono::milliseconds kReportPeriod{500};
-
-  /// Opens the links: outputs first, since those that listen must be there before anybody waits.
+  /// Opens the links: those of outputs first, so that listeners are there before anything waits.
   Loop(Module& module, const internal::Arguments& arguments, int stop);
   ~Loop();
   Loop(const Loop&) = delete;
   Loop& operator=(const Loop&) = delete;
 
-  /// Until all inputs have ended, and the generator has.
+  /// Runs until all inputs have ended, or Module::stop().
   void run();
-  /// Takes what comes of modules that end beside it (Module::finish_when_stopped()).
+  /// Handles the messages of modules that end at the same time (Module::finish_when_stopped()).
   void take_rest();
-  /// Waits until a time that `due` gives, which may change with the focus; obeys meanwhile.
-  void pause(const std::function<MonotonicTime()>& due);
-  /// Ends the outputs.
+  /// See Schedule::pause().
+  void pause(const std::function<MonotonicTime()>& due) { schedule_->pause(due); }
+  /// Closes the outlets.
   void close();
-  /// Whether a file or standard input had messages that were dropped since they were bad, so that
-  /// the module has not done its work.
-  [[nodiscard]] bool has_failed_input() const { return has_failed_input_; }
-  /// @param blocked  the link whose reader the module waits for; null: none.
-  void report_state(const internal::LinkedSink* blocked = nullptr);
-  /// Notes a moment in the way of a message, while the module is traced.
-  void note(TraceEvent::What what, const std::string& port, const Header& header,
-            std::int32_t number = 0) {
-    if (trace_ != nullptr) [[unlikely]]
-      trace_->note(what, port, header, number);
+  [[nodiscard]] bool has_failed_input() const { return delivery.has_failed_input(); }
+  void report_state() { remote.report_state(); }
+  void note(TraceEvent::What what, const std::string& port, const Header& header) {
+    trace.note(what, port, header);
   }
 
- private:
-  [[nodiscard]] std::string name_of(const std::string& uri, const std::string& port) const;
-  LinkOptions options_for(const Uri& uri, const std::string& port);
-  void log_lines(MonotonicTime now);
-  std::unique_ptr<Source> open(const Uri& uri, const std::string& port);
-  std::shared_ptr<internal::LinkedSink> open_output(const Uri& uri, const std::string& port,
-                                                    std::uint32_t keep = 0);
-  void open_outputs(const internal::Arguments& arguments);
-  void open_input(const Uri& uri, std::vector<internal::InputState*> inputs);
-  void open_inputs(const internal::Arguments& arguments);
-  void open_focus(const Uri& uri);
-  void open_trace(const Uri& uri);
-  bool join_renewed();
-  void choose_policies();
-  void set_route(const std::string& link, const internal::Route& route);
+  // For its schedule.
 
-  bool take_each();
-  void handle_newest();
-  bool take_one(internal::Inlet& link);
-  Got take(internal::Inlet& link, Message& message);
-  [[nodiscard]] bool is_linked(const internal::InputState& input) const;
-  [[nodiscard]] bool all_ended() const;
-  void end(internal::Inlet& link);
-  void end_unlinked();
-  void end_unneeded();
-  void log_dropped();
-  void measure(internal::Inlet& link, std::int64_t sensed, MonotonicTime come);
-  void handle(internal::Inlet& link, Message& message);
-  void deliver(internal::Inlet& link, Message& message);
-  static Error misfit_of(const internal::Inlet& link, const Message& message);
-  void drop(internal::Inlet& link, const std::string& who, std::string_view why);
-  /// Handles a message, or a set of them, which may be bad: that is what any exception says that is
-  /// no ModuleError, such as those of libraries that do not take every image.
-  template <typename Handle>
-  void drop_bad(internal::Inlet& link, const std::string& who, const Handle& handle) {
-    try {
-      handle();
-    } catch (const ModuleError&) {
-      throw;
-    } catch (const std::exception& why) {
-      module_.handled_ = {};
-      drop(link, who, internal::thrown_in_words(why));
-    }
-  }
-  void call(const internal::InputState& input, internal::Inlet& link, Message& message);
-  void fire_timers();
-  void read_watched();
-  [[nodiscard]] MonotonicTime next_timer() const;
+  /// Obeys commands and reports, every 10 ms while the module is busy.
+  void serve();
+  /// Ends and joins links, serves, fires timers, and reads the module's own descriptors.
+  void work_between_messages();
+  void generate();
+  /// Waits for a time, a command, a report that is due; with `for_messages` also for messages of
+  /// inputs and for the module's own descriptors. Returns whether the wait was so short that the
+  /// clock need not be read again.
   bool wait(bool for_messages, MonotonicTime until);
 
-  // loop_messages.cpp
-  [[nodiscard]] bool is_generators_turn() const;
-  bool generate();
-  void begin_clock();
-  bool take_earliest();
-  bool has_heads();
-  [[nodiscard]] internal::Inlet* earliest();
-  void read_moments(const Uri& uri);
-  bool repeat_next();
-  void repeat_without_message(std::int32_t number);
-  void pass_to(MonotonicTime time) { module_.message_time_ = time.count(); }
+  Module& module;
+  internal::Now now;
+  internal::Trace trace;
+  Timers timers;
+  LinkOpener opener;
+  Delivery delivery;
+  Inlets inlets;
+  Outlets outlets;
+  Remote remote;
 
-  // loop_control.cpp
-  void attend();
-  void serve();
-  void look_at_silent();
-  void receive_focus();
-  void set_focus(internal::Inlet& link, const Message& message);
-  void expire_focus();
-  void obey(const std::string& command);
-  bool obey_while_sending();
-  Status carry_out(const std::string& row);
-  Status set_parameter(const std::string& name, const std::string& value);
-  Status link(bool is_input, const std::string& text);
-  Status unlink(bool is_input, const std::string& text);
-  Status unlink_output(internal::OutputState& output, const std::string& uri);
-  Status finish(const std::string& text);
-  void send(Report report, Message message);
-  void report();
-  void report_counters();
-  void report_links();
-  void report_parameters();
-  void report_trace();
+ private:
+  void read_watched();
+  void end();
 
-  Module& module_;
-  LinkOptions options_;
-  bool joins_ = false;  // the graph runs already: see --join
-  std::vector<internal::Inlet> sources_;
-  std::vector<std::shared_ptr<internal::LinkedSink>> sinks_;     // in the order of the command line
-  std::vector<std::shared_ptr<internal::LinkedSink>> unlinked_;  // one may still be in send()
-  std::vector<internal::Inlet> focus_;
-  std::unique_ptr<internal::Trace> trace_;  // while it is traced
-  internal::Management& management_;
-  WaitSet waits_, pauses_;  // for all there is; between two calls of the generator
+  std::unique_ptr<Schedule> schedule_;
+  WaitSet waits_, pauses_;  // for messages; between two calls of a generator
   std::vector<Source*> waited_for_;
   std::vector<int> watched_;
-  std::vector<std::string> deferred_;  // commands for when nothing is being handled or sent
-  struct Line {
-    std::string uri, text;
-    Level level;
-    MonotonicTime due;
-  };
-  std::deque<Line> lines_;  // about links, not logged yet
-  /// By the module's clock, at the last look.
-  [[nodiscard]] MonotonicTime time() const {
-    return module_.message_time_ ? MonotonicTime(*module_.message_time_) : now_;
-  }
-
-  std::optional<std::deque<TraceEvent>> moments_;  // with --clock URI: to be repeated
-  MonotonicTime now_{0};                           // of the machine, at the last look at the clock
-  std::int64_t wall_offset_ = 0;  // from monotonic to wall clock, at the last report [ns]
-  MonotonicTime reported_{0}, attended_{0};
-  // With --clock messages: whether the generator is called next; has been since the last message,
-  // and keeps no rate; and whether all messages have been handled.
-  bool has_failed_input_ = false;
-  bool generates_next_ = false, has_generated_ = false, has_ended_ = false;
+  MonotonicTime served_{0};
 };
 
 }  // namespace hc

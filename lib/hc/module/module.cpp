@@ -10,8 +10,6 @@
 #include <utility>
 
 #include <hc/base/visible.h>
-#include <hc/compress/compress.h>
-#include <hc/compress/scale.h>
 #include <hc/module/loop.h>
 #include <hc/os/program.h>
 
@@ -38,11 +36,12 @@ std::string internal::thrown_in_words(const std::exception& error) {
   return text;
 }
 
-Module::Module(std::string name, std::string summary)
-    : Module(std::move(name), std::move(summary), kSystemClock) {}
-
-Module::Module(std::string name, std::string summary, const Clock& clock)
-    : name_(std::move(name)), summary_(std::move(summary)), instance_(name_), clock_(clock) {
+Module::Module(std::string name, std::string summary, const ModuleOptions& options)
+    : name_(std::move(name)),
+      summary_(std::move(summary)),
+      instance_(name_),
+      options_(options),
+      clock_(options.clock != nullptr ? *options.clock : kSystemClock) {
   open_standard_descriptors();
 }
 
@@ -50,8 +49,10 @@ Module::~Module() = default;
 
 std::shared_ptr<internal::InputState> Module::add_input(std::string name,
                                                         std::vector<PortType> types,
-                                                        std::string doc) {
+                                                        std::string doc,
+                                                        const InputOptions& options) {
   auto state = std::make_shared<internal::InputState>();
+  state->options = options;
   state->name = std::move(name);
   state->types = std::move(types);
   state->doc = std::move(doc);
@@ -63,11 +64,13 @@ std::shared_ptr<internal::InputState> Module::add_input(std::string name,
 
 std::shared_ptr<internal::OutputState> Module::add_output(std::string name,
                                                           std::vector<PortType> types,
-                                                          std::string doc) {
+                                                          std::string doc,
+                                                          const OutputOptions& options) {
   auto state = std::make_shared<internal::OutputState>();
+  state->options = options;
   state->name = std::move(name);
   state->types = std::move(types);
-  state->doc = std::move(doc);
+  state->doc = std::move(doc) + (options.on_demand ? "; only by a link of its own" : "");
   state->module = this;
   outputs_.push_back(state);
   state->address = static_cast<std::int32_t>(outputs_.size());
@@ -182,11 +185,12 @@ void Timeout::restart(std::chrono::nanoseconds duration) {
   state_->due = now + std::clamp(duration, MonotonicTime(0), internal::kLongestPeriod);
 }
 
-void Module::report_focus(std::int32_t mode, const Stops& stops) {
-  const bool is_new = focus_.decided != mode || focus_.stops != stops;
-  focus_.decided = mode;
-  focus_.stops = stops;
-  if (is_new && loop_ != nullptr) loop_->report_state();
+void internal::ModuleAccess::report_focus(Module& module, std::int32_t mode, const Stops& stops) {
+  auto& focus = module.focus_;
+  const bool is_new = focus.decided != mode || focus.stops != stops;
+  focus.decided = mode;
+  focus.stops = stops;
+  if (is_new && module.loop_ != nullptr) module.loop_->report_state();
 }
 
 void Module::keep_rate(double rate) {
@@ -195,110 +199,6 @@ void Module::keep_rate(double rate) {
   // Periods that were missed are not made up for.
   auto now = monotonic();
   last_period_ = std::max(last_period_ ? *last_period_ + period() : now, now - period());
-}
-
-namespace {
-
-/// A message as a link wants it; what it cannot be made of (an output may send anything) stays.
-Message converted(const Message& message, const Conversion& conversion) {
-  Message made = message;
-  const auto& header = message.header;
-  if (conversion.scale != 1 && can_scale(header.info) && !header.empty())
-    made = value_or_end(shrink(message, scaled(header.width, conversion.scale),
-                               scaled(header.height, conversion.scale)));
-  if (!conversion.as) return made;
-  Header wanted = made.header;
-  wanted.info.encoding = *conversion.as;
-  if (!check(wanted, {~std::uint64_t{0}})) return made;
-  return value_or_end(compress(made, *conversion.as, conversion.quality.value_or(kJpegQuality)));
-}
-
-/// Sends to a link; false when its reader has left, which ends the link.
-bool send_to(internal::LinkedSink& link, const std::string& port, const Message& message) {
-  auto sent = link.conversion.is_none() ? link.sink->send(message)
-                                        : link.sink->send(converted(message, link.conversion));
-  if (sent) return true;
-  if (sent.error().code == Code::Stopped) throw internal::Stopped();
-  if (sent.error().code != Code::Closed)
-    throw ModuleError(Error{
-        sent.error().code,
-        (sent.error().code == Code::NotFound ? link.uri : port) + ": " + sent.error().detail});
-  link.traffic = link.sink->traffic();
-  link.sink.reset();
-  return false;
-}
-
-/// Calls `send_one` with each link of an output, which may lose links meanwhile.
-/// @returns  whether one of them has ended unasked.
-template <typename SendOne>
-bool send_to_each(internal::OutputState& output, const SendOne& send_one) {
-  bool any_ended = false;
-  for (std::size_t i = 0; i < output.links.size();) {
-    auto* link = output.links[i].get();
-    const bool ended = link->sink != nullptr && !send_one(*link);
-    if (i >= output.links.size() || output.links[i].get() != link) continue;  // it was unlinked
-    any_ended = any_ended || ended;
-    ++i;
-  }
-  return any_ended;
-}
-
-}  // namespace
-
-void internal::Trace::flush() {
-  sent = clock.monotonic();
-  if (lost > 0) events.push_back({TraceEvent::What::Lost, "", 0, lost, 0, clock.wall()});
-  lost = 0;
-  if (events.empty()) return;
-  Message message = make_trace(events);
-  message.header.seq = output.seq++;
-  message.header.time = events.front().moment;
-  events.clear();
-  send_to_each(output, [&](LinkedSink& link) {
-    if (link.sink->send(message)) return true;
-    link.traffic = link.sink->traffic();
-    link.sink.reset();
-    return false;
-  });
-}
-
-void internal::send(OutputState& output, Message&& message) {
-  Module& module = *output.module;
-  Header& header = message.header;
-  header.src = output.address;
-  header.seq = output.seq++;
-  if (header.dst == 0) header.dst = output.to;
-  if (header.mode == 0) header.mode = module.focus_.mode_of(module.handled_.mode);
-  if (header.coord == 0) header.coord = output.type().coord;
-  if (header.coord == 0) header.coord = module.handled_.coord_for(header.info.type);
-  if (header.time == 0) header.time = module.handled_.time;
-  auto wanted = output.encoding.value_or(output.type().info.encoding);
-  if (message.plain() && (wanted == Encoding::Text || wanted == Encoding::Binary))
-    header.info.encoding = wanted;  // the same in memory
-  else
-    message = value_or_end(compress(message, wanted));
-  if (module.loop_ != nullptr) module.loop_->note(TraceEvent::What::Sent, output.name, header);
-  const bool any_ended = send_to_each(output, [&](LinkedSink& link) {
-    return !link.route.takes(header.dst) || send_to(link, output.name, message);
-  });
-  if (any_ended && !module.is_read()) throw Stopped();
-}
-
-std::size_t internal::forward(OutputState& output, const Message& message) {
-  Module& module = *output.module;
-  const std::string* from = module.handled_.peer;
-  std::size_t taken = 0;
-  if (module.loop_ != nullptr)
-    module.loop_->note(TraceEvent::What::Sent, output.name, message.header);
-  const bool any_ended = send_to_each(output, [&](LinkedSink& link) {
-    if (!link.route.takes(message.header.dst)) return true;
-    if (from != nullptr && !from->empty() && *from == link.route.peer) return true;
-    if (!send_to(link, output.name, message)) return false;
-    ++taken;
-    return true;
-  });
-  if (any_ended && !module.is_read()) throw Stopped();
-  return taken;
 }
 
 bool Module::is_read() const {
@@ -326,7 +226,7 @@ int Module::run(int argc, char** argv) {
   if (!arguments->instance.empty()) instance_ = arguments->instance;
   message_time_.reset();
   if (arguments->by_messages) message_time_ = 0;
-  if (is_background_) {  // what is refused changes nothing but the speed
+  if (options_.background) {  // what is refused changes nothing but the speed
     static_cast<void>(::setpriority(PRIO_PROCESS, 0, kBackgroundNice));
     const sched_param none{};
     static_cast<void>(::sched_setscheduler(0, SCHED_BATCH, &none));
@@ -343,7 +243,7 @@ int Module::run_loop(const internal::Arguments& arguments) {
       loop.run();
     } catch (const internal::Stopped&) {
       // No reader is left, or it was stopped: a clean end.
-      if (finishes_) loop.take_rest();
+      if (options_.finish_when_stopped) loop.take_rest();
     }
     loop.close();
     if (loop.has_failed_input()) return kFailure;  // as has been logged

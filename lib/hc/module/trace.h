@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a module notes of its messages while somebody traces it: while its output `trace` is linked.
-// Internal.
+// A module's output `trace`: what happens to its messages, while the output is linked. Internal.
 
 #include <cstdint>
 #include <string>
@@ -13,28 +12,50 @@
 
 namespace hc::internal {
 
-struct Trace {
-  static constexpr std::size_t kMany = 1000;    ///< events, after which they are sent
-  static constexpr std::size_t kMost = 20'000;  ///< that are kept until then
+class Trace {
+ public:
+  explicit Trace(const Clock& clock) : clock_(clock) { output.name = kTracePort; }
 
-  explicit Trace(const Clock& machine) : clock(machine) { output.name = kTracePort; }
+  [[nodiscard]] bool is_linked() const { return !output.links.empty(); }
 
-  const Clock& clock;
-  OutputState output;
-  std::vector<TraceEvent> events;
-  std::int64_t lost = 0;
-  MonotonicTime sent{0};
-
+  /// Notes an event of a message. @param number  of the link among those of its port.
   void note(TraceEvent::What what, const std::string& port, const Header& header,
-            std::int32_t number) {
-    if (events.size() < kMost)
-      events.push_back({what, port, header.src, header.seq, header.time, clock.wall(), number});
-    else
-      ++lost;
+            std::int32_t number = 0) {
+    if (is_linked()) [[unlikely]]
+      add(what, port, header, number);
+  }
+  /// Notes an event without a message. @param number  of a timer, or TraceEvent::kGenerator.
+  void note(TraceEvent::What what, std::int32_t number) {
+    if (is_linked()) [[unlikely]]
+      add(what, {}, {}, number);
   }
 
-  /// Sends what was noted. A link that fails is over: nothing here ends the module.
+  /// Sends the events when there are many, or twice a second.
+  void flush_if_due(MonotonicTime now) {
+    if (!events_.empty() && (events_.size() >= kMany || now - flushed_ >= kPeriod)) flush();
+  }
+  /// Sends the events. A link that fails is closed, and the module goes on.
   void flush();
+
+  OutputState output;
+
+ private:
+  static constexpr std::size_t kMany = 1000;
+  static constexpr std::size_t kMost = 20'000;  // are kept; further ones are counted
+  static constexpr std::chrono::milliseconds kPeriod{500};
+
+  void add(TraceEvent::What what, const std::string& port, const Header& header,
+           std::int32_t number) {
+    if (events_.size() < kMost)
+      events_.push_back({what, port, header.src, header.seq, header.time, clock_.wall(), number});
+    else
+      ++lost_;
+  }
+
+  const Clock& clock_;
+  std::vector<TraceEvent> events_;
+  std::int64_t lost_ = 0;
+  MonotonicTime flushed_{0};
 };
 
 }  // namespace hc::internal

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The inlets of a module: the links by which messages arrive. Internal.
+
+#include <string>
+#include <vector>
+
+#include <hc/module/arguments.h>
+#include <hc/module/inlet.h>
+#include <hc/module/link_opener.h>
+#include <hc/module/sets.h>
+
+namespace hc {
+
+class Module::Inlets {
+ public:
+  Inlets(Module& module, internal::Now& now, LinkOpener& opener, Delivery& delivery)
+      : module_(module),
+        now_(now),
+        opener_(opener),
+        delivery_(delivery),
+        sets_(module, delivery, inlets_) {}
+
+  /// Opens the links of a command line; without any, inputs share standard input.
+  void open(const internal::Arguments& arguments);
+  /// Opens a link of an input, or of the focus.
+  void open(const internal::PortLink& link);
+  /// Removes a link; false if there is none such.
+  bool remove(const internal::PortLink& link);
+  /// Lets a link end, since its writer will not return (Source::finish()).
+  void finish(const internal::PortLink& link);
+  void set_route(const std::string& link, const internal::Route& route);
+  /// Lets links that were opened again continue the counters of those that ended before them.
+  /// @returns  whether there are any.
+  bool join_renewed();
+  /// Ends the links whose messages can have no partners any more.
+  void end_unneeded();
+  /// Whether no message can come any more. A module that obeys commands may get another link; one
+  /// without inputs has its timers.
+  [[nodiscard]] bool all_ended() const;
+
+  /// Takes and handles a message of each link; whether there was any. Links whose messages crowd
+  /// the queue of their input, as they wait for partners, have their turn if no other has any.
+  bool take_each();
+  /// Takes and handles all messages of the focus.
+  void receive_focus();
+  /// Takes the next message of a link, and ends the link at its end.
+  Got take(internal::Inlet& inlet, Message& message);
+
+  /// Calls a function with each inlet, those of the focus first.
+  template <typename Call>
+  void for_each(const Call& call) {
+    for (auto* inlets : {&focus_, &inlets_})
+      for (auto& inlet : *inlets) call(inlet);
+  }
+  [[nodiscard]] std::size_t size() const { return inlets_.size(); }
+  [[nodiscard]] Sets& sets() { return sets_; }
+  void add_counters(std::vector<LinkCounters>& rows);
+  void add_ends(std::vector<LinkEnd>& rows) const;
+
+ private:
+  void open(const Uri& uri, std::vector<internal::InputState*> inputs);
+  bool take_one(internal::Inlet& inlet);
+  void end(internal::Inlet& inlet);
+
+  Module& module_;
+  internal::Now& now_;
+  LinkOpener& opener_;
+  Delivery& delivery_;
+  std::vector<internal::Inlet> inlets_, focus_;
+  Sets sets_;
+};
+
+}  // namespace hc

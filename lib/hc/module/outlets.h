@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The outlets of a module: the links by which its messages leave. Internal.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hc/contract/report.h>
+#include <hc/module/arguments.h>
+#include <hc/module/link_opener.h>
+#include <hc/module/trace.h>
+
+namespace hc {
+
+class Module::Outlets {
+ public:
+  /// Calls on the thread that sends, while an outlet waits.
+  struct Calls {
+    std::function<void(const internal::Outlet* blocked)> report_blocked;  ///< null: none any more
+    std::function<bool()> obey;  ///< when commands have come; see LinkOptions::Interrupt
+  };
+  Outlets(Module& module, internal::Trace& trace, LinkOpener& opener, Calls calls)
+      : module_(module), trace_(trace), opener_(opener), calls_(std::move(calls)) {}
+
+  /// Opens the links of a command line; without any, outputs share standard output.
+  void open(const internal::Arguments& arguments);
+  /// Opens a link of an output, or of the trace.
+  void open(const internal::PortLink& link);
+
+  /// Ends an outlet, whose queued messages are lost; null if there is none such.
+  std::shared_ptr<internal::Outlet> abandon(const internal::PortLink& link);
+  void remove(const internal::PortLink& link, const std::shared_ptr<internal::Outlet>& outlet);
+  /// Frees those that were removed. Not while one may be sending.
+  void free_removed() { removed_.clear(); }
+
+  void set_route(const std::string& link, const internal::Route& route);
+
+  /// Counts the readers; not while one may be sending.
+  void count_peers();
+  void add_counters(std::vector<LinkCounters>& rows) const;
+  void add_ends(std::vector<LinkEnd>& rows) const;
+  [[nodiscard]] std::size_t index_of(const internal::Outlet* outlet) const;
+
+  /// Closes all. The error is that of the first that failed.
+  Status close();
+
+ private:
+  /// @param keep  of an output that never waits; else 0.
+  std::shared_ptr<internal::Outlet> open(const Uri& uri, const std::string& port,
+                                         std::uint32_t keep);
+  internal::OutputState& output_of(const internal::PortLink& link) {
+    return link.is_trace ? trace_.output : *module_.outputs_[link.port];
+  }
+
+  Module& module_;
+  internal::Trace& trace_;
+  LinkOpener& opener_;
+  Calls calls_;
+  bool is_late_ = false;  // its graph runs already: --join, and links by commands
+  std::vector<std::shared_ptr<internal::Outlet>> outlets_;  // in the order of the command line
+  std::vector<std::shared_ptr<internal::Outlet>> removed_;
+};
+
+}  // namespace hc

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Commands from `hc run`, and reports to it (spec/module.md). Internal.
+
+#include <string>
+#include <vector>
+
+#include <hc/contract/command.h>
+#include <hc/module/inlets.h>
+#include <hc/module/management.h>
+#include <hc/module/outlets.h>
+
+namespace hc {
+
+class Module::Remote {
+ public:
+  Remote(Module& module, internal::Now& now, LinkOpener& opener, Inlets& inlets, Outlets& outlets)
+      : module_(module), now_(now), opener_(opener), inlets_(inlets), outlets_(outlets) {}
+
+  /// Opens the links for commands and reports.
+  void open(const internal::Arguments& arguments);
+  /// Where commands come from; null if there are none.
+  [[nodiscard]] Source* commands() const { return module_.management_->commands(); }
+
+  /// When serve() is to be called at the latest, even if no command comes.
+  [[nodiscard]] MonotonicTime due() const;
+  /// Obeys the commands that have come, and reports if it is time.
+  void serve();
+  /// While send() waits: obeys commands that do not touch inputs, one of which may be in use;
+  /// serve() obeys the others. False if no more commands come.
+  bool obey_while_sending();
+
+  void report_links();
+  /// Also of no links, since it shows that the module responds.
+  void report_counters();
+  /// @param blocked  the outlet whose reader the module waits for; null: none.
+  void report_state(const internal::Outlet* blocked = nullptr);
+
+ private:
+  void obey(const std::string& row);
+  Status carry_out(const ModuleCommand& command);
+  Status set_parameter(const std::string& name, const std::string& value);
+  Status link(bool is_input, const std::string& text);
+  Status unlink(bool is_input, const std::string& text);
+  void report_parameters();
+  void send(Report report, Message message);
+
+  Module& module_;
+  internal::Now& now_;
+  LinkOpener& opener_;
+  Inlets& inlets_;
+  Outlets& outlets_;
+  std::vector<std::string> deferred_;  // commands, see obey_while_sending()
+  MonotonicTime reported_{0};          // counters, the last time
+};
+
+}  // namespace hc

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// How messages leave a module.
+#include <utility>
+
+#include <hc/compress/compress.h>
+#include <hc/compress/scale.h>
+#include <hc/module/loop.h>
+
+namespace hc {
+namespace {
+
+using internal::Outlet;
+
+/// A message as a link wants it; what it cannot be made of (an output may send anything) stays.
+Message converted(const Message& message, const Conversion& conversion) {
+  Message made = message;
+  const auto& header = message.header;
+  if (conversion.scale != 1 && can_scale(header.info) && !header.empty())
+    made = value_or_end(shrink(message, scaled(header.width, conversion.scale),
+                               scaled(header.height, conversion.scale)));
+  if (!conversion.as) return made;
+  Header wanted = made.header;
+  wanted.info.encoding = *conversion.as;
+  if (!check(wanted, {~std::uint64_t{0}})) return made;
+  return value_or_end(compress(made, *conversion.as, conversion.quality.value_or(kJpegQuality)));
+}
+
+/// Sends to a link; false when its reader has left, which ends the outlet.
+bool send_to(Outlet& outlet, const std::string& port, const Message& message) {
+  auto sent = outlet.conversion.is_none()
+                  ? outlet.sink->send(message)
+                  : outlet.sink->send(converted(message, outlet.conversion));
+  if (sent) return true;
+  const auto& error = sent.error();
+  if (error.code != Code::Closed)
+    internal::fail(error.code == Code::NotFound ? outlet.uri : port, error);
+  outlet.end();
+  return false;
+}
+
+/// Calls `send_one` with each link of an output, which may lose links meanwhile.
+/// @returns  whether one of them has ended unasked.
+template <typename SendOne>
+bool send_to_each(internal::OutputState& output, const SendOne& send_one) {
+  bool any_ended = false;
+  for (std::size_t i = 0; i < output.links.size();) {
+    auto* outlet = output.links[i].get();
+    const bool ended = outlet->sink != nullptr && !send_one(*outlet);
+    if (i >= output.links.size() || output.links[i].get() != outlet) continue;  // it was removed
+    any_ended = any_ended || ended;
+    ++i;
+  }
+  return any_ended;
+}
+
+}  // namespace
+
+void internal::Trace::flush() {
+  flushed_ = clock_.monotonic();
+  if (lost_ > 0) events_.push_back({TraceEvent::What::Lost, "", 0, lost_, 0, clock_.wall()});
+  lost_ = 0;
+  if (events_.empty()) return;
+  Message message = make_trace(events_);
+  message.header.seq = output.seq++;
+  message.header.time = events_.front().moment;
+  events_.clear();
+  send_to_each(output, [&](Outlet& outlet) {
+    const bool is_sent = outlet.sink->send(message).has_value();
+    if (!is_sent) outlet.end();
+    return is_sent;
+  });
+}
+
+void internal::send(OutputState& output, Message&& message) {
+  Module& module = *output.module;
+  Header& header = message.header;
+  header.src = output.address;
+  header.seq = output.seq++;
+  if (header.dst == 0) header.dst = output.to;
+  if (header.mode == 0) header.mode = module.focus_.mode_of(module.handled_.mode);
+  if (header.coord == 0) header.coord = output.type().coord;
+  if (header.coord == 0) header.coord = module.handled_.coord_for(header.info.type);
+  if (header.time == 0) header.time = module.handled_.time;
+  auto wanted = output.encoding.value_or(output.type().info.encoding);
+  if (message.plain() && (wanted == Encoding::Text || wanted == Encoding::Binary))
+    header.info.encoding = wanted;  // the same in memory
+  else
+    message = value_or_end(compress(message, wanted));
+  if (module.loop_ != nullptr) module.loop_->note(TraceEvent::What::Sent, output.name, header);
+  const bool any_ended = send_to_each(output, [&](Outlet& outlet) {
+    return !outlet.route.takes(header.dst) || send_to(outlet, output.name, message);
+  });
+  if (any_ended && !module.is_read()) throw Stopped();
+}
+
+std::size_t internal::forward(OutputState& output, const Message& message) {
+  Module& module = *output.module;
+  const std::string* from = module.handled_.peer;
+  std::size_t taken = 0;
+  if (module.loop_ != nullptr)
+    module.loop_->note(TraceEvent::What::Sent, output.name, message.header);
+  const bool any_ended = send_to_each(output, [&](Outlet& outlet) {
+    if (!outlet.route.takes(message.header.dst)) return true;
+    if (from != nullptr && !from->empty() && *from == outlet.route.peer) return true;
+    if (!send_to(outlet, output.name, message)) return false;
+    ++taken;
+    return true;
+  });
+  if (any_ended && !module.is_read()) throw Stopped();
+  return taken;
+}
+
+}  // namespace hc

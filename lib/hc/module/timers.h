@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A module's time, its timers and its time-outs. Internal.
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include <hc/module/module.h>
+#include <hc/module/trace.h>
+
+namespace hc {
+
+namespace internal {
+
+/// The time, by the machine's clock, which is read once per message, or by that of the messages.
+struct Now {
+  const Clock& clock;
+  std::optional<std::int64_t>& message_time;  ///< the module's; none: by the machine's clock
+  MonotonicTime machine{0};                   ///< when the clock was last read
+  std::int64_t wall_offset = 0;               ///< from monotonic to wall clock [ns]
+
+  [[nodiscard]] MonotonicTime time() const {
+    return message_time ? MonotonicTime(*message_time) : machine;
+  }
+  void read() { machine = clock.monotonic(); }
+  void read_wall() { wall_offset = clock.wall() - clock.monotonic().count(); }
+  /// Sets the clock of the messages.
+  void pass_to(MonotonicTime time) { message_time = time.count(); }
+};
+
+}  // namespace internal
+
+/// Timers and time-outs, numbered as in a trace: in order of declaration, time-outs last.
+class Module::Timers {
+ public:
+  Timers(Module& module, internal::Now& now, internal::Trace& trace)
+      : timers_(module.timers_), timeouts_(module.timeouts_), now_(now), trace_(trace) {}
+
+  /// Durations count from now on.
+  void start() {
+    for (auto& timer : timers_) timer.last = now_.time();
+    for (auto& timeout : timeouts_)
+      if (timeout->due) *timeout->due += now_.time();
+  }
+
+  /// When the next is due; the latest time if none ever is.
+  [[nodiscard]] MonotonicTime next() const {
+    auto next = MonotonicTime::max();
+    for (const auto& timer : timers_) next = std::min(next, timer.due());
+    for (const auto& timeout : timeouts_)
+      if (timeout->due) next = std::min(next, *timeout->due);
+    return next;
+  }
+
+  void fire_due() {
+    for (std::size_t i = 0; i < timers_.size(); ++i) {
+      auto& timer = timers_[i];
+      const auto due = timer.due();
+      if (due > now_.time()) continue;
+      fire_traced(i);
+      timer.last = std::max(due, now_.time() - timer.period());
+    }
+    for (std::size_t i = 0; i < timeouts_.size(); ++i)  // a handler may add some
+      if (timeouts_[i]->due && *timeouts_[i]->due <= now_.time()) fire_traced(timers_.size() + i);
+  }
+
+  /// Calls the handler of one, if the module has so many.
+  void fire(std::size_t number) {
+    if (number < timers_.size()) return timers_[number].handler();
+    if (number - timers_.size() >= timeouts_.size()) return;
+    const auto timeout = timeouts_[number - timers_.size()];  // shared: the list may change
+    timeout->due.reset();
+    timeout->handler();
+  }
+
+ private:
+  void fire_traced(std::size_t number) {
+    trace_.note(TraceEvent::What::Began, static_cast<std::int32_t>(number));
+    fire(number);
+    trace_.note(TraceEvent::What::Ended, static_cast<std::int32_t>(number));
+    now_.read();
+  }
+
+  std::vector<Timer>& timers_;
+  std::vector<std::shared_ptr<Timeout::State>>& timeouts_;
+  internal::Now& now_;
+  internal::Trace& trace_;
+};
+
+}  // namespace hc
