@@ -53,8 +53,7 @@ int main(int argc, char** argv) {
     setup.seconds = *seconds;
     const auto width = static_cast<std::int32_t>(*bytes) - (setup.is_small() ? kHeaderBytes : 0);
     if (setup.is_small())
-      own = hc::intensity_image<std::uint8_t>(
-          width, 1, std::vector<std::uint8_t>(setup.bytes - kHeaderBytes));
+      own = hc::intensity_image().message(std::vector<std::uint8_t>(setup.bytes - kHeaderBytes));
     else
       own = {outputs[0].loan(1, width).finish()};
     own->header.time = module.now();

@@ -13,7 +13,7 @@
 #include "workspace.h"
 
 int run_workspace(int argc, char** argv, const hc::Clock& clock) {
-  hc::Module module{"workspace", "Grants the focus to the highest bid and publishes it.", clock};
+  hc::Module module{"workspace", "Grants the focus to the highest bid and publishes it.", {.clock = &clock}};
   auto bids = module.input("bids", hc::table(),
                            "salience 0 … 1 for the message's mode and src; 0 withdraws that bid", {.keep = 16});
   auto person = module.input("person", hc::table(),
@@ -68,7 +68,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
       if (auto names = checked(hc::parse_mode_names(sources_read, hc::kSourceNames)))
         workspace.brake.set_names(std::move(*names));
   };
-  auto report = [&] { hc::internal::ModuleAccess::report_focus(module, workspace.focus(), workspace.brake.stops()); };
+  auto report = [&] { hc::ModuleAccess::report_focus(module, workspace.focus(), workspace.brake.stops()); };
   auto send_stopped = [&] {
     const std::uint8_t is_stopped = workspace.brake.is_stopped() ? 1 : 0;
     stopped.send({is_stopped}, module.now());

@@ -130,7 +130,7 @@ py::object add_output(const py::object& self, const std::string& name, const Kin
   auto& program = self.cast<Program&>();
   auto& module = program.module();
   module.output(name, hc::AnyKind{{kind.only("an output")}}, doc, {on_demand, keep});
-  return make_output(program, hc::internal::ModuleAccess::outputs(module).back(), self);
+  return make_output(program, hc::ModuleAccess::outputs(module).back(), self);
 }
 
 PyParameter add_parameter(Program& program, const std::string& name, const py::object& initial,
@@ -153,7 +153,7 @@ PyParameter add_parameter(Program& program, const std::string& name, const py::o
     module.parameter(name, initial.cast<double>(), unit, doc, options);
   else
     module.parameter(name, initial.cast<std::string>(), unit, doc, options);
-  return {&program, hc::internal::ModuleAccess::parameters(module).back()};
+  return {&program, hc::ModuleAccess::parameters(module).back()};
 }
 
 void every(Program& program, const py::object& period, const py::object& function) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program.h"
 
-#include <hc/module/loop.h>
+#include <hc/module/ending.h>
 
 namespace python {
 namespace {

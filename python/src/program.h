@@ -30,7 +30,7 @@ class Program {
                 {.background = background,
                  .keep_running = keep_running,
                  .finish_when_stopped = finish_when_stopped}) {
-    hc::internal::ModuleAccess::before_waiting(module_, [this] { release(); });
+    hc::ModuleAccess::before_waiting(module_, [this] { release(); });
   }
 
   /// Raises on other threads than the one that runs the module, while it runs.

@@ -35,7 +35,7 @@ struct RunOptions {
 };
 
 /// Set by SIGUSR1: save the messages kept by --last.
-volatile std::sig_atomic_t save_requested = 0;
+volatile std::sig_atomic_t save_recording = 0;
 
 /// Prints a few lines about the run, including the modules' results.
 void print_summary(const RunOptions& options, const hc::RunReport& report) {
@@ -131,7 +131,7 @@ void take_record(const RunOptions& options, hc::LoadOptions& load) {
   check_writable(is_mcap ? path.parent_path() : path, failed);
   load.recorder[is_mcap ? "file" : "folder"] = place.path;
   if (!is_mcap) load.recorder["append"] = "true";  // a restarted recorder continues
-  if (is_mcap) std::signal(SIGUSR1, [](int) { save_requested = 1; });
+  if (is_mcap) std::signal(SIGUSR1, [](int) { save_recording = 1; });
   if (place.path != given.path)
     say(hc::format("hc run: {} stays as it is; recording to {}", given.path, place.path));
 }
@@ -168,7 +168,7 @@ void run(RunOptions options) {
   };
   run_options.state = [&, recorder = graph.recorder](const hc::GraphState& state) {
     if (has_status) lines.show(status_line(state).substr(0, terminal_size().width - 1));
-    if (std::exchange(save_requested, 0) == 0) return;
+    if (std::exchange(save_recording, 0) == 0) return;
     for (const auto& module : state.modules)
       if (module.name == recorder && module.process > 0) ::kill(module.process, SIGUSR1);
   };

@@ -47,7 +47,7 @@ Result<std::pair<std::size_t, std::string>> split_port(const Ports& ports, std::
                                              text.substr(equals + 1)};
 }
 
-/// Reads the words one after the other.
+/// Reads words from left to right.
 class Parser {
  public:
   Parser(const Module& module, const std::vector<std::string>& words)
@@ -181,11 +181,11 @@ class Parser {
   const Module& module_;
   const std::vector<std::string>& words_;
   std::size_t at_ = 0;
-  std::size_t positional_ = 0;  // words without a name so far
+  std::size_t positional_ = 0;  // words without a name, so far
   Arguments arguments_;
 };
 
-/// An option of every module: what reads it, and what --help and the documents say of it.
+/// An option of every module; `doc` is for --help and the documents.
 struct Option {
   std::string_view name, argument, doc;
   Status (Parser::*read)(const std::string& value);
@@ -261,7 +261,7 @@ Status Parser::read_word() {
 
   auto parameter = position_of(ModuleAccess::parameters(module_), std::string_view(key).substr(2));
   const bool is_parameter = key.size() > 2 && parameter != ModuleAccess::parameters(module_).end();
-  // A flag needs no value; one may follow an equals sign.
+  // A flag needs no value, but may have one after an equals sign.
   if (is_parameter && std::holds_alternative<bool>((*parameter)->value))
     return (*parameter)->set(given.value_or("true"));
   auto option = std::find_if(kOptions.begin(), kOptions.end(),

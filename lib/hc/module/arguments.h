@@ -13,22 +13,21 @@
 
 namespace hc::internal {
 
-/// Where a link begins or ends at a module: the port, and its URI.
+/// A link of a port.
 struct PortLink {
-  bool is_focus = false;  ///< the input that every module has
-  bool is_trace = false;  ///< the output that every module has
+  bool is_focus = false;  ///< of the input `focus`, which every module has
+  bool is_trace = false;  ///< of the output `trace`, which every module has
   std::size_t port = 0;
   Uri uri;
 };
 
-/// What a command line asks for. Parameters, and what it says of ports, are set in the module
-/// itself.
+/// A command line. Its parameters and the settings of ports are stored in the module itself.
 struct Arguments {
   enum class Task { Run, Help, Describe };
   Task task = Task::Run;
   std::string instance;                               ///< --name
   std::vector<PortLink> inputs, outputs;              ///< --in, --out
-  std::vector<std::pair<std::string, Route>> routes;  ///< --route: "PORT=URI", and what it says
+  std::vector<std::pair<std::string, Route>> routes;  ///< --route: "PORT=URI", and its route
   Focus focus;                                        ///< --mode, --modes
   bool by_messages = false;                           ///< --clock messages, or a trace
   std::optional<Uri> clock;                           ///< --clock URI: of a trace
@@ -41,7 +40,7 @@ struct Arguments {
 
 /// Reads the command line (without the program's name).
 ///
-/// Errors: Invalid, with what is wrong and what there would be.
+/// Errors: Invalid, with the mistake and the possible values.
 Result<Arguments> parse_arguments(const Module& module, const std::vector<std::string>& words);
 
 /// Reads `[PORT=]URI`, as --in and --out have it. Errors: Invalid.
@@ -50,10 +49,10 @@ Result<PortLink> parse_port_link(const Module& module, bool is_input, const std:
 /// Reads `PORT=URI WORDS`, as --route has it: the first word, and the others. Errors: Invalid.
 Result<std::pair<std::string, Route>> parse_link_route(std::string_view text);
 
-/// The options that every module like this one has, with their arguments, and what they mean.
+/// The options of every module with such ports: with their arguments, and their meanings.
 std::vector<std::pair<std::string, std::string>> options_of(const Module& module);
 
-/// What a module says of itself.
+/// The answer to --describe.
 Description description_of(const Module& module);
 
 /// The text of --help.

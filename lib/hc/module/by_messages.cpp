@@ -89,7 +89,7 @@ class Module::Schedule::ByMessages : public Schedule {
     return first;
   }
 
-  /// Handles the earliest message if its time has come, else lets time pass to what is due before.
+  /// Handles the earliest message, or lets time pass until a timer that is due before.
   Next advance() {
     if (!take_heads()) return Next::Wait;
     const bool generates = loop_.module.generate_ != nullptr;
@@ -155,8 +155,8 @@ class Module::Schedule::Replay final : public ByMessages {
   }
 
  private:
-  /// Repeats an event at its moment, or waits for messages. A module that has changed since may not
-  /// have its cause any more.
+  /// Repeats an event at its moment, or waits for messages. Events without a cause in this module,
+  /// which may have changed since, are skipped.
   void repeat_next() {
     if (!take_heads()) {
       loop_.wait(true, MonotonicTime::max());

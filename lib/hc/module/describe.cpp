@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --help and --describe: what a module says of itself.
+// --help and --describe.
 #include <hc/base/format.h>
 #include <hc/link/link.h>
 #include <hc/module/arguments.h>

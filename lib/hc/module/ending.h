@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How a module ends before its inputs do. Internal.
+// Exceptions that end a module. Internal.
 
 #include <exception>
 #include <string>

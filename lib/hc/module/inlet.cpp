@@ -12,7 +12,7 @@ namespace {
 
 using internal::Inlet;
 
-/// Median, 99th percentile and maximum of what was added since the last call.
+/// Median, 99th percentile and maximum since the last call.
 Durations take_durations(internal::Quantiles& quantiles) {
   if (quantiles.empty()) return {-1, -1, -1};
   const Durations taken = {quantiles.quantile(0.5), quantiles.quantile(0.99), quantiles.max()};
@@ -103,8 +103,8 @@ void Module::Delivery::call(Inlet& inlet, const internal::InputState& input, Mes
   module_.handled_ = {};
 }
 
-/// Calls a handler. Every exception but ModuleError says that its message is bad, also those of
-/// libraries that do not accept every image.
+/// Calls a handler. Any exception except ModuleError means a bad message: also those of libraries
+/// that do not accept every image.
 template <typename Handle>
 void Module::Delivery::call_or_drop(Inlet& inlet, const std::string& who, const Handle& handle) {
   try {

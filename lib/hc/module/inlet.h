@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// An inlet of a module, and what becomes of its messages. Internal.
+// An inlet of a module, and the delivery of its messages. Internal.
 
 #include <functional>
 #include <memory>
@@ -20,7 +20,7 @@ namespace internal {
 /// The port of inlets that receive the focus.
 inline const std::string kFocusPort = "focus";
 
-/// A link by which messages arrive: at one port, at all of them from standard input, or the focus.
+/// A link by which messages arrive: at one input, at all (standard input), or of the focus.
 struct Inlet {
   std::string uri;
   std::unique_ptr<Source> source = {};   ///< null after its end
@@ -35,7 +35,7 @@ struct Inlet {
   Quantiles ages = {}, gaps = {};        ///< of messages since the last report
   MonotonicTime last_taken{0};           ///< 0: never
 
-  /// Whether a message may come that has not been taken.
+  /// Whether its next message is to be taken.
   [[nodiscard]] bool is_open() const { return source != nullptr && !head; }
   /// When its head is due.
   [[nodiscard]] MonotonicTime time() const { return MonotonicTime(head->header.time); }
@@ -45,34 +45,33 @@ struct Inlet {
   [[nodiscard]] const std::string& port() const {
     return inputs.empty() ? kFocusPort : inputs.front()->name;
   }
-  /// The inputs that its input is synchronised with; null: none.
+  /// The synchronised inputs that its input is one of; null: none.
   [[nodiscard]] TogetherState* together() const { return inputs.front()->together; }
 
-  /// Adds the age of a message, and the time since the one before it.
-  /// @param sensed  of its header.
+  /// Adds the age of a message, and the gap before it. @param sensed  time in its header.
   void measure(std::int64_t sensed, MonotonicTime taken, std::int64_t wall_offset);
-  /// Its row of a report, which begins a new period of ages and gaps.
+  /// A row of a report; ages and gaps start again.
   LinkCounters take_counters();
 };
 
 }  // namespace internal
 
-/// Passes messages to the handlers of their inputs, and drops those that cannot be handled.
+/// Passes messages to the handlers of their inputs, or drops them.
 class Module::Delivery {
  public:
-  /// @param report_focus  called when the focus has changed.
+  /// @param report_focus  called after a change of the focus.
   Delivery(Module& module, const internal::Now& now, internal::Trace& trace,
            std::function<void()> report_focus)
       : module_(module), now_(now), trace_(trace), report_focus_(std::move(report_focus)) {}
 
-  /// Passes a message of an inlet to its handler, which may move it away, or to the focus.
+  /// Handles a message, whose handler may move it away.
   void handle(internal::Inlet& inlet, Message& message);
   /// Handles a complete set of synchronised inputs. @param inlet  of one of them.
   void handle(internal::Inlet& inlet, internal::TogetherState& together);
   void expire_focus() {
     if (module_.focus_.expire(now_.time())) report_focus_();
   }
-  /// Whether a file or standard input had bad messages, so that the module has not done its work.
+  /// Whether a file or standard input had bad messages: the module has failed then.
   [[nodiscard]] bool has_failed_input() const { return has_failed_input_; }
 
  private:

@@ -23,28 +23,25 @@ class Module::Inlets {
 
   /// Opens the links of a command line; without any, inputs share standard input.
   void open(const internal::Arguments& arguments);
-  /// Opens a link of an input, or of the focus.
   void open(const internal::PortLink& link);
-  /// Removes a link; false if there is none such.
   bool remove(const internal::PortLink& link);
-  /// Lets a link end, since its writer will not return (Source::finish()).
+  /// The writer of a link will not return: see Source::finish().
   void finish(const internal::PortLink& link);
   void set_route(const std::string& link, const internal::Route& route);
-  /// Lets links that were opened again continue the counters of those that ended before them.
+  /// Merges links that have ended with the same links, opened again, whose counters continue.
   /// @returns  whether there are any.
   bool join_renewed();
-  /// Ends the links whose messages can have no partners any more.
+  /// Ends synchronised links that cannot be part of a set any more.
   void end_unneeded();
-  /// Whether no message can come any more. A module that obeys commands may get another link; one
-  /// without inputs has its timers.
+  /// Whether no message can arrive any more. False without links if a command may add one, or if
+  /// the module has only timers.
   [[nodiscard]] bool all_ended() const;
 
-  /// Takes and handles a message of each link; whether there was any. Links whose messages crowd
-  /// the queue of their input, as they wait for partners, have their turn if no other has any.
+  /// Takes and handles a message of each link; false if there is none. Links with a crowded queue
+  /// of messages that wait for partners are read only if no other link has a message.
   bool take_each();
-  /// Takes and handles all messages of the focus.
   void receive_focus();
-  /// Takes the next message of a link, and ends the link at its end.
+  /// Takes the next message of a link, which ends if there are no more.
   Got take(internal::Inlet& inlet, Message& message);
 
   /// Calls a function with each inlet, those of the focus first.

@@ -81,10 +81,9 @@ TEST(Kind, AnElementThatIsNotThereIsNotRead) {
   EXPECT_THROW(static_cast<void>(one.matrix().at(0, 0, 3)), std::out_of_range);
   EXPECT_THROW(static_cast<void>(one.matrix().at(0, 1)), std::out_of_range);
   EXPECT_THROW(static_cast<void>(one.numbers().first(4)), std::out_of_range);
-  EXPECT_THROW(static_cast<void>(one.numbers().last(4)), std::out_of_range);
-  EXPECT_THROW(static_cast<void>(one.numbers().subspan(4, 0)), std::out_of_range);
-  EXPECT_THROW(static_cast<void>(one.numbers().subspan(1, 3)), std::out_of_range);
-  EXPECT_EQ(one.numbers().last(2).front(), 2);
+  EXPECT_THROW(static_cast<void>(one.numbers().subspan(4)), std::out_of_range);
+  EXPECT_TRUE(one.numbers().subspan(3).empty());
+  EXPECT_EQ(one.numbers().subspan(1).front(), 2);
 }
 
 TEST(Kind, AnyImageIsInColourOrGrey) {

@@ -27,7 +27,7 @@ LinkOptions Module::LinkOpener::options_for(const Uri& uri, const std::string& p
   options.log = [this, uri = uri.text(), port](Level level, std::string_view line) {
     if (!line.starts_with(uri)) return module_.log(line, level);
     const std::string rest(line.substr(uri.size()));
-    // A file that is read on after an error; `hc run` repeats the line at its end.
+    // An error of a file, which is read on; `hc run` repeats the line at its end.
     if (uri.starts_with("file:")) return module_.log(port + rest, level);
     const std::string name = name_of(uri, port);
     if (name == uri) return module_.log(line, level);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How a module opens its links, and what they are called in its log. Internal.
+// Opens a module's links, and names them in its log. Internal.
 
 #include <deque>
 #include <memory>
@@ -10,31 +10,29 @@
 
 namespace hc {
 
-/// Opens links. In a graph they are called by their ports, and their log lines are delayed, since
-/// at the end of a graph, when all its modules stop, such lines mean nothing.
+/// In a graph, links are named by their ports in the log, and their lines are delayed: when a whole
+/// graph stops, lines about its links would only confuse.
 class Module::LinkOpener {
  public:
   /// @param options  of all links.
   LinkOpener(const Module& module, const LinkOptions& options)
       : module_(module), options_(options) {}
 
-  /// Opens an inlet's source; ends the module if that fails.
+  /// Opens a source; ends the module if that fails.
   std::unique_ptr<Source> open(const Uri& uri, const std::string& port);
-  /// Options for a link, with its log.
   LinkOptions options_for(const Uri& uri, const std::string& port);
 
-  /// Whether `hc run` runs the module.
+  /// Whether the module takes commands, so that it runs in a graph.
   [[nodiscard]] bool is_in_graph() const;
-  /// What the log calls a link: its port if `hc run` has made it, else its URI.
+  /// The port of a link that `hc run` has made, else the URI.
   [[nodiscard]] std::string name_of(const std::string& uri, const std::string& port) const;
 
-  /// Logs the delayed lines that are due.
   void log_lines(MonotonicTime now);
-  /// When the next line is due; the latest time if there is none.
+  /// When the next line is due.
   [[nodiscard]] MonotonicTime due() const {
     return lines_.empty() ? MonotonicTime::max() : lines_.front().due;
   }
-  /// Drops the delayed lines about links whose URIs begin like this.
+  /// Drops the delayed lines about links whose URIs begin like this one.
   void drop_lines(const std::string& uri) {
     std::erase_if(lines_, [&](const auto& line) { return line.uri.starts_with(uri); });
   }

@@ -34,7 +34,7 @@ class Module::Schedule::Live final : public Schedule {
   }
 
  private:
-  /// What else is to be done while the module takes no messages.
+  /// The work during a pause, which takes no messages.
   void attend() {
     loop_.now.read();
     loop_.inlets.receive_focus();
@@ -42,7 +42,7 @@ class Module::Schedule::Live final : public Schedule {
   }
 
   Loop& loop_;
-  bool was_wait_short_ = false;  // so that the clock need not be read again
+  bool was_wait_short_ = false;  // the clock need not be read again
 };
 
 std::unique_ptr<Module::Schedule> Module::Schedule::live(Loop& loop) {

@@ -10,7 +10,7 @@
 namespace hc {
 namespace {
 
-/// How often a busy module looks for commands; one that waits is woken by them.
+/// How often a busy module looks for commands; an idle one is woken by them.
 constexpr std::chrono::milliseconds kHousekeepingPeriod{10};
 
 }  // namespace
@@ -31,7 +31,7 @@ Module::Loop::Loop(Module& served, const internal::Arguments& arguments, int sto
       pauses_(stop) {
   module.management_ = std::make_shared<internal::Management>();
   module.focus_ = arguments.focus;
-  // The stops that its process before this one reported count until it reports others.
+  // The stops that the process before this one reported are valid until it reports others.
   for (const auto& parameter : module.parameters_)
     if (parameter->name == kStops)
       module.focus_.stops = value_or_end(parse_stops(text(parameter->value)));
@@ -95,7 +95,7 @@ void Module::Loop::serve() {
   if (now.machine - served_ < kHousekeepingPeriod && now.machine < remote.due()) return;
   served_ = now.machine;
   if (module.before_waiting_) module.before_waiting_();
-  // Links look for writers that have died when they are waited for, which a busy module never does.
+  // Links detect dead writers when they are waited for, which a busy module never does.
   inlets.for_each([](internal::Inlet& inlet) {
     if (inlet.is_open()) inlet.source->prepare_wait();
   });

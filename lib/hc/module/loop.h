@@ -20,7 +20,7 @@
 namespace hc {
 
 struct Module::Loop {
-  /// Opens the links: those of outputs first, so that listeners are there before anything waits.
+  /// Opens the links: those of outputs first, so that all modules listen before any of them waits.
   Loop(Module& module, const internal::Arguments& arguments, int stop);
   ~Loop();
   Loop(const Loop&) = delete;
@@ -28,11 +28,10 @@ struct Module::Loop {
 
   /// Runs until all inputs have ended, or Module::stop().
   void run();
-  /// Handles the messages of modules that end at the same time (Module::finish_when_stopped()).
+  /// See Module::finish_when_stopped().
   void take_rest();
   /// See Schedule::pause().
   void pause(const std::function<MonotonicTime()>& due) { schedule_->pause(due); }
-  /// Closes the outlets.
   void close();
   [[nodiscard]] bool has_failed_input() const { return delivery.has_failed_input(); }
   void report_state() { remote.report_state(); }
@@ -42,14 +41,13 @@ struct Module::Loop {
 
   // For its schedule.
 
-  /// Obeys commands and reports, every 10 ms while the module is busy.
+  /// Obeys commands and sends reports, every 10 ms while the module is busy.
   void serve();
-  /// Ends and joins links, serves, fires timers, and reads the module's own descriptors.
+  /// Everything except messages: ends links, serves, fires timers, reads own descriptors.
   void work_between_messages();
   void generate();
-  /// Waits for a time, a command, a report that is due; with `for_messages` also for messages of
-  /// inputs and for the module's own descriptors. Returns whether the wait was so short that the
-  /// clock need not be read again.
+  /// Waits until a time, for commands and the focus; with `for_messages` also for messages and own
+  /// descriptors. Returns whether it was so short that the clock need not be read again.
   bool wait(bool for_messages, MonotonicTime until);
 
   Module& module;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Which messages of several inputs belong together: those of equal times.
+// Matches messages of several inputs by their times.
 // Pure: no I/O, no clock, no threads; the same messages in the same order give the same sets.
 
 #include <cstddef>
@@ -14,52 +14,53 @@
 
 namespace hc {
 
-/// Puts messages of several inputs into sets, one of each input, all of one time.
+/// Makes sets of messages, one of each input, all of the same time.
 ///
 ///     Matcher matcher(2, [](std::span<const Message> set) { use(set); });
 ///     matcher.push(0, left);
 ///     matcher.push(1, right);
 ///     matcher.end(0);  // no more of these
 ///
-/// A set is given as soon as it is complete, which takes for granted that the times of an input do
-/// not fall: what is older than the set is dropped. A message without a time (0) fits any others:
-/// it is taken in its turn, with the next set. Where the time of an input falls, its writer has
-/// restarted: what waits at any input is dropped, and matching starts over with that message.
+/// A set is passed on as soon as it is complete, and older messages are dropped, since the times of
+/// an input normally never decrease. If they do, the writer has restarted: all waiting messages are
+/// dropped, and matching starts again with that message. A message without a time (0) matches any
+/// others: it is part of the next set.
 class Matcher {
  public:
   using Take = std::function<void(std::span<const Message>)>;
 
-  /// Most messages of an input that wait for their partners: half of what a reader of shared
-  /// memory may hold with two inputs.
+  /// Maximum number of messages that wait at an input, of the 63 that a reader of shared memory may
+  /// hold.
   static constexpr std::size_t kMaxWaiting = 16;
-  /// At most so many bytes of elements wait at an input, or one message.
+  /// Maximum number of bytes of their elements; one message may always wait.
   static constexpr std::uint64_t kMaxWaitingBytes = std::uint64_t{256} << 20;
 
-  /// Messages of an input that came into no set.
+  /// Messages of an input that are part of no set.
   struct Dropped {
-    std::uint64_t unmatched = 0;  ///< another input had none of this time
-    std::uint64_t crowded = 0;    ///< too many waited, and the oldest was dropped
+    std::uint64_t unmatched = 0;  ///< another input had none of that time
+    std::uint64_t crowded = 0;    ///< the oldest of too many
     [[nodiscard]] std::uint64_t total() const { return unmatched + crowded; }
   };
 
   /// @param inputs  2 or more.
-  /// @param take  is called with each set, in the order of inputs, from push(). What it throws goes
-  /// to the caller; the set counts as taken.
+  /// @param take  called from push() with each set, in the order of inputs. Its exceptions reach
+  /// the
+  ///   caller of push(); the set counts as taken.
   Matcher(std::size_t inputs, Take take);
 
-  /// The next message of an input that has not ended. Its elements are to be safe to hold: see
-  /// Message::keep(). Cost: in proportion to the messages that are settled by it.
+  /// Adds the next message of an input that has not ended; its elements must be safe to hold (see
+  /// Message::keep()). Cost: linear in the messages that are matched or dropped.
   void push(std::size_t input, Message message);
 
-  /// No more messages of an input come. Again is as once.
+  /// Ends an input; no effect if it has ended.
   void end(std::size_t input);
-  /// After all, they do.
+  /// Reopens an input that has ended.
   void begin(std::size_t input) { inputs_[input].ended = false; }
 
-  /// Whether no set can come any more: an input has ended, and all its messages are settled.
+  /// Whether no further set is possible: an input has ended, and none of its messages waits.
   [[nodiscard]] bool done() const;
 
-  /// Whether the next message of an input might push one out.
+  /// Whether the next message of an input may displace its oldest one.
   [[nodiscard]] bool crowded(std::size_t input) const {
     return inputs_[input].waiting.size() >= kMaxWaiting;
   }
@@ -69,7 +70,7 @@ class Matcher {
  private:
   struct Input {
     std::deque<Message> waiting;
-    std::int64_t latest = 0;  // time; an earlier one has fallen
+    std::int64_t latest = 0;  // time [ns]
     bool ended = false;
     Dropped dropped;
   };

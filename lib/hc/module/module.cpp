@@ -185,7 +185,7 @@ void Timeout::restart(std::chrono::nanoseconds duration) {
   state_->due = now + std::clamp(duration, MonotonicTime(0), internal::kLongestPeriod);
 }
 
-void internal::ModuleAccess::report_focus(Module& module, std::int32_t mode, const Stops& stops) {
+void ModuleAccess::report_focus(Module& module, std::int32_t mode, const Stops& stops) {
   auto& focus = module.focus_;
   const bool is_new = focus.decided != mode || focus.stops != stops;
   focus.decided = mode;

@@ -77,7 +77,6 @@ inline void succeed_or_drop(const Status& status) {
 namespace internal {
 struct Arguments;
 class Management;
-struct ModuleAccess;
 }  // namespace internal
 class Module;
 
@@ -283,7 +282,7 @@ class Module {
   [[nodiscard]] const std::string& instance() const { return instance_; }
 
  private:
-  friend struct internal::ModuleAccess;
+  friend struct ModuleAccess;
   friend void internal::send(internal::OutputState&, Message&&);
   friend std::size_t internal::forward(internal::OutputState&, const Message&);
   friend class Timeout;
@@ -354,8 +353,6 @@ class Module {
   std::optional<MonotonicTime> last_period_;          // of keep_rate()
 };
 
-namespace internal {
-
 /// For the runtime, the workspace and bindings to other languages.
 struct ModuleAccess {
   static const auto& inputs(const Module& module) { return module.inputs_; }
@@ -375,7 +372,5 @@ struct ModuleAccess {
     module.before_waiting_ = std::move(handler);
   }
 };
-
-}  // namespace internal
 
 }  // namespace hc

@@ -29,7 +29,7 @@ bool is_on_this_host(const Uri& uri) {
   return uri.scheme == "shm" || uri.scheme == "unix-listen" || !uri.option("same_user", "").empty();
 }
 
-/// Sets the options of a link in a graph. @param is_late  its graph runs already.
+/// Sets the options of a link in a graph. @param is_late  the graph runs already.
 void set_graph_options(Uri& uri, bool is_late) {
   add_option(uri, "timeout", kTimeoutInGraphs);
   if (is_late && uri.option("stay", "") == "1" && uri.option("timeout", "") != "0")
@@ -41,7 +41,7 @@ void set_no_waiting(Uri& uri, std::uint32_t keep) {
   if (uri.option("keep", "all") == "all") set_option(uri, "keep", std::to_string(keep));
   Uri unread = uri;
   set_option(unread, "readers", "0");
-  if (check_sink(unread)) uri = unread;  // else it does not know that option
+  if (check_sink(unread)) uri = unread;  // else its transport has no such option
 }
 
 }  // namespace
@@ -52,9 +52,9 @@ std::shared_ptr<Outlet> Module::Outlets::open(const Uri& uri, const std::string&
   auto conversion = take_conversion(opened);
   if (!conversion) internal::fail(opener_.name_of(uri.text(), port), conversion.error());
   const auto* commands = module_.management_->commands();
-  // In a graph a full disk ends a recording, and not the module.
+  // In a graph, a full disk ends a recording, not the module.
   if (commands != nullptr && opened.scheme == "file") add_option(opened, "optional", "1");
-  // By the clock of messages nothing is ever lost.
+  // By the messages' clock no message is lost.
   if (commands != nullptr && !module_.message_time_) set_graph_options(opened, is_late_);
   if (keep > 0) set_no_waiting(opened, keep);
   auto outlet = std::make_shared<Outlet>();

@@ -16,34 +16,33 @@ namespace hc {
 
 class Module::Outlets {
  public:
-  /// Calls on the thread that sends, while an outlet waits.
+  /// Calls while an outlet waits, on the thread that sends.
   struct Calls {
-    std::function<void(const internal::Outlet* blocked)> report_blocked;  ///< null: none any more
-    std::function<bool()> obey;  ///< when commands have come; see LinkOptions::Interrupt
+    std::function<void(const internal::Outlet* blocked)> report_blocked;  ///< null: no longer
+    std::function<bool()> obey;  ///< for commands; see LinkOptions::Interrupt
   };
   Outlets(Module& module, internal::Trace& trace, LinkOpener& opener, Calls calls)
       : module_(module), trace_(trace), opener_(opener), calls_(std::move(calls)) {}
 
   /// Opens the links of a command line; without any, outputs share standard output.
   void open(const internal::Arguments& arguments);
-  /// Opens a link of an output, or of the trace.
   void open(const internal::PortLink& link);
 
-  /// Ends an outlet, whose queued messages are lost; null if there is none such.
+  /// Ends an outlet, with the loss of its queued messages; null if it does not exist.
   std::shared_ptr<internal::Outlet> abandon(const internal::PortLink& link);
   void remove(const internal::PortLink& link, const std::shared_ptr<internal::Outlet>& outlet);
-  /// Frees those that were removed. Not while one may be sending.
+  /// Frees removed outlets, but not within send().
   void free_removed() { removed_.clear(); }
 
   void set_route(const std::string& link, const internal::Route& route);
 
-  /// Counts the readers; not while one may be sending.
+  /// Counts their readers, but not within send().
   void count_peers();
   void add_counters(std::vector<LinkCounters>& rows) const;
   void add_ends(std::vector<LinkEnd>& rows) const;
   [[nodiscard]] std::size_t index_of(const internal::Outlet* outlet) const;
 
-  /// Closes all. The error is that of the first that failed.
+  /// Closes all. Errors: that of the first that fails.
   Status close();
 
  private:
@@ -58,7 +57,7 @@ class Module::Outlets {
   internal::Trace& trace_;
   LinkOpener& opener_;
   Calls calls_;
-  bool is_late_ = false;  // its graph runs already: --join, and links by commands
+  bool is_late_ = false;  // the graph runs already: --join, or a command
   std::vector<std::shared_ptr<internal::Outlet>> outlets_;  // in the order of the command line
   std::vector<std::shared_ptr<internal::Outlet>> removed_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How long things take, most of the time and at worst, in little memory. Pure. Internal.
+// Quantiles of durations in little memory. Pure. Internal.
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace hc::internal {
 
-/// Counts durations in classes 12.5 % apart, and knows their quantiles that well. Cost of a
-/// duration: a few instructions. 2 KiB.
+/// A histogram of durations, whose classes are 12.5 % wide: the accuracy of the quantiles. 2 KiB.
+/// Cost of a duration: a few instructions.
 class Quantiles {
  public:
   /// @param duration  [ns]; below 0 counts as 0.
@@ -25,8 +25,8 @@ class Quantiles {
   [[nodiscard]] bool empty() const { return total_ == 0; }
   [[nodiscard]] std::int64_t max() const { return static_cast<std::int64_t>(max_); }
 
-  /// The least duration that a `part` of all, 0 … 1, do not exceed, up to the width of its class;
-  /// 0 of none. [ns]
+  /// The smallest duration that a `part` of all, 0 … 1, do not exceed, up to the width of its
+  /// class; 0 if there are none. [ns]
   [[nodiscard]] std::int64_t quantile(double part) const {
     auto rank = static_cast<std::uint64_t>(part * static_cast<double>(total_));
     std::uint64_t seen = 0;
@@ -41,7 +41,7 @@ class Quantiles {
   void clear() { *this = {}; }
 
  private:
-  static constexpr std::size_t kSteps = 8;  // in an octave
+  static constexpr std::size_t kSteps = 8;  // per octave
   static constexpr std::size_t kClasses = 64 * kSteps;
 
   /// Values below 8 have a class each; from there on an octave has 8.

@@ -13,7 +13,7 @@ namespace {
 
 using Verb = ModuleCommand::Verb;
 
-constexpr const char* kReportsKept = "64";  // for a reader that is slow for a while
+constexpr const char* kReportsKept = "64";  // for a slow reader
 constexpr std::chrono::milliseconds kReportPeriod{500};
 
 }  // namespace
@@ -60,7 +60,7 @@ bool Module::Remote::obey_while_sending() {
   for (auto& row : module_.management_->take_commands()) {
     const auto command = parse_module_command(row);
     bool is_deferred = command && command->verb != Verb::Set && command->is_input;
-    if (command && command->verb == Verb::Route)  // of a link that is still to be opened
+    if (command && command->verb == Verb::Route)  // its link may be deferred
       is_deferred =
           std::ranges::count(deferred_, text({Verb::Link, true, command->target, {}})) > 0;
     if (is_deferred)
@@ -82,7 +82,7 @@ Status Module::Remote::carry_out(const ModuleCommand& command) {
     case Verb::Finish: {
       const auto link = HC_TRY(internal::parse_port_link(module_, true, command.target));
       inlets_.finish(link);
-      // The end of the writer is expected, and not worth a line.
+      // The writer's end is expected; do not log it.
       opener_.drop_lines(link.uri.scheme + ":" + link.uri.rest + "?");
       return {};
     }
@@ -166,7 +166,7 @@ void Module::Remote::report_parameters() {
 }
 
 void Module::Remote::report_state(const internal::Outlet* blocked) {
-  // A module counts as running from its first report on, and its parameters are known then.
+  // With its first report a module counts as running, and its parameters must be known.
   if (reported_.count() == 0) report_parameters();
   const auto& focus = module_.focus_;
   const auto row = blocked == nullptr

@@ -17,23 +17,22 @@ class Module::Remote {
   Remote(Module& module, internal::Now& now, LinkOpener& opener, Inlets& inlets, Outlets& outlets)
       : module_(module), now_(now), opener_(opener), inlets_(inlets), outlets_(outlets) {}
 
-  /// Opens the links for commands and reports.
   void open(const internal::Arguments& arguments);
-  /// Where commands come from; null if there are none.
+  /// The link for commands; null: none.
   [[nodiscard]] Source* commands() const { return module_.management_->commands(); }
 
-  /// When serve() is to be called at the latest, even if no command comes.
+  /// When serve() is to be called without a new command.
   [[nodiscard]] MonotonicTime due() const;
-  /// Obeys the commands that have come, and reports if it is time.
+  /// Obeys commands, and sends a report that is due.
   void serve();
-  /// While send() waits: obeys commands that do not touch inputs, one of which may be in use;
-  /// serve() obeys the others. False if no more commands come.
+  /// While send() waits, obeys commands that do not touch inputs, which may be in use; serve()
+  /// obeys the others. False if there are no more.
   bool obey_while_sending();
 
   void report_links();
-  /// Also of no links, since it shows that the module responds.
+  /// Also without links, to show that the module responds.
   void report_counters();
-  /// @param blocked  the outlet whose reader the module waits for; null: none.
+  /// @param blocked  outlet that waits for its reader; null: none.
   void report_state(const internal::Outlet* blocked = nullptr);
 
  private:

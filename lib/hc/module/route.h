@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Which messages a link takes, by their address, and who is at its other end. Pure. Internal.
+// Routing by address: the messages of a link, and its peer. Pure. Internal.
 
 #include <cstdint>
 #include <string>
@@ -11,11 +11,11 @@
 
 namespace hc::internal {
 
-/// What `--route 'PORT=URI WORDS'` says of a link.
+/// The route of a link: `--route 'PORT=URI WORDS'`.
 struct Route {
   bool takes_all = true;         ///< no `to=`, or `to=*`
-  std::vector<std::int32_t> to;  ///< the dst that go here, in rising order
-  std::string peer;              ///< who is at the other end, where it matters
+  std::vector<std::int32_t> to;  ///< accepted dst, ascending
+  std::string peer;              ///< the graph or module at the other end; empty: unknown
 
   [[nodiscard]] bool takes(std::int32_t dst) const;
 };

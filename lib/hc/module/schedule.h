@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a module does next. Internal.
+// The order in which a module works. Internal.
 
 #include <functional>
 #include <memory>
@@ -13,17 +13,17 @@ namespace hc {
 class Module::Schedule {
  public:
   virtual ~Schedule() = default;
-  /// Waits until the module can start.
+  /// Waits until the module can start, and sets its clock.
   virtual void begin() = 0;
-  /// Does what comes next, or waits for it; false if the module has nothing left to do.
+  /// Does the next work, or waits for it; false at the end of all.
   virtual bool turn() = 0;
   /// Waits until a time that `due` gives, which may change meanwhile, as commands are obeyed.
   virtual void pause(const std::function<MonotonicTime()>& due) = 0;
 
   /// By the machine's clock: messages as they arrive, timers when they are due.
   static std::unique_ptr<Schedule> live(Loop& loop);
-  /// By the messages' clock: messages in the order of their times, whatever is due between them.
-  /// The result depends on the messages, not on how fast they arrive.
+  /// By the messages' clock: messages in the order of their times, and timers between them. The
+  /// result depends on the messages, and not on when they arrive.
   static std::unique_ptr<Schedule> by_messages(Loop& loop);
   /// By the trace of an earlier run: the same at the same moments.
   static std::unique_ptr<Schedule> replay(Loop& loop, const Uri& trace);

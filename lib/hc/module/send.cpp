@@ -11,7 +11,7 @@ namespace {
 
 using internal::Outlet;
 
-/// A message as a link wants it; what it cannot be made of (an output may send anything) stays.
+/// A message in the form that a link asks for; one that cannot be converted is left as it is.
 Message converted(const Message& message, const Conversion& conversion) {
   Message made = message;
   const auto& header = message.header;
@@ -25,7 +25,7 @@ Message converted(const Message& message, const Conversion& conversion) {
   return value_or_end(compress(made, *conversion.as, conversion.quality.value_or(kJpegQuality)));
 }
 
-/// Sends to a link; false when its reader has left, which ends the outlet.
+/// Sends by an outlet; false if its reader has left, which ends the outlet.
 bool send_to(Outlet& outlet, const std::string& port, const Message& message) {
   auto sent = outlet.conversion.is_none()
                   ? outlet.sink->send(message)
@@ -38,8 +38,8 @@ bool send_to(Outlet& outlet, const std::string& port, const Message& message) {
   return false;
 }
 
-/// Calls `send_one` with each link of an output, which may lose links meanwhile.
-/// @returns  whether one of them has ended unasked.
+/// Calls `send_one` with each outlet of an output; commands may remove outlets meanwhile.
+/// @returns  whether a reader has left.
 template <typename SendOne>
 bool send_to_each(internal::OutputState& output, const SendOne& send_one) {
   bool any_ended = false;

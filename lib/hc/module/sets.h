@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The sets of messages that synchronised inputs make, as links come and go. Internal.
+// The sets of messages of synchronised inputs, as their links are opened and end. Internal.
 
 #include <vector>
 
@@ -14,14 +14,14 @@ class Module::Sets {
   Sets(Module& module, Delivery& delivery, std::vector<internal::Inlet>& inlets)
       : module_(module), delivery_(delivery), inlets_(inlets) {}
 
-  /// Says that a link was opened, or has ended.
+  /// A link was opened, or has ended.
   void begin(const internal::Inlet& inlet);
   void end(const internal::Inlet& inlet);
-  /// Ends inputs without a link, unless commands may give them one.
+  /// Ends inputs without a link, unless a command may add one.
   void end_unlinked(bool takes_commands);
-  /// Whether the messages of a link can have no partners any more.
+  /// Whether messages of a link cannot be part of a set any more.
   [[nodiscard]] static bool are_over(const internal::Inlet& inlet);
-  /// Handles complete sets of inputs that handle the newest only.
+  /// Handles the complete sets of those inputs that handle only the newest.
   void handle_newest();
   /// Ends all inputs.
   void end_all();

@@ -13,7 +13,7 @@ namespace hc {
 
 namespace internal {
 
-/// The time, by the machine's clock, which is read once per message, or by that of the messages.
+/// The time, by the messages' clock or by the machine's, which is read once per message.
 struct Now {
   const Clock& clock;
   std::optional<std::int64_t>& message_time;  ///< the module's; none: by the machine's clock
@@ -37,14 +37,14 @@ class Module::Timers {
   Timers(Module& module, internal::Now& now, internal::Trace& trace)
       : timers_(module.timers_), timeouts_(module.timeouts_), now_(now), trace_(trace) {}
 
-  /// Durations count from now on.
+  /// Starts them all.
   void start() {
     for (auto& timer : timers_) timer.last = now_.time();
     for (auto& timeout : timeouts_)
       if (timeout->due) *timeout->due += now_.time();
   }
 
-  /// When the next is due; the latest time if none ever is.
+  /// When the next is due.
   [[nodiscard]] MonotonicTime next() const {
     auto next = MonotonicTime::max();
     for (const auto& timer : timers_) next = std::min(next, timer.due());
@@ -65,7 +65,7 @@ class Module::Timers {
       if (timeouts_[i]->due && *timeouts_[i]->due <= now_.time()) fire_traced(timers_.size() + i);
   }
 
-  /// Calls the handler of one, if the module has so many.
+  /// Fires one, if it exists.
   void fire(std::size_t number) {
     if (number < timers_.size()) return timers_[number].handler();
     if (number - timers_.size() >= timeouts_.size()) return;

@@ -18,8 +18,14 @@
 namespace hc {
 
 namespace internal {
-/// Throws std::out_of_range.
 [[noreturn]] void refuse_index(std::size_t index, std::size_t size);
+
+/// The index; one outside throws std::out_of_range.
+inline std::size_t checked(std::size_t index, std::size_t size) {
+  if (index >= size) [[unlikely]]
+    refuse_index(index, size);
+  return index;
+}
 }  // namespace internal
 
 /// A std::span with checked indices, since the peer decides how many numbers a message has.
@@ -32,22 +38,16 @@ class Numbers : public std::span<T> {
   using std::span<T>::span;
   Numbers(std::span<T> numbers) : std::span<T>(numbers) {}  // NOLINT(google-explicit-constructor)
 
-  T& operator[](std::size_t i) const { return this->data()[checked(i, this->size())]; }
+  T& operator[](std::size_t i) const { return this->data()[internal::checked(i, this->size())]; }
   T& front() const { return (*this)[0]; }
   T& back() const { return (*this)[this->size() - 1]; }
-  [[nodiscard]] Numbers first(std::size_t count) const { return subspan(0, count); }
-  [[nodiscard]] Numbers last(std::size_t count) const { return subspan(this->size() - count, count); }
-  [[nodiscard]] Numbers subspan(std::size_t begin, std::size_t count) const {
-    return {this->data() + checked(begin, this->size() + 1),
-            checked(count, this->size() - begin + 1)};
+  [[nodiscard]] Numbers first(std::size_t count) const {
+    return {this->data(), internal::checked(count, this->size() + 1)};
   }
-
- private:
-  static std::size_t checked(std::size_t index, std::size_t size) {
-    if (index >= size) [[unlikely]]
-      internal::refuse_index(index, size);
-    return index;
+  [[nodiscard]] Numbers subspan(std::size_t begin) const {
+    return {this->data() + internal::checked(begin, this->size() + 1), this->size() - begin};
   }
+  Numbers last(std::size_t) const = delete;  // subspan() is checked
 };
 
 /// A view of a matrix, row by row without padding: (height, width, components), row 0 on top.
@@ -71,24 +71,17 @@ class MatrixView {
 
   /// The numbers of a row; the components of an element are adjacent.
   [[nodiscard]] Numbers<T> row(std::size_t y) const {
-    check(y, height_);
-    return {data_ + y * width_ * components_, width_ * components_};
+    return {data_ + internal::checked(y, height_) * width_ * components_, width_ * components_};
   }
 
   /// Component `k` of the element at column `x` of row `y`.
   [[nodiscard]] T& at(std::size_t y, std::size_t x, std::size_t k = 0) const {
-    check(y, height_);
-    check(x, width_);
-    check(k, components_);
-    return data_[(y * width_ + x) * components_ + k];
+    using internal::checked;
+    return data_[(checked(y, height_) * width_ + checked(x, width_)) * components_ +
+                 checked(k, components_)];
   }
 
  private:
-  static void check(std::size_t index, std::size_t size) {
-    if (index >= size) [[unlikely]]
-      internal::refuse_index(index, size);
-  }
-
   T* data_ = nullptr;
   std::size_t height_ = 0, width_ = 0, components_ = 0;
 };

@@ -4,7 +4,7 @@
 #include <hc/module/module.h>
 
 int run_actor(int argc, char** argv, const hc::Clock& clock) {
-  hc::Module module{"actor", "Takes commands and reports which.", clock};
+  hc::Module module{"actor", "Takes commands and reports which.", {.clock = &clock}};
   auto command = module.input("command", hc::table(), "any numbers", {.actor = true});
   auto done = module.output("done", hc::table<std::int32_t>(),
                             "2 x 1 for each command: its mode, and the mode in focus at that time");
