@@ -31,8 +31,7 @@ int main(int argc, char** argv) {
   for (std::size_t i = 0; i < kPorts; ++i) {
     const auto number = std::to_string(i);
     inputs.push_back(module.input("in" + number, hc::intensity_image(), "messages"));
-    outputs.push_back(
-        module.output("out" + number, hc::intensity_image(), "messages"));
+    outputs.push_back(module.output("out" + number, hc::intensity_image(), "messages"));
   }
   std::optional<hc::MessageOf<Kind>> own;
   std::optional<bench::Rounds> rounds;

@@ -67,8 +67,7 @@ TEST(Dds, AllReadersGetEachMessage) {
   const auto size = [](int i) { return i % 10 == 9 ? 100'000 : i; };
   auto sender = send_all(*sink, kCount, size);
   for (int i = 0; i < kCount; ++i)
-    for (const auto& source : sources)
-      EXPECT_EQ(next(*source).text(), numbered(i, size(i)).text());
+    for (const auto& source : sources) EXPECT_EQ(next(*source).text(), numbered(i, size(i)).text());
   Message message;
   for (const auto& source : sources) EXPECT_FALSE(*receive(*source, message));
   sender.join();

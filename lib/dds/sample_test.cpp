@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string>
 
+#include <hc/mtp/matrix_view.h>
 #include <hc/testing/decode.h>
 #include <hc/testing/link_conformance.h>
 
@@ -140,7 +141,7 @@ TEST_F(DdsSample, HasElementsThatAreAlignedAndStayWhereTheyAre) {
          {4U, 65'000U}) {  // 4 bytes do not show the end of the header line
       const auto sample = come(bytes, piece);
       auto got = must(read(*sample));
-      EXPECT_TRUE(got.view<double>());
+      EXPECT_TRUE(view<double>(got));
       EXPECT_EQ(reinterpret_cast<std::uintptr_t>(got.elements.data()) % alignof(double), 0U);
     }
   }

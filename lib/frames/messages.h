@@ -23,18 +23,19 @@ using RowMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajo
 /// Errors: Unsupported (compressed; another scalar than T).
 template <ScalarType T>
 Result<Eigen::Map<const RowMajor<T>>> as_eigen(const Message& message) {
-  auto view = HC_TRY(message.view<T>());
-  return Eigen::Map<const RowMajor<T>>(view.numbers().data(),
-                                       static_cast<Eigen::Index>(view.height()),
-                                       static_cast<Eigen::Index>(view.width() * view.components()));
+  auto matrix = HC_TRY(view<T>(message));
+  return Eigen::Map<const RowMajor<T>>(
+      matrix.numbers().data(), static_cast<Eigen::Index>(matrix.height()),
+      static_cast<Eigen::Index>(matrix.width() * matrix.components()));
 }
 
 /// The elements of a draft, to write in place; T must be the draft's scalar.
 template <ScalarType T>
 Eigen::Map<RowMajor<T>> as_eigen(const Draft& draft) {
-  auto view = draft.view<T>();
-  return Eigen::Map<RowMajor<T>>(view.numbers().data(), static_cast<Eigen::Index>(view.height()),
-                                 static_cast<Eigen::Index>(view.width() * view.components()));
+  auto matrix = view<T>(draft);
+  return Eigen::Map<RowMajor<T>>(matrix.numbers().data(),
+                                 static_cast<Eigen::Index>(matrix.height()),
+                                 static_cast<Eigen::Index>(matrix.width() * matrix.components()));
 }
 
 /// A pose as the 16 numbers of a transformation, row by row: p_to = T_to_from · (x y z 1)ᵀ, lengths

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include <frames/tree.h>
+#include <hc/mtp/matrix_view.h>
 #include <hc/testing/decode.h>
 #include <hc/testing/must.h>
 
@@ -127,7 +128,7 @@ TEST(Eigen, SharesATransformation) {
   auto seen = must(as_eigen<double>(message));
   EXPECT_EQ(static_cast<const void*>(seen.data()), message.elements.data());
   EXPECT_EQ((seen)(2, 3), 5);
-  EXPECT_EQ(message.view<double>()->at(2, 3), 5);
+  EXPECT_EQ(view<double>(message)->at(2, 3), 5);
   EXPECT_FALSE(as_eigen<float>(message));
 }
 

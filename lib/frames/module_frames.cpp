@@ -22,9 +22,8 @@ ModuleFrames::ModuleFrames(Module& module, const Options& options)
                              "frames of the graph, set by hc run; default: the default head",
                              {.fixed = true})) {
   if (!options.input) return;
-  auto poses =
-      module.input("frames", any_of(transformation(), transformation<float>()),
-                   "poses of moving frames, T_parent_child [m]; linked by hc run");
+  auto poses = module.input("frames", any_of(transformation(), transformation<float>()),
+                            "poses of moving frames, T_parent_child [m]; linked by hc run");
   module.on(poses, [this](const Message& message) {
     const auto& header = message.header;
     const auto* mover = value_or_drop(known().mover_of(header.src, header.coord));

@@ -53,7 +53,8 @@ Json read_order(const Message& message) {
 }
 
 Message make_bytes(std::string_view bytes, std::int64_t process) {
-  Draft draft = Draft::make({MatrixType::Table, 1, Scalar::U8, Encoding::Binary}, static_cast<std::int32_t>(bytes.size()), 1);
+  Draft draft = Draft::make({MatrixType::Table, 1, Scalar::U8, Encoding::Binary},
+                            static_cast<std::int32_t>(bytes.size()), 1);
   std::memcpy(draft.elements().data(), bytes.data(), bytes.size());
   draft.header.src = Log;
   draft.header.dst = static_cast<std::int32_t>(process);

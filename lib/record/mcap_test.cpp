@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include <hc/mtp/matrix_view.h>
 #include <hc/testing/must.h>
 #include <record/recording_test.h>
 #include <ros/cdr.h>
@@ -670,7 +671,7 @@ Message pose(std::int32_t coord, double x) {
   draft.header.coord = coord;
   draft.header.time = 1'763'683'200'000'000'000 + coord;
   const std::array<double, 16> T = {1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  std::ranges::copy(T, draft.view<double>().numbers().begin());
+  std::ranges::copy(T, view<double>(draft).numbers().begin());
   return std::move(draft).finish();
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <hc/base/format.h>
+#include <hc/mtp/matrix_view.h>
 #include <hc/os/new_file.h>
 #include <record/mcap_writer.h>
 
@@ -221,7 +222,7 @@ void Writer::save() {
 void Writer::save_when_set(const Message& message) {
   const bool is_set = message.plain() && !message.elements.empty() &&
                       visit_scalar(message.header.info.scalar, [&](auto zero) {
-                        return message.view<decltype(zero)>()->numbers().front() != zero;
+                        return view<decltype(zero)>(message)->numbers().front() != zero;
                       });
   if (is_set && !was_set_) save();
   was_set_ = is_set;

@@ -12,6 +12,8 @@
 
 #include <ros/messages.h>
 
+#include <hc/mtp/matrix_view.h>
+
 namespace hc::ros {
 namespace {
 
@@ -43,7 +45,7 @@ Result<Draft> draft_for(const PortType& port, std::uint64_t width, std::uint64_t
 Result<Message> matrix_of(const PortType& port, std::uint64_t width, std::uint64_t height,
                           std::int64_t time, std::span<const double> numbers) {
   auto draft = HC_TRY(draft_for(port, width, height, time));
-  std::ranges::copy(numbers, draft.view<double>().numbers().begin());
+  std::ranges::copy(numbers, view<double>(draft).numbers().begin());
   return std::move(draft).finish();
 }
 
@@ -116,7 +118,7 @@ Result<Message> decode_depth(const Image& image, const PortType& port) {
   const std::size_t size = is_metres ? sizeof(float) : sizeof(std::uint16_t);
   HC_TRY(check_rows(image, size));
   auto draft = HC_TRY(draft_for(port, image.width, image.height, nanoseconds(image.header.stamp)));
-  auto to = draft.view<float>().numbers().begin();
+  auto to = view<float>(draft).numbers().begin();
   for (std::size_t y = 0; y < image.height; ++y)
     for (std::size_t x = 0; x < image.width; ++x) {
       const std::size_t at = y * image.step + x * size;
@@ -201,7 +203,7 @@ Result<Message> convert(const PointCloud2& cloud, const PortType& port, const Ch
                      std::to_string(cloud.width) + " points, got " +
                      std::to_string(cloud.data.bytes.size()) + " bytes");
   auto draft = HC_TRY(draft_for(port, cloud.width, cloud.height, nanoseconds(cloud.header.stamp)));
-  auto to = draft.view<float>().numbers().begin();
+  auto to = view<float>(draft).numbers().begin();
   for (std::size_t y = 0; y < cloud.height; ++y)
     for (std::size_t x = 0; x < cloud.width; ++x)
       for (const auto& [offset, is_double] : places) {

@@ -19,15 +19,14 @@ namespace {
 
 const PortType kRgb = rgb_image().type, kGrey = intensity_image().type,
                kDepth = intensity_image<float>().type, kPoints = position<float>().type,
-               kPose = transformation().type, kTable = table().type,
-               kText = string().type;
+               kPose = transformation().type, kTable = table().type, kText = string().type;
 const Stamp kStamp{{5, 7}, "eye"};
 constexpr std::int64_t kTime = 5'000'000'007;
 
 template <typename T>
 std::vector<T> numbers(const Result<Message>& message) {
   const auto kept = must(message);
-  const auto all = kept.view<T>()->numbers();
+  const auto all = view<T>(kept)->numbers();
   return {all.begin(), all.end()};
 }
 

@@ -10,6 +10,7 @@
 #include <hc/compress/compress.h>
 #include <hc/contract/description.h>
 #include <hc/mtp/coords.h>
+#include <hc/mtp/matrix_view.h>
 
 namespace hc::ros {
 namespace {
@@ -59,7 +60,7 @@ bool is_metric(std::int32_t coord) {
 /// The numbers of an uncompressed message.
 std::vector<double> numbers_of(const Message& message) {
   return visit_scalar(message.header.info.scalar, [&](auto zero) {
-    const auto numbers = message.view<decltype(zero)>()->numbers();
+    const auto numbers = view<decltype(zero)>(message)->numbers();
     std::vector<double> all(numbers.size());
     std::ranges::transform(numbers, all.begin(),
                            [](auto each) { return static_cast<double>(each); });
@@ -386,7 +387,7 @@ Result<Pieces> Encoder::encode_sound(const Message& message) {
   if (header.info.scalar != Scalar::I16) {
     samples_.clear();
     visit_scalar(header.info.scalar, [&](auto zero) {
-      for (const auto each : message.view<decltype(zero)>()->numbers()) {
+      for (const auto each : view<decltype(zero)>(message)->numbers()) {
         const auto bytes = std::bit_cast<std::array<std::byte, 2>>(sample_of(each));
         samples_.insert(samples_.end(), bytes.begin(), bytes.end());
       }

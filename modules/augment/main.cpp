@@ -22,8 +22,7 @@ namespace {
 using hc::Coord;
 
 hc::AnyKind image(std::int32_t rectified, std::int32_t raw) {
-  return hc::any_of(hc::rgb_image().in(rectified),
-                    hc::rgb_image().in(raw));
+  return hc::any_of(hc::rgb_image().in(rectified), hc::rgb_image().in(raw));
 }
 
 }  // namespace
@@ -32,7 +31,8 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"augment",
                     "Draws objects into the images of both eyes, with "
-                    "occlusion.", {.background = true}};
+                    "occlusion.",
+                    {.background = true}};
   auto left = module.input("left", image(Coord::kLeftRectified, Coord::kLeftImage),
                            "image of the left eye, without distortion");
   auto right = module.input("right", image(Coord::kRightRectified, Coord::kRightImage),
@@ -49,17 +49,19 @@ int main(int argc, char** argv) {
                             "T_eye_marker, from marker: objects in the markers' frames follow");
   auto target = module.input("target", hc::position().finite(),
                              "target of the gaze, for the instrument gaze: x, y in the left (7) "
-                             "or right (8) image [px], or a position in any frame [m]", {.keep = 1});
+                             "or right (8) image [px], or a position in any frame [m]",
+                             {.keep = 1});
   auto confidence = module.input("confidence", hc::intensity_image(),
                                  "confidence of the depth, for the instrument confidence");
   auto left_out = module.output("left", hc::rgb_image(), "the left image, augmented");
-  auto right_out =
-      module.output("right", hc::rgb_image(), "the right image, augmented");
+  auto right_out = module.output("right", hc::rgb_image(), "the right image, augmented");
   auto corners = module.output("corners", hc::table(),
                                "8 rows an object, the corners of the box around it: x, y in the "
-                               "left and x, y in the right image [px], NaN behind the eye", {.on_demand = true});
+                               "left and x, y in the right image [px], NaN behind the eye",
+                               {.on_demand = true});
   auto mask = module.output("mask", hc::intensity_image(),
-                            "of the left image: 255 where an object is visible, else 0", {.on_demand = true});
+                            "of the left image: 255 where an object is visible, else 0",
+                            {.on_demand = true});
   auto objects =
       module.parameter("objects", "cube at world 2 0 1.2 size 0.3", "",
                        "MODEL at FRAME [to FRAME] [X Y Z [ROLL PITCH YAW]] [size SIZE|fit], with ; "

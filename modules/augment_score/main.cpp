@@ -60,8 +60,8 @@ int main(int argc, char** argv) {
   constexpr auto kWorldRightEye = hc::transform_coord(Coord::kWorld, Coord::kRightEye);
   hc::Module module{"augment_score",
                     "Compares where augment draws a cube with where a real one would be seen."};
-  auto left_pose = module.input("left_pose", hc::transformation().in(kWorldLeftEye),
-                                "truth: T_world_left_eye");
+  auto left_pose =
+      module.input("left_pose", hc::transformation().in(kWorldLeftEye), "truth: T_world_left_eye");
   auto right_pose = module.input("right_pose", hc::transformation().in(kWorldRightEye),
                                  "truth: T_world_right_eye");
   auto depth = module.input("depth", hc::intensity_image<float>().in(Coord::kDepth),
@@ -150,13 +150,13 @@ int main(int argc, char** argv) {
             });
   constexpr std::chrono::milliseconds kLook{50};
   module.every(kLook, [&] {
-    if (++waits * kLook > hc::duration(*timeout))
-      throw hc::ModuleError("no image within timeout");
+    if (++waits * kLook > hc::duration(*timeout)) throw hc::ModuleError("no image within timeout");
     if (static_cast<std::int64_t>(samples.right.size()) < *images) return;
     const double error = median(samples.errors), share = median(samples.right);
     const double worst = *std::ranges::max_element(samples.errors);
     const double least = *std::ranges::min_element(samples.right);
-    result.send({error, worst, share, least, samples.fastest, static_cast<double>(samples.right.size())});
+    result.send(
+        {error, worst, share, least, samples.fastest, static_cast<double>(samples.right.size())});
     module.log(
         hc::format("corners off by {:.2f} px median, {:.2f} px at most, pixels right {:.1f} % "
                    "median, {:.1f} % at least, the head turning at up to {:.0f}°/s",

@@ -30,10 +30,10 @@ constexpr std::int64_t kRests = 300'000'000;     // time in tolerance until at r
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"calibrate", "Finds how a head's eyes are mounted, by turning it."};
-  auto left = module.input("left", hc::rgb_image().in(hc::Coord::kLeftImage),
-                           "image of the left camera");
-  auto right = module.input("right", hc::rgb_image().in(hc::Coord::kRightImage),
-                            "of the right one");
+  auto left =
+      module.input("left", hc::rgb_image().in(hc::Coord::kLeftImage), "image of the left camera");
+  auto right =
+      module.input("right", hc::rgb_image().in(hc::Coord::kRightImage), "of the right one");
   auto command = module.output("command", hc::rotation().in(hc::Coord::kGaze),
                                "commanded head orientation: roll 0, tilt, pan [rad]");
   auto bid = module.output("bid", hc::table(), "salience while it looks, else 0");

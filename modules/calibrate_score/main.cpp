@@ -36,7 +36,8 @@ int main(int argc, char** argv) {
                hc::Level::Result);
     module.stop();
   });
-  auto late = module.after(std::chrono::hours(1), [&] { throw hc::ModuleError("no result within timeout"); });
+  auto late = module.after(std::chrono::hours(1),
+                           [&] { throw hc::ModuleError("no result within timeout"); });
   module.on_start([&] { late.restart(hc::duration(*timeout)); });
   return module.run(argc, argv);
 }

@@ -13,9 +13,10 @@
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"depth", "Finds the depth of a scene from a rectified stereo pair.", {.background = true}};
-  auto left = module.input("left", hc::image(hc::Coord::kLeftRectified),
-                           "rectified image of the left eye");
+  hc::Module module{
+      "depth", "Finds the depth of a scene from a rectified stereo pair.", {.background = true}};
+  auto left =
+      module.input("left", hc::image(hc::Coord::kLeftRectified), "rectified image of the left eye");
   auto right = module.input("right", hc::image(hc::Coord::kRightRectified),
                             "rectified image of the right eye");
   auto intrinsics = module.input("intrinsics", hc::table(),
@@ -26,12 +27,13 @@ int main(int argc, char** argv) {
                     "disparity of the left image's pixels [px], 0 unknown");
   auto depth = module.output("depth", hc::intensity_image<float>().in(hc::Coord::kDepth),
                              "depth along the optical axis [m], 0 unknown");
-  auto confidence =
-      module.output("confidence", hc::intensity_image().in(hc::Coord::kDisparity),
-                    "confidence of the disparity: 1 lowest, 255 highest, 0 unknown", {.on_demand = true});
+  auto confidence = module.output("confidence", hc::intensity_image().in(hc::Coord::kDisparity),
+                                  "confidence of the disparity: 1 lowest, 255 highest, 0 unknown",
+                                  {.on_demand = true});
   auto points = module.output("points", hc::vector_field<float>(6).in(hc::Coord::kLeftEye),
                               "point of each pixel: x, y, z [m] in the frame left_eye, red, green, "
-                              "blue [0, 1]; NaN unknown", {.on_demand = true});
+                              "blue [0, 1]; NaN unknown",
+                              {.on_demand = true});
   auto matcher_name = module.parameter("matcher", "semi_global", "", "how images are matched",
                                        {.choices = {"semi_global", "opencv"}, .fixed = true});
   auto disparities = module.parameter("disparities", 128, "px", "disparities searched",

@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
     levels.convertTo(true_mat, CV_32F, *truth_scale);
     auto score = hc::vision::score(found_mat, true_mat, *threshold);
     result.send({score.bad_share(), score.hole_share(), score.wrong_share(),
-                           static_cast<double>(score.truth)});
+                 static_cast<double>(score.truth)});
     module.log(hc::format("bad pixels {:.2f} % of valid ones (error over {:g} px), holes {:.2f} "
                           "%, bad or hole {:.2f} %, of {} pixels with known truth",
                           100 * score.bad_share(), *threshold, 100 * score.hole_share(),

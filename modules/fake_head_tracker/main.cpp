@@ -14,12 +14,13 @@
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"fake_head_tracker", "Simulated head tracker (opentrack protocol).", {.keep_running = true}};
+  hc::Module module{
+      "fake_head_tracker", "Simulated head tracker (opentrack protocol).", {.keep_running = true}};
   auto address = module.input("address", hc::string(),
-                              "where the head_tracker of its graph listens; empty: sends nothing", {.keep = 1});
-  auto rotation =
-      module.output("rotation", hc::rotation().of(1, 1).in(hc::Coord::kSupervisor),
-                    "truth: roll 0, pitch, yaw of the head [rad]");
+                              "where the head_tracker of its graph listens; empty: sends nothing",
+                              {.keep = 1});
+  auto rotation = module.output("rotation", hc::rotation().of(1, 1).in(hc::Coord::kSupervisor),
+                                "truth: roll 0, pitch, yaw of the head [rad]");
   auto rate = module.parameter("rate", 100.0, "Hz", "packets a second", {.min = 0, .max = 1000});
   auto amplitude = module.parameter("amplitude", 0.7, "rad", "how far the head turns to each side",
                                     {.min = 0.01, .max = 1.5, .fixed = true});

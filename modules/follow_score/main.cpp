@@ -11,10 +11,9 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   constexpr std::int32_t kGaze = hc::Coord::kGaze, kSupervisor = hc::Coord::kSupervisor;
   hc::Module module{"follow_score", "Compares the orientation of a head with its setpoints."};
-  auto setpoint = module.input(
-      "setpoint",
-      hc::any_of(hc::rotation().in(kGaze), hc::rotation().in(kSupervisor)),
-      "truth: setpoint roll, tilt, pan [rad]", {.keep = 64});
+  auto setpoint =
+      module.input("setpoint", hc::any_of(hc::rotation().in(kGaze), hc::rotation().in(kSupervisor)),
+                   "truth: setpoint roll, tilt, pan [rad]", {.keep = 64});
   auto motion = module.input("motion", hc::rotation().in(kGaze),
                              "truth: roll, tilt, pan of the head [rad]", {.keep = 64});
   auto result = module.output("score", hc::table().of(1, 4),

@@ -15,9 +15,9 @@ namespace web = hc::web;
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"foxglove", "Shows the graph in Foxglove and Lichtblick, live.", {.keep_running = true}};
-  auto poses =
-      module.input("frames", hc::transformation(), "poses, linked by `hc run`");
+  hc::Module module{
+      "foxglove", "Shows the graph in Foxglove and Lichtblick, live.", {.keep_running = true}};
+  auto poses = module.input("frames", hc::transformation(), "poses, linked by `hc run`");
   auto listen = module.parameter(
       "listen", "127.0.0.1", "",
       "IP address; any but 127.0.0.1 is open to other machines, with TLS only", {.fixed = true});

@@ -8,7 +8,8 @@
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"gateway", "Passes messages from one graph to another, renumbered.", {.routes = true}};
+  hc::Module module{
+      "gateway", "Passes messages from one graph to another, renumbered.", {.routes = true}};
   auto in = module.input("in", hc::anything(), "messages of this graph");
   auto out = module.output("out", hc::anything(),
                            "those that pass, encoded as asked where possible (u8 images as jpeg)");
@@ -40,8 +41,8 @@ int main(int argc, char** argv) {
     ++(out.forward(*encoded) > 0 ? counts.passed : counts.no_route);
   });
   module.every(std::chrono::seconds(1), [&] {
-    sent.send(
-        {counts.passed, counts.ttl, counts.unlisted, counts.no_route, counts.damaged}, module.now());
+    sent.send({counts.passed, counts.ttl, counts.unlisted, counts.no_route, counts.damaged},
+              module.now());
   });
 
   const int status = module.run(argc, argv);

@@ -46,19 +46,22 @@ int main(int argc, char** argv) {
       hc::any_of(hc::position(), hc::transformation(),
                  hc::table().of(0, hc::vision::kMarkerColumns)),
       "x, y in the left (7) or right (8) image [px], or a position in any frame [m]; a "
-      "pose of marker, or its table; in each image or frame of one source at a time", {.keep = 1});
+      "pose of marker, or its table; in each image or frame of one source at a time",
+      {.keep = 1});
   auto setpoint = module.input(
       "setpoint", hc::rotation(),
       "orientation to take, roll, tilt, pan [rad]: of the neck (13) or a person's head "
-      "(14), or in a frame; of one source at a time", {.keep = 1});
+      "(14), or in a frame; of one source at a time",
+      {.keep = 1});
   auto stick = module.input("stick", hc::table().of(1, 2).finite(),
                             "turn to the left, turn down, -1 … 1 of stick_rate; repeated while "
-                            "pushed; of one source at a time", {.keep = 1});
+                            "pushed; of one source at a time",
+                            {.keep = 1});
   auto calibration = module.input("calibration", hc::table(), "result of calibrate", {.keep = 1});
   auto command = module.output("command", hc::rotation().in(hc::Coord::kGaze),
                                "commanded head orientation: roll 0, tilt, pan [rad]");
-  auto bid = module.output("bid", hc::table(),
-                           "salience while there is a target, else idle_salience");
+  auto bid =
+      module.output("bid", hc::table(), "salience while there is a target, else idle_salience");
   hc::ModuleFrames frames{module};
   const GazeParameters parameters{module};
 

@@ -13,7 +13,8 @@
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"head_tracker", "Follows a person's head by an opentrack tracker.", {.keep_running = true}};
+  hc::Module module{
+      "head_tracker", "Follows a person's head by an opentrack tracker.", {.keep_running = true}};
   auto centre = module.input("centre", hc::anything(), "makes the head's pose the new zero");
   auto rotation = module.output("rotation", hc::rotation().in(hc::Coord::kSupervisor),
                                 "roll, pitch, yaw since the zero [rad]; yaw > 0 turns left, pitch "

@@ -29,9 +29,7 @@ int main(int argc, char** argv) {
   std::unique_ptr<hc::Joystick> joystick;
   hc::JoystickWatch watch;
 
-  auto send_stick = [&] {
-    stick.send({watch.stick().left, watch.stick().down}, module.now());
-  };
+  auto send_stick = [&] { stick.send({watch.stick().left, watch.stick().down}, module.now()); };
   auto send_changes = [&] {
     const auto& state = joystick->state();
     const auto time = module.now();

@@ -10,8 +10,8 @@ int main(int argc, char** argv) {
   hc::Module module{"microphone", "Sends the sound of a microphone or a WAV file."};
   auto mono = module.output("mono", hc::sound(1),
                             "pieces of 20 ms, where channels is 1; coord 20 … 24 by the rate");
-  auto stereo = module.output("stereo", hc::sound(2),
-                              "the same, left and right, where channels is 2");
+  auto stereo =
+      module.output("stereo", hc::sound(2), "the same, left and right, where channels is 2");
   auto file = module.parameter("file", "", "", "WAV file instead of a microphone",
                                {.positional = true, .fixed = true});
   auto device = module.parameter(

@@ -11,13 +11,13 @@ int main(int argc, char** argv) {
   auto command =
       module.input("command", hc::rotation().of(1, 1).in(hc::Coord::kGaze).finite(),
                    "roll (ignored), tilt, pan to take [rad]; the newest is used, of one source of "
-                   "a mode at a time", {.actor = true, .keep = 1});
+                   "a mode at a time",
+                   {.actor = true, .keep = 1});
   auto device_input = module.input("device", hc::string(), "device to open; none when empty");
   auto gaze = module.output("gaze", hc::rotation().of(1, 1).in(hc::Coord::kGaze),
                             "0, tilt, pan as measured [rad]");
   auto pose = module.output(
-      "pose",
-      hc::transformation().in(hc::transform_coord(hc::Coord::kRobot, hc::Coord::kHead)),
+      "pose", hc::transformation().in(hc::transform_coord(hc::Coord::kRobot, hc::Coord::kHead)),
       "T_robot_head at the same time");
   auto device =
       module.parameter("device", "", "", "serial device, e.g. /dev/ttyUSB0", {.positional = true});

@@ -9,7 +9,8 @@
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"read", "Reads lines of letters on an even ground, as on a board.", {.background = true}};
+  hc::Module module{
+      "read", "Reads lines of letters on an even ground, as on a board.", {.background = true}};
   auto image = module.input("image", hc::image(), "image with letters");
   auto text = module.output("text", hc::string().in(hc::Coord::kText),
                             "the text, once it is certain, and when it changes");
@@ -45,7 +46,8 @@ int main(int argc, char** argv) {
     const auto block = hc::vision::block_of_best(hc::vision::find_text_lines(pixels, *score));
     if (block.empty()) return;
     const auto box = hc::vision::box_of(block);
-    target.send({box.x + box.width / 2, box.y + box.height / 2, box.width}, 0, message.header.coord);
+    target.send({box.x + box.width / 2, box.y + box.height / 2, box.width}, 0,
+                message.header.coord);
     const std::int64_t time = message.header.time != 0 ? message.header.time : module.now();
     const auto reading = reader->read_when_due(pixels, block, time, *rate);
     if (!reading) return;

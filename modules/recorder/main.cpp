@@ -67,7 +67,8 @@ std::uint64_t bytes_of(const std::string& parameter, const std::string& text) {
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"recorder", "Records streams into an MCAP file or a folder.", {.finish_when_stopped = true}};
+  hc::Module module{
+      "recorder", "Records streams into an MCAP file or a folder.", {.finish_when_stopped = true}};
   sigset_t saves;  // SIGUSR1, read from a descriptor
   ::sigemptyset(&saves);
   ::sigaddset(&saves, SIGUSR1);

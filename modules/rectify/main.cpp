@@ -20,20 +20,20 @@ int main(int argc, char** argv) {
   const auto image = hc::rgb_image();
   auto left = module.input("left", image.in(Coord::kLeftImage), "image of the left eye");
   auto right = module.input("right", image.in(Coord::kRightImage), "image of the right eye");
-  auto head =
-      module.input("calibration", hc::table(), "mounting of the eyes: calibrate's result", {.keep = 1});
+  auto head = module.input("calibration", hc::table(), "mounting of the eyes: calibrate's result",
+                           {.keep = 1});
   auto left_rectified =
       module.output("left", image.in(Coord::kLeftRectified), "rectified image of the left eye");
   auto right_rectified =
       module.output("right", image.in(Coord::kRightRectified), "rectified image of the right eye");
-  auto intrinsics =
-      module.output("intrinsics", hc::table().of(1, 5).in(Coord::kLeftRectified),
-                    "fx, fy, cx, cy [px], baseline [m] of the rectified pair, with "
-                    "the first image and then once a second");
+  auto intrinsics = module.output("intrinsics", hc::table().of(1, 5).in(Coord::kLeftRectified),
+                                  "fx, fy, cx, cy [px], baseline [m] of the rectified pair, with "
+                                  "the first image and then once a second");
   auto cameras = module.output(
       "cameras", hc::transformation(),
       "with the intrinsics: T_head_left_eye as calibrated (coord 3004), and from the left camera "
-      "of the rectified pair to the left eye (coord 4009)", {.on_demand = true});
+      "of the rectified pair to the left eye (coord 4009)",
+      {.on_demand = true});
   auto file = module.parameter(
       "calibration_file", "", "",
       "written by stereo_calibration and calibrate; without it an ideal pair is assumed",
@@ -58,15 +58,16 @@ int main(int argc, char** argv) {
     T_left_rectified.linear() =
         Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(calibration->R1.val)
             .transpose();
-    cameras.send(hc::numbers_of(eyes.T_head_eye(hc::gaze::Side::Left)), *time, hc::transform_coord(Coord::kHead, Coord::kLeftEye));
-    cameras.send(hc::numbers_of(T_left_rectified), *time, hc::transform_coord(Coord::kLeftEye, Coord::kLeftRectified));
+    cameras.send(hc::numbers_of(eyes.T_head_eye(hc::gaze::Side::Left)), *time,
+                 hc::transform_coord(Coord::kHead, Coord::kLeftEye));
+    cameras.send(hc::numbers_of(T_left_rectified), *time,
+                 hc::transform_coord(Coord::kLeftEye, Coord::kLeftRectified));
   };
   auto send_intrinsics = [&] {
     if (!time) return;
     send_cameras();
     const auto camera = calibration->rectified();
-    intrinsics.send(
-        {camera.fx, camera.fy, camera.cx, camera.cy, calibration->baseline()}, *time);
+    intrinsics.send({camera.fx, camera.fy, camera.cx, camera.cy, calibration->baseline()}, *time);
   };
   auto prepare = [&](Eye eye, const hc::Header& header) {
     const cv::Size size(header.width, header.height);

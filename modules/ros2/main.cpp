@@ -68,9 +68,10 @@ struct Frames {
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"ros2", "Talks to ROS 2: outputs of the graph as topics, and topics here.", {.keep_running = true}};
-  auto poses =
-      module.input("frames", hc::transformation(), "poses, linked by `hc run`");
+  hc::Module module{"ros2",
+                    "Talks to ROS 2: outputs of the graph as topics, and topics here.",
+                    {.keep_running = true}};
+  auto poses = module.input("frames", hc::transformation(), "poses, linked by `hc run`");
   std::map<std::string, Destination> outputs;
   const auto add = [&]<typename K>(const std::string& name, const K& kind, const char* doc) {
     outputs[name] = {kind.type,
@@ -87,8 +88,7 @@ int main(int argc, char** argv) {
   add("camera", hc::table().of(1, 5), "of CameraInfo: fx, fy, cx, cy [px], baseline [m]");
   add("pose", hc::transformation(), "of PoseStamped or TFMessage");
   add("twist", hc::table().of(1, 6), "of Twist: linear, angular");
-  add("joints", hc::table(),
-      "of JointState: a row of positions, then of velocities and efforts");
+  add("joints", hc::table(), "of JointState: a row of positions, then of velocities and efforts");
   add("text", hc::string(), "of String");
   add("numbers", hc::table(), "of Float64MultiArray");
   const auto publish = module.parameter(

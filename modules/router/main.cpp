@@ -9,7 +9,8 @@
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"router", "Forwards each message to the links of its address.", {.routes = true}};
+  hc::Module module{
+      "router", "Forwards each message to the links of its address.", {.routes = true}};
   auto in = module.input("in", hc::anything(), "messages with an address (dst)");
   auto out = module.output("out", hc::anything(), "the same, on the links of its address");
   auto counts = module.output(

@@ -43,10 +43,8 @@ int main(int argc, char** argv) {
   auto gaze = module.input("gaze", hc::rotation().in(hc::Coord::kGaze),
                            "roll, tilt, pan of the pan-tilt unit [rad]; straight ahead without");
   auto text = module.input("text", hc::string(), "text to write on the board");
-  auto left =
-      module.output("left", hc::rgb_image().in(hc::Coord::kLeftImage), "left eye");
-  auto right =
-      module.output("right", hc::rgb_image().in(hc::Coord::kRightImage), "right eye");
+  auto left = module.output("left", hc::rgb_image().in(hc::Coord::kLeftImage), "left eye");
+  auto right = module.output("right", hc::rgb_image().in(hc::Coord::kRightImage), "right eye");
   auto sound = module.output("sound", hc::sound(2).in(hc::Coord::kSound16k),
                              "sound at the left and right ear");
   Truth truth(module);
@@ -127,8 +125,7 @@ int main(int argc, char** argv) {
     if (*parameters.count > 0 && schedule.number() >= *parameters.count)
       return scene->eyes.empty() ? module.stop() : void();
     if (is_paced) schedule.catch_up(now);
-    if (is_paced && !schedule.is_due(now, frames.awaits("world", "head", schedule.time())))
-      return;
+    if (is_paced && !schedule.is_due(now, frames.awaits("world", "head", schedule.time()))) return;
     take();
     schedule.next();
   });

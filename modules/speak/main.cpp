@@ -20,9 +20,10 @@ constexpr std::chrono::milliseconds kLook{20};  // maximum gap between texts
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"speak", "Speaks text aloud, by eSpeak NG."};
-  auto text = module.input("text", hc::string(), "text to speak; UTF-8, cut after 2000 characters", {.keep = 16});
-  auto sound = module.output("sound", hc::sound(1).in(hc::Coord::kSound22k),
-                             "a message for each text");
+  auto text = module.input("text", hc::string(), "text to speak; UTF-8, cut after 2000 characters",
+                           {.keep = 16});
+  auto sound =
+      module.output("sound", hc::sound(1).in(hc::Coord::kSound22k), "a message for each text");
   auto words = module.output("words", hc::string().in(hc::Coord::kText),
                              "a message for each text, with the sound's time, and in it a row for "
                              "each word: START END WORD [s since the sound begins]; words that "

@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include <hc/mtp/matrix_view.h>
+
 using hc::Status;
 using hc::audio::Converter;
 using hc::audio::Format;
@@ -30,10 +32,10 @@ template Status Player::play(std::span<const float>, const Format&);
 
 Status Player::play(const hc::Message& message, const Format& format) {
   if (message.header.info.scalar == hc::Scalar::F32) {
-    auto samples = message.view<float>();
+    auto samples = hc::view<float>(message);
     return samples ? play(samples->numbers(), format) : samples.error();
   }
-  auto samples = message.view<std::int16_t>();
+  auto samples = hc::view<std::int16_t>(message);
   return samples ? play(samples->numbers(), format) : samples.error();
 }
 

@@ -16,8 +16,7 @@ int main(int argc, char** argv) {
   auto left = module.input("left", hc::image(hc::Coord::kLeftImage), "image of the left eye");
   auto right = module.input("right", hc::image(hc::Coord::kRightImage),
                             "image of the right eye at the same time");
-  auto found =
-      module.output("view", hc::table(), "views taken, views wanted; after each view");
+  auto found = module.output("view", hc::table(), "views taken, views wanted; after each view");
   auto result = module.output("score", hc::table(),
                               "reprojection error of the pair, the left, the right camera [px], "
                               "mean difference of rows [px], baseline [m], views used");

@@ -15,8 +15,8 @@ int main(int argc, char** argv) {
                     "Compares the direction of a head's eyes with the position of a ball."};
   auto eye = module.input("left_pose", hc::transformation().in(kWorldLeftEye),
                           "truth: T_world_left_eye", {.keep = 64});
-  auto ball =
-      module.input("ball", hc::position(6).in(hc::Coord::kWorld), "truth: of the ball [m]", {.keep = 64});
+  auto ball = module.input("ball", hc::position(6).in(hc::Coord::kWorld), "truth: of the ball [m]",
+                           {.keep = 64});
   auto seen = module.input("ball_seen", hc::table().of(1, 4),
                            "truth; the last number is the visible share", {.keep = 64});
   auto begin = module.input("begin", hc::table(),
@@ -47,8 +47,7 @@ int main(int argc, char** argv) {
       });
   constexpr std::chrono::milliseconds kLook{20};
   module.every(kLook, [&] {
-    if (++waits * kLook > hc::duration(*timeout))
-      throw hc::ModuleError("no image within timeout");
+    if (++waits * kLook > hc::duration(*timeout)) throw hc::ModuleError("no image within timeout");
     if (track.duration() < *duration) return;
     const auto score = track.score(*within);
     result.send(score.numbers());

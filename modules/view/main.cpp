@@ -53,7 +53,9 @@ std::vector<std::string> layouts() {
 int main(int argc, char** argv) {
   hc::add_all_transports();
   namespace fs = std::filesystem;
-  hc::Module module{"view", "Shows images in a window and saves them as PNG files.", {.finish_when_stopped = true}};
+  hc::Module module{"view",
+                    "Shows images in a window and saves them as PNG files.",
+                    {.finish_when_stopped = true}};
   auto image =
       module.input("image",
                    hc::any_of(hc::rgb_image(), hc::intensity_image(),

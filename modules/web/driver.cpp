@@ -12,7 +12,7 @@ namespace {
 using hc::Coord;
 
 bool is_finite(const hc::Message& message) {
-  const auto numbers = message.view<double>();
+  const auto numbers = hc::view<double>(message);
   return numbers &&
          std::ranges::all_of(numbers->numbers(), [](double x) { return std::isfinite(x); });
 }
@@ -25,7 +25,7 @@ bool is(const hc::Message& message, hc::MatrixType type, int components, int wid
 }
 
 std::span<const double> numbers_of(const hc::Message& message) {
-  return message.view<double>()->numbers();
+  return hc::view<double>(message)->numbers();
 }
 
 constexpr std::size_t kMaxText = 4096;  // [byte]
@@ -128,7 +128,8 @@ std::vector<Order> Driver::tick(std::int64_t wall, hc::MonotonicTime now) {
 
 std::vector<Order> Driver::leave(std::int64_t wall) {
   std::vector<Order> orders;
-  if (std::exchange(is_pushed_, false)) orders.push_back({Control::Stick, hc::table().message({0.0, 0.0})});
+  if (std::exchange(is_pushed_, false))
+    orders.push_back({Control::Stick, hc::table().message({0.0, 0.0})});
   if (bid_) orders.push_back({Control::Bid, withdrawn(*std::exchange(bid_, std::nullopt))});
   for (auto& order : orders) order.message.header.time = wall;
   return orders;

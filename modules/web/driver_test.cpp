@@ -30,7 +30,7 @@ hc::Message bid(double salience, int mode) {
 }
 
 double number(const Order& order, std::size_t i = 0) {
-  return order.message.view<double>()->numbers()[i];
+  return hc::view<double>(order.message)->numbers()[i];
 }
 
 TEST(Driver, what_is_commanded_is_passed_on_with_a_time) {
@@ -41,10 +41,12 @@ TEST(Driver, what_is_commanded_is_passed_on_with_a_time) {
   EXPECT_EQ(orders.front().message.header.time, kWall);
   EXPECT_EQ(number(orders.front(), 1), -1);
   using hc::Coord;
-  EXPECT_TRUE(driver.take(from(Control::Rotation, hc::rotation().message({0.1, 0.2, 0.3}), Coord::kSupervisor),
-                          kModes, kWall, {}));
-  EXPECT_TRUE(driver.take(from(Control::Target, hc::position().message({400., 300., 0.}), Coord::kRightImage),
-                          kModes, kWall, {}));
+  EXPECT_TRUE(driver.take(
+      from(Control::Rotation, hc::rotation().message({0.1, 0.2, 0.3}), Coord::kSupervisor), kModes,
+      kWall, {}));
+  EXPECT_TRUE(driver.take(
+      from(Control::Target, hc::position().message({400., 300., 0.}), Coord::kRightImage), kModes,
+      kWall, {}));
   EXPECT_TRUE(driver.take(from(Control::Text, hc::string().message("hello")), kModes, kWall, {}));
 }
 
@@ -52,7 +54,8 @@ TEST(Driver, what_comes_is_of_now_and_addressed_to_nobody) {
   constexpr std::int64_t kHour = 3'600'000'000'000, kSecond = 1'000'000'000;
   Driver driver;
   for (const std::int64_t time : {std::int64_t{1}, kWall - kHour, kWall + kHour}) {
-    hc::Message messages[] = {stick(1, 0), bid(1, 5), from(Control::Text, hc::string().message("hello")),
+    hc::Message messages[] = {stick(1, 0), bid(1, 5),
+                              from(Control::Text, hc::string().message("hello")),
                               from(Control::Rotation, hc::rotation().message({0., 0., 0.}), 14)};
     for (auto& message : messages) {
       message.header.time = time;
@@ -124,9 +127,10 @@ TEST(Driver, a_sign_of_life_keeps_what_is_commanded) {
   Driver driver;
   const hc::MonotonicTime begin{};
   ASSERT_TRUE(driver.take(stick(1, 0), kModes, kWall, begin));
-  EXPECT_TRUE(
-      driver.take(from(Control::Alive, hc::table().message({0.0})), kModes, kWall, begin + milliseconds(150))
-          ->empty());
+  EXPECT_TRUE(driver
+                  .take(from(Control::Alive, hc::table().message({0.0})), kModes, kWall,
+                        begin + milliseconds(150))
+                  ->empty());
   EXPECT_TRUE(driver.tick(kWall, begin + milliseconds(300)).empty());
   EXPECT_EQ(driver.tick(kWall, begin + milliseconds(351)).size(), 1U);
 }

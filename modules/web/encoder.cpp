@@ -129,8 +129,8 @@ hc::Result<hc::Message> Vp8Encoder::encode(const hc::Message& message, bool is_k
   while (const vpx_codec_cx_pkt_t* packet = vpx_codec_get_cx_data(&codec.context, &place)) {
     if (packet->kind != VPX_CODEC_CX_FRAME_PKT) continue;
     const auto& frame = packet->data.frame;
-    hc::Message coded =
-        hc::table<std::uint8_t>().message(std::span(static_cast<const std::uint8_t*>(frame.buf), frame.sz));
+    hc::Message coded = hc::table<std::uint8_t>().message(
+        std::span(static_cast<const std::uint8_t*>(frame.buf), frame.sz));
     const auto info = coded.header.info;
     const auto width = coded.header.width;
     coded.header = message.header;

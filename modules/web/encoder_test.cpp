@@ -30,7 +30,7 @@ TEST(Scaled, images_shrink_by_area) {
   EXPECT_EQ(small->header.width, 50);
   EXPECT_EQ(small->header.height, 25);
   EXPECT_EQ(small->header.seq, 7);
-  const auto pixels = *small->view<std::uint8_t>();
+  const auto pixels = *hc::view<std::uint8_t>(*small);
   EXPECT_NEAR(pixels.at(3, 10, 1), 41.5, 0.6);  // the mean of 40 to 43
 }
 
@@ -41,7 +41,7 @@ TEST(Scaled, other_fields_are_sampled_and_all_else_stays) {
   ASSERT_TRUE(small);
   EXPECT_EQ(small->header.width, 2);
   EXPECT_EQ(small->header.height, 2);
-  EXPECT_EQ(small->view<float>()->at(1, 1), depth[3 * 6 + 3]);
+  EXPECT_EQ(hc::view<float>(*small)->at(1, 1), depth[3 * 6 + 3]);
   EXPECT_EQ(scaled(ramp(200, 100), 0)->header.width, 200);
   EXPECT_EQ(scaled(ramp(200, 100), 200)->header.width, 200);
   EXPECT_EQ(scaled(hc::table().message({1.0, 2.0, 3.0}), 1)->header.width, 3);

@@ -42,20 +42,25 @@ void open_in_browser(const std::string& url) {
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"web", "Serves a page: the graph live, its streams, and the driver's seat.", {.keep_running = true}};
+  hc::Module module{"web",
+                    "Serves a page: the graph live, its streams, and the driver's seat.",
+                    {.keep_running = true}};
   auto stopped = module.input("stopped", hc::table<std::uint8_t>().of(1, 1),
                               "from workspace: 1 while the robot is stopped", {.keep = 1});
   auto stick = module.output("stick", hc::table().of(1, 2),
                              "left > 0, down > 0, each -1 to 1, from the driver", {.keep = 1});
   auto rotation = module.output("rotation", hc::rotation().in(hc::Coord::kSupervisor),
                                 "roll, pitch, yaw of the driver's head [rad]", {.keep = 1});
-  auto target = module.output("target", hc::position(),
-                              "selected point: x, y in the left (7) or right (8) image [px]", {.keep = 1});
+  auto target =
+      module.output("target", hc::position(),
+                    "selected point: x, y in the left (7) or right (8) image [px]", {.keep = 1});
   auto text = module.output("text", hc::string(), "to speak", {.keep = kTexts});
-  auto bid = module.output("bid", hc::table(), "for the task chosen by the driver", {.keep = kBids});
+  auto bid =
+      module.output("bid", hc::table(), "for the task chosen by the driver", {.keep = kBids});
   auto stop = module.output("stop", hc::table<std::uint8_t>().of(1, 1),
                             "1, repeated: stop the robot; 0, repeated: no stop, and a page is "
-                            "open; 2: a person clears all stops; 3: no page is open any more", {.keep = 1});
+                            "open; 2: a person clears all stops; 3: no page is open any more",
+                            {.keep = 1});
   // A slow reader of the driver's commands must never delay the stop.
   auto listen = module.parameter(
       "listen", "127.0.0.1", "",

@@ -13,15 +13,19 @@
 #include "workspace.h"
 
 int run_workspace(int argc, char** argv, const hc::Clock& clock) {
-  hc::Module module{"workspace", "Grants the focus to the highest bid and publishes it.", {.clock = &clock}};
+  hc::Module module{
+      "workspace", "Grants the focus to the highest bid and publishes it.", {.clock = &clock}};
   auto bids = module.input("bids", hc::table(),
-                           "salience 0 … 1 for the message's mode and src; 0 withdraws that bid", {.keep = 16});
-  auto person = module.input("person", hc::table(),
-                             "the same from a person; overrides all tasks while valid", {.keep = 16});
+                           "salience 0 … 1 for the message's mode and src; 0 withdraws that bid",
+                           {.keep = 16});
+  auto person =
+      module.input("person", hc::table(), "the same from a person; overrides all tasks while valid",
+                   {.keep = 16});
   auto stop = module.input("stop", hc::table<std::uint8_t>().of(1, 1),
                            "1: stops the robot until the same src sends 0; 0, repeated: the src "
                            "guards, and its silence stops too; 2: a person clears all stops; 3: "
-                           "the src ends guarding", {.keep = 16});
+                           "the src ends guarding",
+                           {.keep = 16});
   // Queues, since bids for several modes, and stops of several sources, may share a link.
   auto focus = module.output("focus", hc::table<std::int32_t>().of(1, 1),
                              "number of the mode in focus, 0 none; each period");
@@ -68,7 +72,9 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
       if (auto names = checked(hc::parse_mode_names(sources_read, hc::kSourceNames)))
         workspace.brake.set_names(std::move(*names));
   };
-  auto report = [&] { hc::ModuleAccess::report_focus(module, workspace.focus(), workspace.brake.stops()); };
+  auto report = [&] {
+    hc::ModuleAccess::report_focus(module, workspace.focus(), workspace.brake.stops());
+  };
   auto send_stopped = [&] {
     const std::uint8_t is_stopped = workspace.brake.is_stopped() ? 1 : 0;
     stopped.send({is_stopped}, module.now());
@@ -86,7 +92,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   });
   auto take = [&](const hc::Message& message, auto bid) {
     const auto now = module.monotonic();
-    const auto numbers = hc::value_or_drop(message.view<double>()).numbers();
+    const auto numbers = hc::value_or_drop(hc::view<double>(message)).numbers();
     // Not exactly one number: refused like an invalid salience.
     const double salience = numbers.size() == 1 ? numbers[0] : -1;
     const Bidder who{message.header.mode, message.header.src};

@@ -193,7 +193,8 @@ class Contest {
       rules_.bid_of_person(who, salience, now);
     } else if (what == 3) {  // of another time: it changes nothing
       say(link, who,
-          hc::table().message({salience})
+          hc::table()
+              .message({salience})
               .at(clock_.wall() - pick(0, 1) * 7'200'000'000'000 + 3'600'000'000'000));
     } else if (what == 4) {
       const auto word = static_cast<std::uint8_t>(
@@ -228,7 +229,7 @@ class Contest {
     EXPECT_TRUE(control_->send(hc::make_rows(std::vector<std::string>{""})));  // wakes it
     hc::Message got;
     ASSERT_TRUE(*hc::receive(*reported_, got));
-    focus_ = got.view<std::int32_t>()->at(0, 0);
+    focus_ = hc::view<std::int32_t>(got)->at(0, 0);
     rules_.decided(focus_, clock_.monotonic());
   }
 

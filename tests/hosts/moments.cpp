@@ -25,11 +25,12 @@ std::int64_t true_now() {
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"moments", "Sends the time, as it is and as its host has it.", {.keep_running = true}};
+  hc::Module module{
+      "moments", "Sends the time, as it is and as its host has it.", {.keep_running = true}};
   auto in = module.input("in", hc::table<std::int64_t>(), "moments of another");
   auto moment = module.output("moment", hc::table<std::int64_t>(), "true time [ns]");
-  auto pose = module.output("pose", hc::transformation(),
-                            "moved along x by 1 m a second since `start`");
+  auto pose =
+      module.output("pose", hc::transformation(), "moved along x by 1 m a second since `start`");
   auto ways = module.output("ways", hc::table<std::int64_t>(),
                             "how long a moment took to come: in truth, and by the clocks [ns]");
   auto start = module.parameter("start", 0.0, "s", "when the true time began");

@@ -9,6 +9,7 @@
 
 #include <hc/base/json_string.h>
 #include <hc/mtp/coords.h>
+#include <hc/mtp/matrix_view.h>
 #include <ros/encode.h>
 
 namespace {
@@ -45,7 +46,7 @@ hc::Message message_of(const hc::Header& header, std::mt19937* random) {
   } else {
     hc::visit_scalar(header.info.scalar, [&](auto zero) {
       auto next = zero;
-      for (auto& each : draft.view<decltype(zero)>().numbers()) each = ++next;
+      for (auto& each : hc::view<decltype(zero)>(draft).numbers()) each = ++next;
     });
   }
   return std::move(draft).finish();

@@ -353,7 +353,9 @@ module.run()
     def test_the_frames_of_a_module_are_the_same(self):
         module = hc.Module("m", "a module")
         hc.ModuleFrames(module)
-        self.assertEqual(hc.ModuleFrames(module).lookup("head", "head", 5).tolist(), numpy.eye(4).tolist())
+        self.assertEqual(
+            hc.ModuleFrames(module).lookup("head", "head", 5).tolist(), numpy.eye(4).tolist()
+        )
 
 
 class Loop(Modules):

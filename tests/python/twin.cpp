@@ -7,10 +7,9 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"camera_like", "Has a bit of everything."};
   auto image = module.input("image", hc::rgb_image(), "an image");
-  auto pose = module.input("pose",
-                           hc::any_of(hc::transformation(),
-                                      hc::rotation().of(1, 1).in(hc::Coord::kGaze)),
-                           "where", {.actor = true, .keep = 3});
+  auto pose = module.input(
+      "pose", hc::any_of(hc::transformation(), hc::rotation().of(1, 1).in(hc::Coord::kGaze)),
+      "where", {.actor = true, .keep = 3});
   module.input("any", hc::anything(), "all");
   auto mean = module.output("mean", hc::table().of(1, 3).in(7), "numbers");
   module.output("sound", hc::sound(2).in(hc::Coord::kSound16k), "noise");

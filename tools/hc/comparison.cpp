@@ -11,6 +11,7 @@
 
 #include <hc/base/format.h>
 #include <hc/mtp/element.h>
+#include <hc/mtp/matrix_view.h>
 
 namespace tool {
 namespace {
@@ -25,7 +26,7 @@ std::string both(std::string_view field, const T& recorded, const T& replayed) {
 template <typename T>
 std::string difference_of(const hc::Message& recorded, const hc::Message& replayed,
                           double tolerance) {
-  const auto a = recorded.view<T>()->numbers(), b = replayed.view<T>()->numbers();
+  const auto a = hc::view<T>(recorded)->numbers(), b = hc::view<T>(replayed)->numbers();
   for (std::size_t i = 0; i < a.size(); ++i) {
     const auto one = static_cast<double>(a[i]), other = static_cast<double>(b[i]);
     const bool is_same =  // also for NaN with the same bits

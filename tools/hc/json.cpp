@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <hc/base/json_string.h>
+#include <hc/mtp/matrix_view.h>
 
 #include "readable.h"
 
@@ -101,7 +102,7 @@ bool write_json(const hc::Message& message, const hc::Header& header, const Writ
     is_taken = write_rows_of_text(message, json, write);
   else
     hc::visit_scalar(header.info.scalar, [&](auto zero) {
-      is_taken = write_matrix(*message.view<decltype(zero)>(), json, write);
+      is_taken = write_matrix(*hc::view<decltype(zero)>(message), json, write);
     });
   return is_taken && write(json + "}\n");
 }

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <hc/mtp/matrix_view.h>
+
 namespace tool {
 namespace {
 
@@ -23,7 +25,7 @@ std::string to_json(const hc::Message& message) {
 
 TEST(Json, IsOneLineOfNamedFields) {
   hc::Draft draft = hc::Draft::make(hc::Info(), 1, 1);
-  auto numbers = draft.view<double>().numbers();
+  auto numbers = hc::view<double>(draft).numbers();
   numbers[0] = 0.5;
   numbers[1] = -0.0;
   numbers[2] = 1e300 * 1e10;
@@ -36,7 +38,8 @@ TEST(Json, IsOneLineOfNamedFields) {
 
 TEST(Json, IsWrittenInPieces) {
   const auto message = std::move(hc::Draft::make(hc::Info{hc::MatrixType::IntensityImage, 1,
-                                                          hc::Scalar::U8, hc::Encoding::Binary}, 1000, 1000))
+                                                          hc::Scalar::U8, hc::Encoding::Binary},
+                                                 1000, 1000))
                            .finish();
   std::size_t largest = 0, all = 0;
   EXPECT_TRUE(write_json(message, message.header, [&](std::string_view piece) {

@@ -9,6 +9,7 @@
 #include <hc/base/format.h>
 #include <hc/base/visible.h>
 #include <hc/mtp/coords.h>
+#include <hc/mtp/matrix_view.h>
 #include <hc/mtp/rows.h>
 
 namespace tool {
@@ -80,7 +81,7 @@ std::string to_readable(const hc::Message& message) {
     return text;
   }
   hc::visit_scalar(header.info.scalar,
-                   [&](auto zero) { text += rows_of(*message.view<decltype(zero)>()); });
+                   [&](auto zero) { text += rows_of(*hc::view<decltype(zero)>(message)); });
   return text;
 }
 

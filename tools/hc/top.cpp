@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <limits>
 
+#include <hc/mtp/matrix_view.h>
+
 #include "common.h"
 #include "observer.h"
 #include "screen.h"
@@ -73,7 +75,7 @@ class Bids {
     for (auto& [name, source, bids] : all_) {
       for (auto got = source->take(message); got && *got == hc::Got::Message;
            got = source->take(message))
-        if (auto rows = message.view<double>(); rows && rows->width() == 5)
+        if (auto rows = hc::view<double>(message); rows && rows->width() == 5)
           bids = bids_of(name, *rows, state);
       all.insert(all.end(), bids.begin(), bids.end());
     }

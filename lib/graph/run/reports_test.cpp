@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <hc/mtp/matrix_view.h>
 #include <hc/mtp/rows.h>
 
 namespace hc::internal {
@@ -14,9 +15,10 @@ class ReportsTest : public ::testing::Test {
  protected:
   static Message table(std::int32_t src, std::vector<std::vector<std::int64_t>> rows) {
     Draft draft = Draft::make({MatrixType::Table, static_cast<std::uint8_t>(rows[0].size()),
-                               Scalar::I64, Encoding::Binary}, static_cast<std::int32_t>(rows.size()), 1);
+                               Scalar::I64, Encoding::Binary},
+                              static_cast<std::int32_t>(rows.size()), 1);
     for (std::size_t i = 0; i < rows.size(); ++i)
-      std::copy(rows[i].begin(), rows[i].end(), draft.view<std::int64_t>().row(i).begin());
+      std::copy(rows[i].begin(), rows[i].end(), view<std::int64_t>(draft).row(i).begin());
     draft.header.src = src;
     return std::move(draft).finish();
   }

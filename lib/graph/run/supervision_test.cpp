@@ -8,6 +8,7 @@
 
 #include <graph/run/running_test.h>
 #include <hc/link/link.h>
+#include <hc/mtp/matrix_view.h>
 #include <hc/mtp/rows.h>
 #include <hc/testing/must.h>
 
@@ -32,7 +33,7 @@ class Reporter {
   template <std::size_t kSize>
   void report(std::int32_t src, const std::array<std::int64_t, kSize>& numbers) {
     Draft draft = Draft::make({MatrixType::Table, kSize, Scalar::I64, Encoding::Binary}, 1, 1);
-    std::copy(numbers.begin(), numbers.end(), draft.view<std::int64_t>().numbers().begin());
+    std::copy(numbers.begin(), numbers.end(), view<std::int64_t>(draft).numbers().begin());
     report(src, std::move(draft).finish());
   }
 

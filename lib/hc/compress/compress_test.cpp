@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include <hc/mtp/matrix_view.h>
 #include <hc/testing/must.h>
 
 namespace hc {
@@ -16,7 +17,7 @@ Message gradient(std::uint8_t components) {
   Info info{components == 1 ? MatrixType::IntensityImage : MatrixType::RgbImage, components,
             Scalar::U8, Encoding::Binary};
   Draft draft = Draft::make(info, 48, 64);
-  auto pixels = draft.view<std::uint8_t>();
+  auto pixels = view<std::uint8_t>(draft);
   for (std::size_t y = 0; y < 48; ++y)
     for (std::size_t x = 0; x < 64; ++x)
       for (std::size_t k = 0; k < components; ++k)
@@ -39,8 +40,8 @@ TEST(Compress, JpegKeepsTheImage) {
     auto packed = must(compress(image, Encoding::Jpeg));
     EXPECT_LT(packed.elements.size(), image.elements.size() / 2);
     auto again = must(expand(packed));
-    auto numbers = again.view<std::uint8_t>()->numbers(),
-         wanted = image.view<std::uint8_t>()->numbers();
+    auto numbers = view<std::uint8_t>(again)->numbers(),
+         wanted = view<std::uint8_t>(image)->numbers();
     double squares = 0;
     for (std::size_t i = 0; i < numbers.size(); ++i)
       squares += std::pow(numbers[i] - wanted[i], 2) / static_cast<double>(numbers.size());

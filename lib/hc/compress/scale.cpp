@@ -7,6 +7,7 @@
 
 #include <hc/base/check.h>
 #include <hc/compress/compress.h>
+#include <hc/mtp/matrix_view.h>
 
 namespace hc {
 namespace {
@@ -89,7 +90,7 @@ class Shrinking {
 template <typename T>
 Message shrink_plain(const Message& image, const Header& header) {
   Draft draft = Draft::make(header);
-  Shrinking<T>(*image.view<T>(), draft.view<T>()).run();
+  Shrinking<T>(*view<T>(image), view<T>(draft)).run();
   return std::move(draft).finish();
 }
 

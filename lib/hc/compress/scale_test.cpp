@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <hc/compress/compress.h>
+#include <hc/mtp/matrix_view.h>
 #include <hc/testing/must.h>
 
 namespace hc {
@@ -24,13 +25,13 @@ Message image_of(std::int32_t width, std::int32_t height, std::uint8_t component
   header.time = 12;
   header.coord = 7;
   Draft draft = Draft::make(header);
-  std::copy(pixels.begin(), pixels.end(), draft.view<T>().numbers().begin());
+  std::copy(pixels.begin(), pixels.end(), view<T>(draft).numbers().begin());
   return std::move(draft).finish();
 }
 
 template <typename T>
 std::vector<T> pixels_of(const Message& image) {
-  const auto numbers = image.view<T>()->numbers();
+  const auto numbers = view<T>(image)->numbers();
   return {numbers.begin(), numbers.end()};
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include <hc/mtp/matrix_view.h>
 #include <hc/mtp/rows.h>
 
 namespace hc {
@@ -22,8 +23,9 @@ static_assert(kPeers + 1 == kCounterColumns.size());
 
 template <std::size_t kColumns>
 Message make_table(std::span<const std::array<std::int64_t, kColumns>> rows) {
-  Draft draft = Draft::make({MatrixType::Table, kColumns, Scalar::I64, Encoding::Text}, static_cast<std::int32_t>(rows.size()), 1);
-  auto table = draft.view<std::int64_t>();
+  Draft draft = Draft::make({MatrixType::Table, kColumns, Scalar::I64, Encoding::Text},
+                            static_cast<std::int32_t>(rows.size()), 1);
+  auto table = view<std::int64_t>(draft);
   for (std::size_t i = 0; i < rows.size(); ++i)
     std::copy(rows[i].begin(), rows[i].end(), table.row(i).begin());
   return std::move(draft).finish();
@@ -62,7 +64,7 @@ Message make_counters(std::span<const LinkCounters> links) {
 
 std::vector<LinkCounters> read_counters(const Message& message) {
   std::vector<LinkCounters> links;
-  const auto table = message.view<std::int64_t>();
+  const auto table = view<std::int64_t>(message);
   if (!table || table->empty() || table->width() != 1 || table->components() < 2) return links;
   for (std::size_t i = 0; i < table->height(); ++i) links.push_back(counters_of(table->row(i)));
   return links;
@@ -111,7 +113,7 @@ Message make_state(const StateReport& state) {
 }
 
 std::optional<StateReport> read_state(const Message& message) {
-  const auto table = message.view<std::int64_t>();
+  const auto table = view<std::int64_t>(message);
   if (!table || table->empty()) return std::nullopt;
   const auto numbers = table->numbers();
   if (numbers.size() < 3) return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <hc/mtp/matrix_view.h>
 #include <hc/mtp/rows.h>
 
 namespace hc {
@@ -12,7 +13,7 @@ TEST(Report, CountersComeBackAsTheyWere) {
   LinkCounters link{{1, 2, 3, 4, 5, 6, 7}, 8, {10, 11, 12}, {20, 21, 22}};
   const auto message = make_counters(std::array{link, LinkCounters{}});
   EXPECT_EQ(message.header.info.components, kCounterColumns.size());
-  const auto numbers = message.view<std::int64_t>()->numbers();
+  const auto numbers = view<std::int64_t>(message)->numbers();
   EXPECT_EQ(std::vector<std::int64_t>(numbers.begin(), numbers.begin() + 14),
             (std::vector<std::int64_t>{1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12, 20, 21, 22}));
   const auto rows = read_counters(message);
@@ -27,8 +28,8 @@ TEST(Report, CountersComeBackAsTheyWere) {
 
 TEST(Report, TheFirstTwoColumnsAreEnough) {
   Draft draft = Draft::make({MatrixType::Table, 2, Scalar::I64, Encoding::Text}, 1, 1);
-  draft.view<std::int64_t>().numbers()[0] = 5;
-  draft.view<std::int64_t>().numbers()[1] = 50;
+  view<std::int64_t>(draft).numbers()[0] = 5;
+  view<std::int64_t>(draft).numbers()[1] = 50;
   const auto rows = read_counters(std::move(draft).finish());
   ASSERT_EQ(rows.size(), 1U);
   EXPECT_EQ(rows[0].traffic.bytes, 50U);

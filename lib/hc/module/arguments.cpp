@@ -106,7 +106,8 @@ class Parser {
   Status exclusive(const std::string& value) {
     auto input = position_of(ModuleAccess::inputs(module_), value);
     if (input == ModuleAccess::inputs(module_).end())
-      return invalid("no input \"" + value + "\"; there are: " + names(ModuleAccess::inputs(module_)));
+      return invalid("no input \"" + value +
+                     "\"; there are: " + names(ModuleAccess::inputs(module_)));
     (*input)->is_exclusive = true;
     return {};
   }
@@ -245,9 +246,10 @@ Error Parser::no_option(const std::string& key) const {
   for (const auto& each : ModuleAccess::parameters(module_)) known.push_back("--" + each->name);
   for (const auto& each : kOptions) known.emplace_back(each.name);
   const std::string meant = suggestion(key, known);
-  return invalid("no option \"" + key + "\"" +
-                 (meant.empty() ? "; parameters are: " + names(ModuleAccess::parameters(module_)) : meant) +
-                 "; see --help");
+  return invalid(
+      "no option \"" + key + "\"" +
+      (meant.empty() ? "; parameters are: " + names(ModuleAccess::parameters(module_)) : meant) +
+      "; see --help");
 }
 
 Status Parser::read_word() {

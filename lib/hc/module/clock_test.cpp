@@ -127,15 +127,15 @@ TEST_F(ByMessages, AGeneratorKeepsItsRateByThem) {
 
 TEST_F(ByMessages, AGeneratorThatKeepsNoRateIsCalledBetweenMessages) {
   feed("a", {at(1), at(2)});
-  module.generate([&] {
-    log.push_back("look" + now());
-  });
+  module.generate([&] { log.push_back("look" + now()); });
   EXPECT_EQ(run(), Log({"a 1 at 1", "look at 1", "a 2 at 2", "look at 2"}));
 }
 
 TEST_F(ByMessages, AGeneratorsEndIsTheModules) {
   feed("a", {at(1), at(2), at(3)});
-  module.generate([&] { if (module.now() >= at(2).header.time) module.stop(); });
+  module.generate([&] {
+    if (module.now() >= at(2).header.time) module.stop();
+  });
   EXPECT_EQ(run(), Log({"a 1 at 1", "a 2 at 2"}));
 }
 

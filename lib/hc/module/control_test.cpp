@@ -9,6 +9,7 @@
 #include <hc/compress/compress.h>
 #include <hc/module/focus.h>
 #include <hc/module/running_module_test.h>
+#include <hc/mtp/matrix_view.h>
 
 namespace hc {
 namespace {
@@ -93,7 +94,7 @@ TEST_F(RunningModule, InAGraphAReaderThatTakesNothingIsGivenUp) {
   });
   const auto reader = source_of(uri("out"));  // and never reads
   start_managed(module, {"--out=" + uri("out")});
-  while (next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 3) != 1) {
+  while (view<std::int64_t>(next(*reports_, Report::State))->at(0, 0, 3) != 1) {
   }
   while (read_counters(next(*reports_, Report::Counters)).at(0).traffic.dropped_timeout == 0) {
   }
@@ -114,7 +115,7 @@ TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {
                  "--exclusive=command", "--manage=" + uri("reports")});
   auto set_focus = [&](std::int32_t mode) {
     ASSERT_TRUE(focus->send(table<std::int32_t>().message({mode})));
-    while (next(*reports, Report::State).view<std::int64_t>()->at(0, 0, 1) != mode) {
+    while (view<std::int64_t>(next(*reports, Report::State))->at(0, 0, 1) != mode) {
     }
   };
   set_focus(2);

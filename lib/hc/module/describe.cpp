@@ -38,14 +38,16 @@ Description description_of(const Module& module) {
   description.name = module.name();
   description.summary = ModuleAccess::summary(module);
   for (const auto& port : ModuleAccess::inputs(module))
-    description.inputs.push_back({port->name, port->doc, port->types, port->options.actor, port->options.keep});
+    description.inputs.push_back(
+        {port->name, port->doc, port->types, port->options.actor, port->options.keep});
   for (const auto& port : ModuleAccess::outputs(module))
     description.outputs.push_back({port->name, port->doc, port->types});
   for (const auto& together : ModuleAccess::together(module)) {
     auto& names = description.together.emplace_back();
     for (const auto& port : together->inputs) names.push_back(port->name);
   }
-  for (const auto& parameter : ModuleAccess::parameters(module)) description.parameters.push_back(*parameter);
+  for (const auto& parameter : ModuleAccess::parameters(module))
+    description.parameters.push_back(*parameter);
   const auto schemes = transports();
   description.transports.emplace(schemes.begin(), schemes.end());
   description.control = true;
@@ -55,7 +57,8 @@ Description description_of(const Module& module) {
 
 std::string help(const Module& module) {
   const Description description = description_of(module);
-  std::string text = ModuleAccess::summary(module) + "\n\nUsage: hc " + module.name() + " [OPTION …]\n";
+  std::string text =
+      ModuleAccess::summary(module) + "\n\nUsage: hc " + module.name() + " [OPTION …]\n";
   text += lines("Inputs", description.inputs);
   for (const auto& together : description.together) {
     std::string names;

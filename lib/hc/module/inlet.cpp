@@ -6,6 +6,7 @@
 
 #include <hc/compress/compress.h>
 #include <hc/module/ending.h>
+#include <hc/mtp/matrix_view.h>
 
 namespace hc {
 namespace {
@@ -127,7 +128,7 @@ void Module::Delivery::drop(Inlet& inlet, const std::string& who, std::string_vi
 
 void Module::Delivery::set_focus(Inlet& inlet, const Message& message) {
   auto& focus = module_.focus_;
-  const auto modes = message.view<std::int32_t>();
+  const auto modes = view<std::int32_t>(message);
   if (!modes) return drop(inlet, inlet.port(), modes.error().detail);
   if (modes->empty()) return drop(inlet, inlet.port(), "it has no mode");
   trace_.note(TraceEvent::What::Took, inlet.port(), message.header);

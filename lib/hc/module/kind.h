@@ -17,6 +17,7 @@
 
 #include <hc/contract/port_type.h>
 #include <hc/mtp/coords.h>
+#include <hc/mtp/matrix_view.h>
 #include <hc/mtp/message.h>
 
 namespace hc {
@@ -253,8 +254,8 @@ bool finite(std::span<T, kExtent> numbers) {
 inline bool finite(const Message& message) {
   if (!message.plain()) return true;
   auto is_finite = [](auto view) { return finite(std::span(view->numbers())); };
-  if (message.header.info.scalar == Scalar::F64) return is_finite(message.view<double>());
-  if (message.header.info.scalar == Scalar::F32) return is_finite(message.view<float>());
+  if (message.header.info.scalar == Scalar::F64) return is_finite(view<double>(message));
+  if (message.header.info.scalar == Scalar::F32) return is_finite(view<float>(message));
   return true;
 }
 
@@ -263,7 +264,7 @@ MessageOf<Kind<kMatrix, T>> Kind<kMatrix, T>::message(std::int32_t height, std::
                                                       std::span<const T> numbers) const {
   Draft draft = Draft::make(type.info, height, width);
   draft.header.coord = type.coord;
-  const auto room = draft.view<T>().numbers();
+  const auto room = view<T>(draft).numbers();
   HC_CHECK(room.size() == numbers.size(), height, width, numbers.size());
   std::copy(numbers.begin(), numbers.end(), room.begin());
   return {std::move(draft).finish()};

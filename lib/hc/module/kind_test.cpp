@@ -89,8 +89,7 @@ TEST(Kind, AnElementThatIsNotThereIsNotRead) {
 TEST(Kind, AnyImageIsInColourOrGrey) {
   const AnyKind kind = image(7);
   ASSERT_EQ(kind.types.size(), 2U);
-  EXPECT_EQ(in_words(kind.types), in_words({rgb_image().in(7).type,
-                                            intensity_image().in(7).type}));
+  EXPECT_EQ(in_words(kind.types), in_words({rgb_image().in(7).type, intensity_image().in(7).type}));
   EXPECT_EQ(image().types[0].coord, 0);
 }
 

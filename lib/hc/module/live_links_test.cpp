@@ -12,6 +12,7 @@
 
 #include <hc/base/check.h>
 #include <hc/module/running_module_test.h>
+#include <hc/mtp/matrix_view.h>
 
 namespace hc {
 namespace {
@@ -31,7 +32,7 @@ TEST_F(RunningModule, SaysWhatItIsLinkedToAndHowItIsSet) {
   auto state = next(*reports_, Report::State);
   EXPECT_EQ(next_links(),
             (std::vector<std::string>{"in in " + uri("in"), "out out " + uri("out")}));
-  auto numbers = state.view<std::int64_t>()->row(0);
+  auto numbers = view<std::int64_t>(state)->row(0);
   EXPECT_EQ(std::vector(numbers.begin(), numbers.end()), (std::vector<std::int64_t>{3, 0, 1, 0}));
   ASSERT_TRUE(sink->close());
   EXPECT_EQ(join(), 0);
@@ -49,7 +50,7 @@ TEST_F(RunningModule, ReportsThatItWaitsForAReader) {
     });
     auto reports = source_of(uri("reports"));
     auto awaits_reader = [&] {
-      return next(*reports, Report::State).view<std::int64_t>()->at(0, 0, 3);
+      return view<std::int64_t>(next(*reports, Report::State))->at(0, 0, 3);
     };
     start(module, {"--out=" + listens, "--manage=" + uri("reports")});
     EXPECT_EQ(awaits_reader(), 0);
@@ -72,7 +73,7 @@ TEST_F(RunningModule, ObeysWhileItWaitsForAReader) {
     module.stop();
   });
   start_managed(module, {"--out=" + link});
-  while (next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 3) == 0) {
+  while (view<std::int64_t>(next(*reports_, Report::State))->at(0, 0, 3) == 0) {
   }
   command("set factor=4");
   EXPECT_EQ(rows_of(next(*reports_, Report::Parameters)).front(), "factor=4");
@@ -229,7 +230,8 @@ TEST_F(RunningModule, AnOutputThatNeverWaitsIsHeldUpByNoReader) {
   auto socket = source_of("unix:" + ("@" + name) + "?wait=60");
   constexpr int kMany = 20'000;  // of which no link has room for
   std::thread sender([&] {
-    for (int i = 0; i < kMany; ++i) EXPECT_TRUE(sink->send(table().message({static_cast<double>(i)})));
+    for (int i = 0; i < kMany; ++i)
+      EXPECT_TRUE(sink->send(table().message({static_cast<double>(i)})));
   });
   for (int i = 0; i < kMany; ++i) next(*from);
   sender.join();
@@ -276,7 +278,7 @@ TEST_F(RunningModule, AFocusLinkIsTakenAwayAlone) {
   EXPECT_EQ(read_log(next(*reports_, Report::Log))->text,
             "command \"unlink in focus=" + uri("one") + "\": there is no such link");
   ASSERT_TRUE(other->send(table<std::int32_t>().message({7})));
-  EXPECT_EQ(next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 1), 7);
+  EXPECT_EQ(view<std::int64_t>(next(*reports_, Report::State))->at(0, 0, 1), 7);
   end();
 }
 
@@ -326,7 +328,10 @@ TEST_F(RunningModule, WhoNeverWaitsReadsTheWriterThatFollowsOneThatWasKilled) {
       ASSERT_TRUE(come < 2 && !generates ? feed->send(table().message({1.0})) : feed->close());
     });
     module.on(module.input("in", table(), ""), [&](const auto&) { ++come; });
-    if (generates) module.generate([&] { if (come >= 2) module.stop(); });
+    if (generates)
+      module.generate([&] {
+        if (come >= 2) module.stop();
+      });
     module.on_start([&] { ASSERT_TRUE(feed->send(table().message({1.0}))); });
     start_managed(module, {"--in=feed=" + uri("feed"), "--in=in=" + name + "?reconnect=60"});
     const pid_t killed = start_writer(name);

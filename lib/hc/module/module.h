@@ -342,7 +342,7 @@ class Module {
   std::vector<Watch> watches_;
   std::vector<std::shared_ptr<Timeout::State>> timeouts_;
   std::map<std::string, std::int64_t> logged_;  // problems of a kind
-  bool is_done_ = false;  // see stop()
+  bool is_done_ = false;                        // see stop()
   ModuleOptions options_;
   const Clock& clock_;
   internal::Focus focus_;

@@ -59,12 +59,13 @@ TEST(Module, AnswersEachMessageAndKeepsItsTime) {
     out.send({message.matrix().at(0, 0, 0) * *factor, 0.0, 0.0});
   });
   std::vector<Message> taken;
-  for (int i = 1; i <= 3; ++i) taken.push_back(stamped(position().message({i * 1.0, 0.0, 0.0}), 1000 + i, 5));
+  for (int i = 1; i <= 3; ++i)
+    taken.push_back(stamped(position().message({i * 1.0, 0.0, 0.0}), 1000 + i, 5));
   const auto sent = run_on(module, {{"in", taken}}, {"--factor", "10", "--address", "out=77"});
   ASSERT_EQ(sent.size(), 3U);
   for (int i = 1; i <= 3; ++i) {
     const Message& message = sent[static_cast<std::size_t>(i) - 1];
-    EXPECT_EQ(message.view<double>()->at(0, 0, 0), 10.0 * i);
+    EXPECT_EQ(view<double>(message)->at(0, 0, 0), 10.0 * i);
     EXPECT_EQ(message.header.time, 1000 + i);
     EXPECT_EQ(message.header.seq, i - 1);
     EXPECT_EQ(message.header.src, 77);
@@ -100,7 +101,7 @@ TEST(Module, ConvertsForTheLinkThatSaysSoAlone) {
   wanted.width = 32;
   wanted.height = 24;
   EXPECT_EQ(expanded.header, wanted);
-  EXPECT_NEAR(expanded.view<std::uint8_t>()->at(20, 30, 2), 100, 2);
+  EXPECT_NEAR(view<std::uint8_t>(expanded)->at(20, 30, 2), 100, 2);
   EXPECT_EQ(number_of(next(*other)), 1.5);  // is no image
 }
 
@@ -144,13 +145,14 @@ TEST(Module, ExpandsWhatIsCompressedAndCompressesWhenAsked) {
                            {"--encoding=jpeg"});
   ASSERT_EQ(sent.size(), 1U);
   EXPECT_EQ(sent[0].header.info.encoding, Encoding::Jpeg);
-  EXPECT_EQ(expand(sent[0])->view<std::uint8_t>()->at(3, 3), 99);
+  EXPECT_EQ(view<std::uint8_t>(*expand(sent[0]))->at(3, 3), 99);
 }
 
 std::vector<Message> at_times(const std::vector<std::int64_t>& times) {
   std::vector<Message> messages;
   for (auto time : times)
-    messages.push_back(stamped(table().message({static_cast<double>(time)}), time, static_cast<int>(time)));
+    messages.push_back(
+        stamped(table().message({static_cast<double>(time)}), time, static_cast<int>(time)));
   return messages;
 }
 
@@ -174,7 +176,7 @@ TEST(Module, TakesTwoInputsTogetherByTime) {
     const std::int64_t time = i == 0 ? 2 : 5;
     EXPECT_EQ(sent[i].header.time, time);
     EXPECT_EQ(sent[i].header.mode, time);
-    for (auto number : sent[i].view<double>()->numbers())
+    for (auto number : view<double>(sent[i])->numbers())
       EXPECT_EQ(number, static_cast<double>(time));
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
@@ -196,9 +198,10 @@ TEST(Module, R43_WhatIsMadeOfSeveralHasTheLatestTime) {
     EXPECT_EQ(c.text(), "hello");
     out.send({1.0});
   });
-  auto sent = run_on(module, {{"one", {stamped(table().message({1.0}), 0, 3)}},
-                              {"two", {stamped(position<float>().message({0.5F, 0.0F, 0.0F}), 130, 7)}},
-                              {"three", {stamped(string().message("hello"), 0)}}});
+  auto sent =
+      run_on(module, {{"one", {stamped(table().message({1.0}), 0, 3)}},
+                      {"two", {stamped(position<float>().message({0.5F, 0.0F, 0.0F}), 130, 7)}},
+                      {"three", {stamped(string().message("hello"), 0)}}});
   ASSERT_EQ(sent.size(), 1U);
   EXPECT_EQ(sent[0].header.time, 130);
   EXPECT_EQ(sent[0].header.mode, 7);
@@ -229,12 +232,11 @@ TEST(Module, AnImageMadeOfAnotherKeepsItsCoordinateSystem) {
   Module module{"grey", "Makes images grey."};
   auto in = module.input("in", rgb_image(), "");
   auto out = module.output("out", intensity_image(), "");
-  module.on(in, [&](const auto& message) {
-    out.send(message.numbers().first(1));
-  });
+  module.on(in, [&](const auto& message) { out.send(message.numbers().first(1)); });
   const std::uint8_t pixel[] = {1, 2, 3};
-  auto sent = run_on(module, {{"in", {rgb_image().in(Coord::kRightImage).message(pixel),
-                                      rgb_image().message(pixel)}}});
+  auto sent = run_on(
+      module,
+      {{"in", {rgb_image().in(Coord::kRightImage).message(pixel), rgb_image().message(pixel)}}});
   ASSERT_EQ(sent.size(), 2U);
   EXPECT_EQ(sent[0].header.coord, Coord::kRightImage);
   EXPECT_EQ(sent[1].header.coord, 0);
@@ -246,8 +248,7 @@ TEST(Module, AScoreOfAnImageIsNotInItsCoordinateSystem) {
   auto out = module.output("out", table(), "");
   module.on(in, [&](const auto&) { out.send({1.0}); });
   const std::uint8_t pixel[] = {1, 2, 3};
-  auto sent =
-      run_on(module, {{"in", {rgb_image().in(Coord::kRightImage).message(pixel)}}});
+  auto sent = run_on(module, {{"in", {rgb_image().in(Coord::kRightImage).message(pixel)}}});
   ASSERT_EQ(sent.size(), 1U);
   EXPECT_EQ(sent[0].header.coord, 0);
 }
@@ -257,8 +258,7 @@ TEST(Module, ASetOfOneCoordinateSystemKeepsIt) {
   auto one = module.input("one", position(), "");
   auto two = module.input("two", position(), "");
   auto out = module.output("out", position(), "");
-  module.on(together(one, two),
-            [&](const auto&, const auto&) { out.send({1.0, 2.0, 3.0}); });
+  module.on(together(one, two), [&](const auto&, const auto&) { out.send({1.0, 2.0, 3.0}); });
   auto place = [](std::int32_t coord, std::int64_t time) {
     return stamped(position().in(coord).message({0, 0, 0}), time);
   };
@@ -276,14 +276,15 @@ TEST(Module, AnInputOfFiniteNumbersDropsOthersAndCountsThem) {
   auto out = module.output("out", rotation(), "");
   module.on(in, [&](const auto& message) { out.send(message); });
   testing::internal::CaptureStderr();
-  auto sent = run_on(module, {{"in",
-                               {rotation().message({0.0, kNan, 0.0}), rotation().message({1.0, 2.0, 3.0}),
-                                rotation().message({0.0, 0.0, std::numeric_limits<double>::infinity()})}}});
+  auto sent =
+      run_on(module, {{"in",
+                       {rotation().message({0.0, kNan, 0.0}), rotation().message({1.0, 2.0, 3.0}),
+                        rotation().message({0.0, 0.0, std::numeric_limits<double>::infinity()})}}});
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
             "sum: in: dropped: NaN or infinity (further ones are counted, not logged)\n"
             "sum: total: 2 not finite\n");
   ASSERT_EQ(sent.size(), 1U);
-  EXPECT_EQ(sent[0].view<double>()->at(0, 0, 2), 3.0);
+  EXPECT_EQ(view<double>(sent[0])->at(0, 0, 2), 3.0);
 }
 
 TEST(Module, ATimeoutFiresOnceEachTimeItIsStarted) {
@@ -367,9 +368,9 @@ TEST(Module, ABadMessageIsOneBadMessage) {
   refused.header.seq = 3;
   Message unheard_of = refused;
   unheard_of.header.seq = 4;
-  for (const Message& message :
-       std::initializer_list<Message>{position().message({1.0, 2.0, 3.0}), table().message({1.0}), image, frame, refused,
-                                      unheard_of, position().message({1.0, 2.0, 3.0})})
+  for (const Message& message : std::initializer_list<Message>{
+           position().message({1.0, 2.0, 3.0}), table().message({1.0}), image, frame, refused,
+           unheard_of, position().message({1.0, 2.0, 3.0})})
     ASSERT_TRUE(sink->send(message));
   ASSERT_TRUE(sink->close());
   EXPECT_EQ(
@@ -421,8 +422,8 @@ TEST(Module, ABadFocusIsOneBadMessage) {
   Message none = table<std::int32_t>().message({0});
   none.header.height = 0;
   none.elements = {};
-  for (const Message& message :
-       {Message(table<std::int32_t>().message({2})), Message(position().message({1.0, 2.0, 3.0})), none})
+  for (const Message& message : {Message(table<std::int32_t>().message({2})),
+                                 Message(position().message({1.0, 2.0, 3.0})), none})
     ASSERT_TRUE(focus->send(message));
   ASSERT_TRUE(sink->send(table().message({1.0})));
   ASSERT_TRUE(sink->close());
@@ -456,9 +457,7 @@ TEST(Module, AFileWithBadMessagesIsReadToItsEndAndAFailure) {
 TEST(Module, EndsWhenNobodyReadsItAnyMore) {
   Module module{"source", "Makes numbers."};
   auto out = module.output("out", table(), "");
-  module.generate([&] {
-    out.send({1.0});
-  });
+  module.generate([&] { out.send({1.0}); });
   auto source = source_of("inproc:m5");
   std::thread reader([&] {
     for (int i = 0; i < 10; ++i) next(*source);

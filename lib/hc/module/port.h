@@ -192,8 +192,8 @@ class Output {
     send(K(state_->type()).message(numbers), time, coord);
   }
   /// Sends one row of text.
-  void send(std::string_view text, std::int64_t time = 0, std::int32_t coord = 0)
-      requires(std::is_same_v<K, StringKind>) {
+  void send(std::string_view text, std::int64_t time = 0,
+            std::int32_t coord = 0) requires(std::is_same_v<K, StringKind>) {
     send(K(state_->type()).message(text), time, coord);
   }
   /// Sends a message; a time and a coord of 0 leave its own.

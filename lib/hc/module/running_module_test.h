@@ -113,7 +113,7 @@ class RunningModule : public ::testing::Test {
 
 /// The number of a table that has one.
 inline double number_of(const Message& message) {
-  return message.view<double>()->at(0, 0);
+  return view<double>(message)->at(0, 0);
 }
 
 /// Numbers of counters; a row for each link.
@@ -121,9 +121,9 @@ using CounterRows = std::vector<std::vector<std::int64_t>>;
 
 inline CounterRows counters_of(const Message& message) {
   CounterRows rows;
-  auto view = *message.view<std::int64_t>();
-  for (std::size_t i = 0; i < view.height(); ++i)
-    rows.emplace_back(view.row(i).begin(), view.row(i).end());
+  auto matrix = *view<std::int64_t>(message);
+  for (std::size_t i = 0; i < matrix.height(); ++i)
+    rows.emplace_back(matrix.row(i).begin(), matrix.row(i).end());
   return rows;
 }
 inline CounterRows next_counters(Source& reports) {

@@ -68,8 +68,7 @@ TEST_F(RunningModule, ReportsWhenItTookHandledAndSent) {
 
 TEST_F(RunningModule, ReportsEachMessageThatIsTakenTogether) {
   Module module{"pair", "Takes two together."};
-  auto left = module.input("left", table(), ""),
-       right = module.input("right", table(), "");
+  auto left = module.input("left", table(), ""), right = module.input("right", table(), "");
   module.on(together(left, right), [](const auto&, const auto&) {});
   auto one = sink_of(uri("left")), other = sink_of(uri("right"));
   auto trace = source_of(uri("trace"));

@@ -9,6 +9,7 @@
 #include <limits>
 #include <random>
 
+#include <hc/mtp/matrix_view.h>
 #include <hc/mtp/stream_reader.h>
 #include <hc/testing/decode.h>
 #include <hc/testing/must.h>
@@ -43,7 +44,7 @@ Message random_message(std::mt19937_64& random) {
   if (header.info.encoding == Encoding::Text) {
     // Text loses the sign and payload of NaN.
     auto clean = [&](auto zero) {
-      for (auto& number : draft.view<decltype(zero)>().numbers())
+      for (auto& number : view<decltype(zero)>(draft).numbers())
         if (std::isnan(number)) number = std::numeric_limits<decltype(zero)>::quiet_NaN();
     };
     if (header.info.scalar == Scalar::F64) clean(double{});

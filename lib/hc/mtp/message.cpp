@@ -2,7 +2,6 @@
 #include <hc/mtp/message.h>
 
 #include <cstdint>
-#include <stdexcept>
 
 namespace hc {
 namespace {
@@ -13,10 +12,6 @@ void check_own(const Header& header) {
 }
 
 }  // namespace
-
-void internal::refuse_index(std::size_t index, std::size_t size) {
-  throw std::out_of_range("index " + std::to_string(index) + " of " + std::to_string(size));
-}
 
 SharedBytes allocate_bytes(std::size_t size) {
   constexpr std::size_t kLarge = std::size_t{64} << 10, kPage = 4096, kAlignment = 64;

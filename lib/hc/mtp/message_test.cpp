@@ -5,6 +5,8 @@
 
 #include <stdexcept>
 
+#include <hc/mtp/matrix_view.h>
+
 namespace hc {
 namespace {
 
@@ -12,7 +14,7 @@ constexpr Info kRgb{MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary};
 
 Message small_image() {
   Draft draft = Draft::make(kRgb, 3, 2);
-  auto pixels = draft.view<std::uint8_t>();
+  auto pixels = view<std::uint8_t>(draft);
   for (std::size_t i = 0; i < pixels.numbers().size(); ++i)
     pixels.numbers()[i] = static_cast<std::uint8_t>(i);
   return std::move(draft).finish();
@@ -20,7 +22,7 @@ Message small_image() {
 
 TEST(Message, IsViewedWithoutACopy) {
   Message image = small_image();
-  auto pixels = image.view<std::uint8_t>();
+  auto pixels = view<std::uint8_t>(image);
   ASSERT_TRUE(pixels);
   EXPECT_EQ(pixels->width(), 2U);
   EXPECT_EQ(pixels->height(), 3U);
@@ -32,21 +34,21 @@ TEST(Message, IsViewedWithoutACopy) {
 }
 
 TEST(Message, AnotherScalarIsRefused) {
-  EXPECT_EQ(small_image().view<float>().error().code, Code::Unsupported);
+  EXPECT_EQ(view<float>(small_image()).error().code, Code::Unsupported);
   Message packed = small_image();
   packed.header.info.encoding = Encoding::Jpeg;
-  EXPECT_FALSE(packed.view<std::uint8_t>());
+  EXPECT_FALSE(view<std::uint8_t>(packed));
 }
 
 TEST(Message, OutsideIsNotRead) {
   Message image = small_image();
-  auto pixels = *image.view<std::uint8_t>();
+  auto pixels = *view<std::uint8_t>(image);
   EXPECT_THROW(static_cast<void>(pixels.at(3, 0)), std::out_of_range);
   EXPECT_THROW(static_cast<void>(pixels.row(3)), std::out_of_range);
 }
 
 TEST(MessageDeathTest, AnotherScalarOrANegativeSideIsABug) {
-  EXPECT_DEATH(static_cast<void>(Draft::make(kRgb, 1, 1).view<float>()), "check failed");
+  EXPECT_DEATH(static_cast<void>(view<float>(Draft::make(kRgb, 1, 1))), "check failed");
   EXPECT_DEATH(static_cast<void>(Draft::make(kRgb, 1, -1)), "check failed.*R15");
 }
 

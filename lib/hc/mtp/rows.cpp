@@ -8,7 +8,9 @@ namespace hc {
 Message make_rows(std::span<const std::string> lines) {
   std::size_t width = 0;
   for (const auto& line : lines) width = std::max(width, line.size());
-  Draft draft = Draft::make({MatrixType::String, 1, Scalar::U8, Encoding::Binary}, static_cast<std::int32_t>(width == 0 ? 0 : lines.size()), static_cast<std::int32_t>(width));
+  Draft draft = Draft::make({MatrixType::String, 1, Scalar::U8, Encoding::Binary},
+                            static_cast<std::int32_t>(width == 0 ? 0 : lines.size()),
+                            static_cast<std::int32_t>(width));
   auto place = draft.elements().begin();
   for (const auto& line : lines) {
     place = std::transform(line.begin(), line.end(), place,

@@ -109,8 +109,7 @@ TEST_P(LinkConformance, SmallAndLargeOnesStayInOrder) {
   constexpr int kCount = 2000;
   const auto size = [](int i) { return i % 100 == 99 ? 200'000 : i % 50; };
   auto sender = send_all(*sink_, kCount, size);
-  for (int i = 0; i < kCount; ++i)
-    ASSERT_EQ(next(*source_).text(), numbered(i, size(i)).text());
+  for (int i = 0; i < kCount; ++i) ASSERT_EQ(next(*source_).text(), numbered(i, size(i)).text());
   sender.join();
 }
 

@@ -10,8 +10,7 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"bidder", "Bids for the focus as a script says, and commands."};
   auto bid = module.output("bid", hc::table(), "1 x 1: salience; 0 withdraws");
-  auto command =
-      module.output("command", hc::table(), "1 x 1: the salience, while it is not 0");
+  auto command = module.output("command", hc::table(), "1 x 1: the salience, while it is not 0");
   auto text = module.parameter("script", "0:0.5", "",
                                "SECONDS:SALIENCE …, at the end SECONDS:end or SECONDS:again",
                                {.positional = true, .fixed = true});

@@ -2,6 +2,7 @@
 // That messages arrive, of any size and in place, and that who waits can be stopped.
 #include <hc/link/shm/shm_test.h>
 #include <hc/link/wait_set.h>
+#include <hc/mtp/matrix_view.h>
 
 #include <array>
 #include <numeric>
@@ -50,8 +51,8 @@ TEST_F(Shm, LargeElementsAreReadWhereTheyWereWritten) {
   open();
   auto header = numbered(0, kLarge).header;
   Draft draft = sink_->loan(header);
-  std::iota(draft.view<std::uint8_t>().numbers().begin(),
-            draft.view<std::uint8_t>().numbers().end(), std::uint8_t{0});
+  std::iota(view<std::uint8_t>(draft).numbers().begin(), view<std::uint8_t>(draft).numbers().end(),
+            std::uint8_t{0});
   const auto* written = draft.elements().data();
   Message sent = std::move(draft).finish();
   ASSERT_TRUE(sink_->send(sent));
@@ -87,11 +88,11 @@ TEST_F(Shm, TextTravelsWithItsHeaderAndWithoutBeingWritten) {
   header.info = {MatrixType::Position, 3, Scalar::F64, Encoding::Text};
   header.width = header.height = 1;
   Draft draft = sink_->loan(header);
-  draft.view<double>().at(0, 0, 1) = 0.1;
+  view<double>(draft).at(0, 0, 1) = 0.1;
   ASSERT_TRUE(sink_->send(std::move(draft).finish()));
   const Message message = next(*source_);
   EXPECT_EQ(message.header.info, header.info);
-  EXPECT_EQ(message.view<double>()->at(0, 0, 1), 0.1);
+  EXPECT_EQ(view<double>(message)->at(0, 0, 1), 0.1);
 }
 
 TEST_F(Shm, AMessageThatDoesNotFitIsRefused) {

@@ -102,8 +102,7 @@ TEST_F(Stdio, AMessageThatWasBegunIsFinishedBeforeItStops) {
   stop.raise();
   auto sink = sink_of("-", stop.options());
   auto source = source_of("-");
-  std::thread reader(
-      [&] { EXPECT_EQ(next(*source).text(), numbered(0, 4'000'000).text()); });
+  std::thread reader([&] { EXPECT_EQ(next(*source).text(), numbered(0, 4'000'000).text()); });
   EXPECT_TRUE(sink->send(numbered(0, 4'000'000)));
   reader.join();
 }
