@@ -75,7 +75,7 @@ TEST(Kind, AnElementThatIsNotThereIsNotRead) {
   EXPECT_THROW(static_cast<void>(none.numbers().front()), std::out_of_range);
   EXPECT_THROW(static_cast<void>(none.numbers().back()), std::out_of_range);
   EXPECT_THROW(static_cast<void>(none.matrix().at(0, 0)), std::out_of_range);
-  EXPECT_THROW(static_cast<void>(none.matrix().row(0)), std::out_of_range);
+  EXPECT_THROW(static_cast<void>(none.matrix().row(1)), std::out_of_range);
   const auto one = position().message({1, 2, 3});
   EXPECT_THROW(static_cast<void>(one.numbers()[3]), std::out_of_range);
   EXPECT_THROW(static_cast<void>(one.matrix().at(0, 0, 3)), std::out_of_range);
