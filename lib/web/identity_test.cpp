@@ -58,7 +58,7 @@ TEST(Identity, of_which_a_part_is_missing_or_another_says_what_to_do) {
     const auto wrong = load_identity(folder / "a");
     ASSERT_FALSE(wrong) << text;
     EXPECT_EQ(wrong.error().code, Code::Malformed);
-    EXPECT_NE(wrong.error().detail.find("; delete it to have new ones made"), std::string::npos);
+    EXPECT_NE(wrong.error().detail.find("; delete the file to make new ones"), std::string::npos);
   }
 }
 
