@@ -275,7 +275,7 @@ TEST_P(SocketLink, WhoIsSilentLongestMakesRoom) {
   EXPECT_EQ(next(*source).header.seq, 2);
   ASSERT_EQ(warnings.lines.size(), 1U);
   EXPECT_EQ(warnings.lines[0],
-            listen() + ": closed the peer that was silent longest, to let another in");
+            listen() + ": closed the peer that was silent longest, to make room for a new one");
   EXPECT_TRUE(is_closed(peers[2]));
 }
 
@@ -286,7 +286,7 @@ TEST_P(SocketLink, WhoDoesNotEndItsHeaderIsClosed) {
   auto peer = GetParam().connect(place_);
   write_to(peer, "1 2");
   await_warning(*source, warnings);
-  EXPECT_EQ(warnings.lines[0], "closed a connection: no whole header in 0 s");
+  EXPECT_EQ(warnings.lines[0], "closed a connection: no complete header in 0 s");
   EXPECT_TRUE(is_closed(peer));
   auto sink = sink_of(dial());
   ASSERT_TRUE(sink->send(numbered(1, 1)));
@@ -339,7 +339,8 @@ TEST_P(SocketLink, WhoIsSilentForLongInsideAMessageGivesItsPlaceToOneWhoWaits) {
   ASSERT_TRUE(sink->send(numbered(2, 1)));
   EXPECT_EQ(next(*source).header.seq, 2);
   EXPECT_EQ(warnings.lines,
-            std::vector<std::string>{"closed the peer that was silent longest, to let another in"});
+            std::vector<std::string>{
+                "closed the peer that was silent longest, to make room for a new one"});
   EXPECT_TRUE(is_closed(peers[0]));
 }
 

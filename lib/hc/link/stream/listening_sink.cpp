@@ -16,7 +16,7 @@
 namespace hc::internal {
 namespace {
 
-// Between messages that follow one another one looks for new peers only so often.
+// How often it looks for new peers between messages in close succession.
 constexpr std::chrono::microseconds kFollowTime{10};
 constexpr std::chrono::milliseconds kNewPeerPeriod{1};
 
@@ -60,7 +60,7 @@ class ListeningSink final : public Sink {
       auto has = put_to_all(outgoing, now);
       if (has && !*has) has = has_reader();
       if (!has) return has.error();
-      if (!*has) continue;  // the message is for the next who comes
+      if (!*has) continue;  // the next reader gets the message
       last_send_ = now;
       ++traffic_.messages;
       traffic_.bytes += outgoing.size();
@@ -71,7 +71,7 @@ class ListeningSink final : public Sink {
   Status close() override {
     Status awaited;
     if (audience_.is_awaited()) awaited = await_readers();
-    let_in();  // who has just come finds the end too
+    let_in();  // so that new peers see the end, too
     bool patient = true;
     for (auto& peer : peers_) {
       auto closed = peer->close(patient);
@@ -110,7 +110,7 @@ class ListeningSink final : public Sink {
   }
 
  private:
-  /// Makes peers of those who wait outside, as far as there is room.
+  /// Accepts waiting connections, up to kMaxPeers.
   void accept_all() {
     auto has_room = [this] {
       for (std::size_t i = peers_.size(); i-- > 0 && peers_.size() >= kMaxPeers;)
@@ -125,7 +125,7 @@ class ListeningSink final : public Sink {
         });
   }
 
-  /// Another link may listen here from now on, while this object still exists.
+  /// Frees the address for another link while this object still exists.
   void stop_listening() {
     while (!peers_.empty()) leave(peers_.size() - 1);
     listening_.reset();
@@ -133,7 +133,7 @@ class ListeningSink final : public Sink {
   }
 
   void let_in() {
-    if (socket_.is_paused) accept_all();  // there may be room by now
+    if (socket_.is_paused) accept_all();  // a peer may have left
     static_cast<void>(loop_->turn(std::chrono::milliseconds(0)));
   }
 
@@ -145,35 +145,35 @@ class ListeningSink final : public Sink {
   }
 
   void leave(std::size_t peer) {
-    // Its dropped bytes count where no other reader has got them.
+    // Dropped bytes do not count if another reader got them.
     Traffic losses = peers_[peer]->losses();
     if (peers_.size() > 1) losses.bytes = 0;
     traffic_ += losses;
     peers_.erase(peers_.begin() + static_cast<std::ptrdiff_t>(peer));
-    last_look_ = {};  // there is room for who waits outside
+    last_look_ = {};  // a waiting peer may have its place
   }
 
-  /// Whether some of what a peer is to get is in memory of ours still, so that it is no use to ask
-  /// whether it has been taken.
+  /// Sends a message to all peers. Returns whether a part of it is still to be written.
   Result<bool> put_to_all(Outgoing& message, TimePoint now) {
-    bool is_ours = false;
+    bool is_pending = false;
     for (std::size_t i = 0; i < peers_.size();) {
       auto sent = peers_[i]->send(message, now);
       if (!sent && (sent.error().code == Code::Stopped || sent.error().code == Code::Truncated))
         return sent.error();
-      is_ours = is_ours || (sent && !*sent);
+      is_pending = is_pending || (sent && !*sent);
       if (sent)
         ++i;
       else
         leave(i);
     }
-    return is_ours;
+    return is_pending;
   }
 
-  /// Whether a peer has taken what was sent to it, or will.
+  /// Whether a peer has received the last message, or will.
   ///
-  /// A peer that has shut its own side may read on, as `nc -N` does, or have left. Over TCP a write
-  /// succeeds in either case; what shows it is its kernel's answer, an acknowledgement or a reset.
+  /// A peer that has shut down its direction may still read, as `nc -N` does, or have left. Over
+  /// TCP a write succeeds in both cases; the answer of its kernel shows which: acknowledgement or
+  /// reset.
   [[nodiscard]] Result<bool> has_taken(const Connection& peer) const {
     Backoff backoff(std::chrono::milliseconds(1), std::chrono::milliseconds(200));
     while (true) {
@@ -190,7 +190,7 @@ class ListeningSink final : public Sink {
     }
   }
 
-  /// Whether there is a reader that has taken what was sent; one is enough.
+  /// Whether at least one reader has received the last message. Removes those that have left.
   Result<bool> has_reader() {
     while (!peers_.empty()) {
       auto taken = HC_TRY(has_taken(*peers_.back()));
@@ -201,15 +201,15 @@ class ListeningSink final : public Sink {
   }
 
   ListeningSocket socket_;
-  std::unique_ptr<Loop> loop_;  // of the listening socket
+  std::unique_ptr<Loop> loop_;  // watches the listening socket
   Loop::Handle listening_;
   Audience audience_;
-  Policy policy_;  // of each peer
+  Policy policy_;  // for each peer
   LinkOptions options_;
-  TimePoint last_send_, last_look_;  // the latter: who wants to be let in
+  TimePoint last_send_, last_look_;  // the latter for new peers
   Encoder encoder_;
   std::vector<std::unique_ptr<Connection>> peers_;
-  Traffic traffic_;  // with the losses of those that have left
+  Traffic traffic_;  // including losses of peers that have left
 };
 
 }  // namespace
