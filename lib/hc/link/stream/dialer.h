@@ -52,10 +52,9 @@ struct Peer {
 
 /// Connects to a peer, and reconnects when the connection is lost.
 ///
-/// After a refused attempt it pauses. After one without an answer within kAnswer, which took as
-/// long as a pause, it tries again at once: so a network that comes back is soon in use, although
-/// the kernel's own retries are seconds apart by then. While the network is known to be down,
-/// pauses are at most kAway, for the same reason.
+/// After a refused attempt it pauses, for at most kAway if the network is down. After one without
+/// an answer within kAnswer it tries again at once. So a network that comes back is soon in use,
+/// although the kernel's own retries are seconds apart by then.
 class Dialer {
  public:
   static constexpr std::chrono::seconds kAnswer{1}, kAway{1};

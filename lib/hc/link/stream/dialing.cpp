@@ -11,8 +11,7 @@ namespace hc::internal {
 namespace {
 
 constexpr std::int64_t kMostSeconds = 86'400;  // of waiting
-/// The delay before a closed connection is logged: when both ends are stopped together, the reader
-/// ends within this time, and nothing is logged.
+/// The delay before a closed connection is logged: a reader that is stopped with it logs nothing.
 constexpr std::chrono::milliseconds kLogAfter{200};
 
 /// A source that reconnects; see dial_source().

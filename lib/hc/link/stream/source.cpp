@@ -46,8 +46,8 @@ ssize_t StreamSource::read(std::span<std::byte> space) {
                     : ::read(descriptor_.get(), space.data(), space.size());
 }
 
-/// Prepares to wait. Inside a large message TCP is told to wake the reader only for a good part of
-/// it, since each wake-up interrupts the writer. Unix sockets wake it for every piece.
+/// Prepares to wait. Inside a large message TCP wakes the reader only for a good part of it, since
+/// each wake-up interrupts the writer; Unix sockets wake it for every piece.
 Got StreamSource::nothing() {
   constexpr std::uint64_t kGoodPart = std::uint64_t{128} << 10;
   int bytes = static_cast<int>(std::clamp<std::uint64_t>(reader_.missing(), 1, kGoodPart));

@@ -35,10 +35,8 @@ Result<Address> address_of(const Uri& uri) {
                                                (is_abstract(uri) ? 0 : 1)));
 }
 
-/// Whether the file of a socket was left behind by a process that was killed.
-///
-/// Tried with a datagram socket, which a listener does not notice; a stream connection would count
-/// as its first reader.
+/// Whether the file of a socket was left behind by a process that was killed. Tried with a datagram
+/// socket, which a listener does not notice; a stream connection would count as its first reader.
 bool is_left_behind(const Uri& uri, const Address& address) {
   Descriptor probe(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (::connect(probe.get(), address.get(), address.size) == 0 || errno != ECONNREFUSED)
@@ -53,8 +51,7 @@ std::function<Status(int)> admission(const Uri& uri, const char* what) {
   return [what](int socket) { return check_own(unix_peer_user(socket), what); };
 }
 
-/// Duplicates the inherited socket that listens at an address (spec/module.md, section 4); none
-/// (-1) without one.
+/// Duplicates the inherited socket that listens at an address (spec/module.md, section 4), if any.
 Descriptor held_for_us(const Address& address) {
   const char* numbers = std::getenv(kListeners);
   std::istringstream words(numbers == nullptr ? "" : numbers);

@@ -12,8 +12,7 @@
 
 namespace hc::internal {
 
-/// The next messages of a stream: a buffer of small ones, followed by at most one large message in
-/// place.
+/// The next messages of a stream: a buffer of small ones, then at most one large one in place.
 class StreamWriter {
  public:
   /// The size of the buffer [byte].
@@ -59,11 +58,9 @@ class StreamWriter {
   [[nodiscard]] bool inside_message() const;
   /// Discards everything; returns the number of messages that were not written completely.
   std::size_t clear();
-  /// Ends the stream and closes the descriptor.
-  ///
-  /// Over a secure channel the reader answers with bytes. These would reset a connection that is
-  /// closed, and bytes that are not yet acknowledged would be lost; so this waits for the
-  /// acknowledgement, at most for `longest`.
+  /// Ends the stream and closes the descriptor. Over a secure channel the reader answers, which
+  /// resets a connection that is closed; so this waits for the acknowledgement of all bytes before,
+  /// at most for `longest`.
   void close(std::chrono::milliseconds longest);
 
  private:
