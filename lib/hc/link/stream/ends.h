@@ -17,8 +17,7 @@ namespace hc::internal {
 
 /// Writes messages to one stream, by a Connection.
 ///
-/// A partly written message is finished even after `stop`: otherwise the reader would find a
-/// damaged stream.
+/// A partly written message is finished even after `stop`.
 ///
 /// @param descriptor  non-blocking, unless it is a socket. May be none (-1) with a dialer, which
 ///     reconnects when the connection is lost.
@@ -46,9 +45,8 @@ struct Made {
 /// connect_now(), with the same errors.
 ///
 /// With it they return at once, connect in the background, and reconnect when the connection is
-/// lost, until the dialer gives up; then a source ends, or fails with NotFound if it was never
-/// connected. A partly received message is dropped: the peer sends it again from its beginning, or
-/// not at all. A clean close looks like a killed process, so both lead to reconnecting.
+/// lost or closed, until the dialer gives up; then a source ends, or fails with NotFound if it was
+/// never connected. A partly received message is dropped, and may be sent again.
 Result<std::unique_ptr<Source>> dial_source(const Peer& peer, const Uri& uri,
                                             const LinkOptions& options, Made made = {});
 Result<std::unique_ptr<Sink>> dial_sink(const Peer& peer, const Uri& uri,
@@ -77,8 +75,9 @@ Result<std::unique_ptr<Source>> listening_source(ListeningSocket socket, const L
 /// delays the others only with keep=all. The options `readers`, `stay` and `wait` are those of
 /// Audience.
 ///
-/// New peers receive the messages that are sent after they connected, apart from a millisecond
-/// while messages follow one another closely.
+/// While it sends, it looks once a millisecond for peers that have connected or left. New peers
+/// receive the messages sent after that. A peer that has left is also noticed by the first write
+/// that fails; messages sent before are lost with it.
 ///
 /// Errors: Invalid, System.
 Result<std::unique_ptr<Sink>> listening_sink(ListeningSocket socket, const Uri& uri,

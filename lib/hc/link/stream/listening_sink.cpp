@@ -16,9 +16,8 @@
 namespace hc::internal {
 namespace {
 
-// How often it looks for new peers between messages in close succession.
-constexpr std::chrono::microseconds kFollowTime{10};
-constexpr std::chrono::milliseconds kNewPeerPeriod{1};
+// How often a sink that sends looks for peers that have connected or left.
+constexpr std::chrono::milliseconds kLookPeriod{1};
 
 /// A connection for each reader; see listening_sink().
 class ListeningSink final : public Sink {
@@ -42,9 +41,9 @@ class ListeningSink final : public Sink {
     while (true) {
       auto fate = audience_.decide(peers_.size());
       if (fate == Audience::Fate::End) return Error{Code::Closed, "all readers disconnected"};
-      auto now = std::chrono::steady_clock::now();
-      const bool follows = now - last_send_ < kFollowTime && now - last_look_ < kNewPeerPeriod;
-      if (fate != Audience::Fate::Sent || !follows) {
+      const auto now = std::chrono::steady_clock::now();
+      const bool looks = fate != Audience::Fate::Sent || now - last_look_ >= kLookPeriod;
+      if (looks) {
         let_in();
         last_look_ = now;
         fate = audience_.decide(peers_.size());
@@ -57,11 +56,9 @@ class ListeningSink final : public Sink {
         HC_TRY(await_readers());
         continue;
       }
-      auto has = put_to_all(outgoing, now);
-      if (has && !*has) has = has_reader();
-      if (!has) return has.error();
-      if (!*has) continue;  // the next reader gets the message
-      last_send_ = now;
+      const bool is_pending = HC_TRY(put_to_all(outgoing, now));
+      const bool is_unsure = !is_pending && (looks || peers_.empty());
+      if (is_unsure && !HC_TRY(has_reader())) continue;  // the next reader gets the message
       ++traffic_.messages;
       traffic_.bytes += outgoing.size();
       return {};
@@ -172,18 +169,16 @@ class ListeningSink final : public Sink {
   /// Whether a peer has received the last message, or will.
   ///
   /// A peer that has shut down its direction may still read, as `nc -N` does, or have left. Over
-  /// TCP a write succeeds in both cases; the answer of its kernel shows which: acknowledgement or
-  /// reset.
+  /// TCP a write succeeds in both cases; its kernel then answers: acknowledgement or reset.
   [[nodiscard]] Result<bool> has_taken(const Connection& peer) const {
     Backoff backoff(std::chrono::milliseconds(1), std::chrono::milliseconds(200));
     while (true) {
       pollfd polled{peer.descriptor(), POLLRDHUP, 0};
       ::poll(&polled, 1, 0);
-      if ((polled.revents & (POLLERR | POLLHUP)) != 0) return false;
-      bool shut = (polled.revents & POLLRDHUP) != 0;
+      if (polled.revents != POLLRDHUP) return polled.revents == 0;
       int unanswered = 0;
-      if (!shut || !policy_.writer_waits() ||
-          ::ioctl(peer.descriptor(), SIOCOUTQ, &unanswered) != 0 || unanswered == 0)
+      if (!policy_.writer_waits() || ::ioctl(peer.descriptor(), SIOCOUTQ, &unanswered) != 0 ||
+          unanswered == 0)
         return true;
       if (look_at_peer(peer.descriptor()).vanished) return false;
       HC_TRY(wait_for(-1, 0, options_.stop, std::chrono::steady_clock::now() + backoff.next()));
@@ -192,11 +187,8 @@ class ListeningSink final : public Sink {
 
   /// Whether at least one reader has received the last message. Removes those that have left.
   Result<bool> has_reader() {
-    while (!peers_.empty()) {
-      auto taken = HC_TRY(has_taken(*peers_.back()));
-      if (taken) return true;
-      leave(peers_.size() - 1);
-    }
+    for (; !peers_.empty(); leave(peers_.size() - 1))
+      if (HC_TRY(has_taken(*peers_.back()))) return true;
     return false;
   }
 
@@ -206,7 +198,7 @@ class ListeningSink final : public Sink {
   Audience audience_;
   Policy policy_;  // for each peer
   LinkOptions options_;
-  TimePoint last_send_, last_look_;  // the latter for new peers
+  TimePoint last_look_;  // for peers that have connected or left
   Encoder encoder_;
   std::vector<std::unique_ptr<Connection>> peers_;
   Traffic traffic_;  // including losses of peers that have left
