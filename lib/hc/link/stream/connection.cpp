@@ -41,12 +41,6 @@ Result<std::unique_ptr<Connection>> Connection::make(ConnectedSocket connection,
   return made;
 }
 
-Connection::~Connection() {
-  std::lock_guard lock(mutex_);
-  if (!failed_ && connected()) static_cast<void>(writer_.write());
-  fail({Code::Closed, "the link was closed"});
-}
-
 void Connection::connect(ConnectedSocket connection, TimePoint now) {
   is_tcp_ = is_tcp(connection.get());
   writer_.start(std::move(connection));
@@ -227,7 +221,9 @@ void Connection::arm(TimePoint now) {
 /// have the same values.
 short Connection::awaited_events() const {
   if (!connected()) return dialer_->events();
-  return blocked_ ? POLLOUT : POLLERR;
+  if (blocked_) return POLLOUT;
+  // Without a dialer the next write is soon enough to notice a lost connection.
+  return dialer_ != nullptr ? POLLERR : 0;
 }
 
 /// Watches the descriptor for events, each reported once. Files cannot be watched, and need not be.
