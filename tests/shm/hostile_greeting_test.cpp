@@ -207,7 +207,7 @@ class HostileReader : public ::testing::Test {
     EXPECT_NE(line.find(error), std::string::npos) << text << ": " << line;
     for (char letter : line) EXPECT_GE(letter, ' ') << line;
     auto answer = rest_of(socket.get());
-    EXPECT_TRUE(answer.empty() || answer.starts_with("HCSHM/2\n")) << answer;
+    EXPECT_TRUE(answer.empty() || answer.starts_with("HCSHM/3\n")) << answer;
     expect_to_continue();
   }
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view kMeetingPlace = "@hypercolumn-shm-";
 /// Changed with every change of the layout or the handshake.
-constexpr std::array<char, 8> kMagic = {'H', 'C', 'S', 'H', 'M', '/', '2', '\n'};
+constexpr std::array<char, 8> kMagic = {'H', 'C', 'S', 'H', 'M', '/', '3', '\n'};
 constexpr std::size_t kMostDescriptors = 4;  // more than expected, so that extra ones are noticed
 constexpr std::uint64_t kMostMemory = std::uint64_t{1} << 40;  // [byte]
 

@@ -58,6 +58,7 @@ static_assert(sizeof(Cell) == kCellBytes);
 /// The start of the publisher's memory; the rest of its first page is unused.
 struct Head {
   alignas(kLine) SharedWord<std::uint64_t> published;  ///< positions below are published
+  SharedWord<std::uint32_t> processor;  ///< on which the publisher has published last
   /// Positions below are withdrawn: their cells and slots may be reused.
   alignas(kLine) SharedWord<std::uint64_t> oldest;
   /// 0, or the publisher waits until the cursor of a reader is at least this; kAnyRoom: or until a

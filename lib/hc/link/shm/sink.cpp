@@ -2,6 +2,8 @@
 // Publishes messages: in a cell, or a cell and a slot if they are large.
 #include <hc/link/shm/sink.h>
 
+#include <sched.h>
+
 #include <array>
 #include <bit>
 #include <cstdlib>
@@ -97,6 +99,7 @@ void ShmSink::publish(std::span<const std::uint64_t> text, std::uint64_t sizes, 
   ++published_;
   cell.stamp.store(published_, memory_order_release);
   HC_CRASH_POINT("publisher stamped");
+  head_.processor.store(static_cast<std::uint32_t>(::sched_getcpu()), memory_order_relaxed);
   head_.published.store(published_, memory_order_release);
   HC_CRASH_POINT("publisher published");
   if (waker_.must_fence()) std::atomic_thread_fence(memory_order_seq_cst);  // wake

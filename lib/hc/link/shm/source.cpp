@@ -2,6 +2,7 @@
 #include <hc/link/shm/source.h>
 
 #include <fcntl.h>
+#include <sched.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -216,6 +217,9 @@ void ShmSource::attach(Offer offer) {
 
 Source::Spin ShmSource::spin() const {
   if (!attached()) return {};
+  // While it spins, the publisher cannot run on the same processor.
+  const auto processor = attachment_->head().processor.load(memory_order_relaxed);
+  if (processor == static_cast<std::uint32_t>(::sched_getcpu())) return {};
   return {&attachment_->cell(cursor_).stamp, cursor_ + 1, spin_};
 }
 
