@@ -535,7 +535,8 @@ TEST_F(Mcap, StreamsThatHaveNoRoomInAFileAreDropped) {
     if (!said.empty()) break;
   }
   ASSERT_EQ(said.size(), 1U);
-  EXPECT_TRUE(said[0].starts_with("s" + std::to_string(recorded) + " dropped: MCAP: a file can have"));
+  EXPECT_TRUE(
+      said[0].starts_with("s" + std::to_string(recorded) + " dropped: MCAP: a file can have"));
   EXPECT_TRUE(writer->add(0, message, 2));
   ASSERT_TRUE(writer->close().status);
   EXPECT_EQ(writer->written().lost, 1U);

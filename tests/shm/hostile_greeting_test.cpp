@@ -39,21 +39,21 @@ Descriptor reopen(const Descriptor& descriptor, int flags) {
 
 const std::vector<Case>& memories() {
   static const std::vector<Case> kMemories = {
-      {"none", [](auto) { return std::vector<Descriptor>(); }, " descriptors were handed over"},
+      {"none", [](auto) { return std::vector<Descriptor>(); }, " descriptors, not "},
       {"three",
        [](auto bytes) {
          std::vector<Descriptor> all(3);
          for (auto& each : all) each = make_memfd(bytes, kSealed);
          return all;
        },
-       " descriptors were handed over"},
+       " descriptors, not "},
       {"many",
        [](auto bytes) {
          std::vector<Descriptor> all(12);
          for (auto& each : all) each = make_memfd(bytes, kSealed);
          return all;
        },
-       " descriptors were handed over"},
+       " descriptors, not "},
       {"file",
        [](auto bytes) {
          Descriptor file(::open("/tmp", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600));
@@ -119,8 +119,8 @@ TEST(HostilePublisher, MayHandOverMemoryThatCanOnlyBeRead) {
 }
 
 TEST(HostilePublisher, SaysWhatIsNoOffer) {
-  const std::string stranger = "no end of a shared memory link",
-                    none = "no offer: ", no_text = "a refusal that is no text";
+  const std::string stranger = "not a shared memory link",
+                    none = "invalid memory size: ", no_text = "not printable text";
   const auto whole = offer(kLeastMemory);
   const std::vector<Text> texts = {
       {"HTTP/1.1 400 Bad Request\r\n\r\n", stranger},
@@ -137,7 +137,7 @@ TEST(HostilePublisher, SaysWhatIsNoOffer) {
       {offer(kLeastMemory - kPageBytes), none},
       {offer((std::uint64_t{1} << 40) + 1), none},
       {offer(std::numeric_limits<std::uint64_t>::max()), none},
-      {refusal("it is Sunday"), "1 descriptors were handed over, not 0"},
+      {refusal("it is Sunday"), "received 1 descriptors, not 0"},
   };
   for (const auto& each : texts) {
     auto name = fresh_name();
@@ -207,7 +207,7 @@ class HostileReader : public ::testing::Test {
     EXPECT_NE(line.find(error), std::string::npos) << text << ": " << line;
     for (char letter : line) EXPECT_GE(letter, ' ') << line;
     auto answer = rest_of(socket.get());
-    EXPECT_TRUE(answer.empty() || answer.starts_with("HCSHM/2\n")) << answer;
+    EXPECT_TRUE(answer.empty() || answer.starts_with("HCSHM/3\n")) << answer;
     expect_to_continue();
   }
 
@@ -233,19 +233,19 @@ TEST_F(HostileReader, HandsOverWhatIsNoPipe) {
     SCOPED_TRACE(each.name);
     auto all = each.make(kPageBytes);
     if (all.size() == 1) all.insert(all.begin(), make_memfd(kPageBytes, kSealed));
-    expect_refused(hello(), all, all.size() == 2 ? "is no pipe" : " descriptors were handed over");
+    expect_refused(hello(), all, all.size() == 2 ? "is not a pipe" : " descriptors, not ");
   }
 }
 
 TEST_F(HostileReader, SaysWhatIsNoHello) {
-  const std::string stranger = "no end of a shared memory link";
+  const std::string stranger = "not a shared memory link";
   const std::vector<Text> texts = {
       {"GET / HTTP/1.1\r\n\r\n", stranger},
       {hello().substr(1), stranger},
       {hello().substr(0, 8), stranger},
       {std::string(5000, 'x'), stranger},
-      {refusal("it is Sunday"), "2 descriptors were handed over, not 0"},
-      {refusal("\x1b[2J"), "a refusal that is no text"},
+      {refusal("it is Sunday"), "received 2 descriptors, not 0"},
+      {refusal("\x1b[2J"), "not printable text"},
   };
   for (const auto& each : texts) {
     auto both = one(make_memfd(kPageBytes, kSealed));

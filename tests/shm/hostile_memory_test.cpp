@@ -83,23 +83,24 @@ TEST_F(HostileMemory, ACellSaysWhatCannotBe) {
   EXPECT_EQ(say_of(kSlotsBegin, in_slot, large), "message");
   for (auto sizes : {sizes_of(100, 0xffff), sizes_of(0xffff'ffff'ffff, line.size()), kMost,
                      sizes_of(Cell::kTextBytes, 1), sizes_of(0, Cell::kTextBytes + 1)})
-    EXPECT_EQ(say_of(0, sizes, line), damaged + "the sizes of a cell");
-  EXPECT_EQ(say_of(kSlotsBegin, sizes_of(100'000, 233), large), damaged + "the sizes of a cell");
+    EXPECT_EQ(say_of(0, sizes, line), damaged + "invalid sizes of a cell");
+  EXPECT_EQ(say_of(kSlotsBegin, sizes_of(100'000, 233), large),
+            damaged + "invalid sizes of a cell");
   for (auto sizes : {sizes_of(100, line.size() - 1), sizes_of(100, line.size() + 1),
                      sizes_of(100, 0), std::uint64_t{0}})
-    EXPECT_SAYS("a header without its end", say_of(0, sizes, line));
+    EXPECT_SAYS("a header without a line feed", say_of(0, sizes, line));
   for (auto bytes : {0, 99, 101})
     EXPECT_SAYS(" bytes of elements for ",
                 say_of(0, sizes_of(static_cast<std::uint64_t>(bytes), line.size()), line));
   for (auto slot : {std::uint64_t{1}, kSlotsBegin - 64, kSlotsBegin + 1, kSlotsBegin + 63,
                     kLeastMemory - 64, kLeastMemory, kMost - 63, kMost})
-    EXPECT_EQ(say_of(slot, in_slot, large), damaged + "the place of a slot") << slot;
+    EXPECT_EQ(say_of(slot, in_slot, large), damaged + "invalid offset of a slot") << slot;
   for (const char* bad : {"hello world\n", "\n", "1 1 1\n", " \n"})
     EXPECT_SAYS("Malformed: ", say_of(0, sizes_of(0, std::strlen(bad)), bad));
   auto huge = line_of(std::numeric_limits<std::int32_t>::max());
   EXPECT_SAYS("TooLarge: ", say_of(kSlotsBegin, sizes_of(0x7fff'ffff, huge.size()), huge));
-  EXPECT_EQ(say_of(0, fits, line, 2), damaged + "the stamp of a cell");
-  EXPECT_EQ(say_of(0, fits, line, kMost), damaged + "the stamp of a cell");
+  EXPECT_EQ(say_of(0, fits, line, 2), damaged + "invalid stamp of a cell");
+  EXPECT_EQ(say_of(0, fits, line, kMost), damaged + "invalid stamp of a cell");
   EXPECT_EQ(say_of(0, fits, line, 0), "nothing");
 }
 

@@ -146,7 +146,7 @@ class FakePublisher {
 template <typename Change>
 std::string greeting(const Change& change) {
   internal::Greeting greeting{};
-  std::memcpy(greeting.magic.data(), "HCSHM/2\n", greeting.magic.size());
+  std::memcpy(greeting.magic.data(), "HCSHM/3\n", greeting.magic.size());
   change(greeting);
   return {reinterpret_cast<const char*>(&greeting), sizeof greeting};
 }

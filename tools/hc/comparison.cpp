@@ -30,7 +30,8 @@ std::string difference_of(const hc::Message& recorded, const hc::Message& replay
   for (std::size_t i = 0; i < a.size(); ++i) {
     const auto one = static_cast<double>(a[i]), other = static_cast<double>(b[i]);
     const bool is_same =  // also for NaN with the same bits
-        std::ranges::equal(std::as_bytes(std::span(&a[i], 1)), std::as_bytes(std::span(&b[i], 1))) ||
+        std::ranges::equal(std::as_bytes(std::span(&a[i], 1)),
+                           std::as_bytes(std::span(&b[i], 1))) ||
         (tolerance > 0 && std::abs(one - other) <= tolerance);
     if (is_same) continue;
     const auto components = recorded.header.info.components;

@@ -86,26 +86,6 @@ TEST_P(QueuedLink, WhatWaitsWhenItIsAbandonedIsLost) {
   EXPECT_FALSE(*receive(*source, message));
 }
 
-/// Sends messages with this `seq` until a reader that connects meanwhile has received one; returns
-/// the first `seq` it received.
-/// @param source  becomes the reader, and stays connected.
-std::int64_t first_of_next_reader(Sink& sink, const std::string& uri, std::int64_t seq,
-                                  std::unique_ptr<Source>& source) {
-  std::atomic<bool> heard = false, done = false;
-  std::thread sender([&] {
-    while (!heard && sink.send(numbered(seq, 10))) continue;
-    done = true;
-  });
-  source = source_of(uri);
-  Message message;
-  EXPECT_TRUE(*receive(*source, message));
-  const auto first = message.header.seq;
-  heard = true;
-  while (!done && source->take(message)) continue;
-  sender.join();
-  return first;
-}
-
 TEST_P(LastingLink, WhoLosesNothingWaitsForTheNextReader) {
   begin("&stay=1");
   source_.reset();

@@ -16,8 +16,10 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-// Values of epoll_event::data, besides the numbers of sources.
-constexpr std::uint64_t kStop = 0, kOther = ~std::uint64_t{0};
+constexpr std::uint64_t kStop = 0;  // the number of the stop descriptor
+
+// How often descriptors are added again: epoll forgets one that is closed without a word.
+constexpr std::chrono::milliseconds kWatchPeriod{10};
 
 std::uint64_t next_number() {
   static std::atomic<std::uint64_t> last{0};
@@ -55,49 +57,50 @@ WaitSet::WaitSet(int stop) : stop_(stop), spin_(std::make_unique<internal::Spin>
 
 WaitSet::~WaitSet() = default;
 
-Status WaitSet::watch(int descriptor, std::uint32_t events, std::uint64_t what) {
+Status WaitSet::watch(int descriptor, std::uint32_t events, std::uint64_t number) {
   if (descriptor < 0) return {};
   epoll_event event{};
   event.events = events;
-  event.data.u64 = what;
-  const bool again = (events & EPOLLONESHOT) != 0;
-  if (again && ::epoll_ctl(poll_.get(), EPOLL_CTL_MOD, descriptor, &event) == 0) return {};
+  event.data.u64 = number;
   if (::epoll_ctl(poll_.get(), EPOLL_CTL_ADD, descriptor, &event) == 0 || errno == EEXIST)
     return {};
   if (errno != EPERM) return system_error("epoll_ctl", "");
-  never_sleeps_ = true;
+  files_.push_back(number);
   return {};
 }
 
-/// Watches exactly these sources.
+/// Makes these the sources that are watched.
 Status WaitSet::prepare(std::span<Source* const> sources) {
-  auto is_watched = [](std::uint64_t number, const Source* source) {
-    return number == source->number_;
-  };
-  if (poll_ &&
-      std::equal(watched_.begin(), watched_.end(), sources.begin(), sources.end(), is_watched))
-    return {};
-  // A new instance, since the descriptor of a closed source may have been reused.
+  if (poll_ && std::ranges::equal(sources_, sources, {}, {}, &Source::number_)) return {};
+  // A new instance, since descriptors of sources may have been closed and opened elsewhere.
   poll_.reset();
-  watched_.clear();
-  never_sleeps_ = false;
+  sources_.clear();
+  descriptors_.clear();
+  files_.clear();
   poll_ =
       HC_TRY(open_descriptor("epoll_create1", "", [] { return ::epoll_create1(EPOLL_CLOEXEC); }));
   HC_TRY(watch(stop_, EPOLLIN, kStop));
   for (const Source* source : sources) {
-    const auto number = source->number_;
-    HC_TRY(watch(source->descriptor(), EPOLLIN, number));
-    HC_TRY(watch(source->wake_descriptor(), EPOLLIN | EPOLLET, number));
+    HC_TRY(watch(source->descriptor(), EPOLLIN, source->number_));
+    HC_TRY(watch(source->wake_descriptor(), EPOLLIN | EPOLLET, source->number_));
   }
-  for (const Source* source : sources) watched_.push_back(source->number_);
+  for (const Source* source : sources) sources_.push_back(source->number_);
   return {};
 }
 
-bool WaitSet::was_woken_by(const Source& source) const {
-  return std::find(woken_by_.begin(), woken_by_.end(), source.number_) != woken_by_.end();
+/// Makes these the descriptors that are watched.
+Status WaitSet::watch(std::span<const int> descriptors) {
+  watched_at_ = Clock::now();
+  for (int each : descriptors_)
+    if (std::find(descriptors.begin(), descriptors.end(), each) == descriptors.end())
+      ::epoll_ctl(poll_.get(), EPOLL_CTL_DEL, each, nullptr);  // it may have been closed
+  descriptors_.assign(descriptors.begin(), descriptors.end());
+  std::erase_if(files_, [](std::uint64_t number) { return (number & kDescriptors) != 0; });
+  for (int each : descriptors) HC_TRY(watch(each, EPOLLIN, number_of(each)));
+  return {};
 }
 
-/// Waits for the descriptors only.
+/// Waits for what is watched.
 Result<bool> WaitSet::sleep(nanoseconds timeout) {
   std::array<epoll_event, 8> events;
   const int count = HC_TRY(system_call(
@@ -120,16 +123,27 @@ Result<bool> WaitSet::wait(std::span<Source* const> sources, std::span<const int
                     timeout.count() < 0 ? Deadline::max() : Clock::now() + timeout);
   }
   HC_TRY(prepare(sources));
-  // On each wait, since the owner may have closed a descriptor and opened another with its number.
-  for (int descriptor : descriptors) HC_TRY(watch(descriptor, EPOLLIN | EPOLLONESHOT, kOther));
+  bool is_sure = descriptors.empty();  // that the descriptors are those that epoll watches
+  if (!std::ranges::equal(descriptors, descriptors_) ||
+      (!is_sure && Clock::now() - watched_at_ >= kWatchPeriod)) {
+    HC_TRY(watch(descriptors));
+    is_sure = true;
+  }
   auto found = spin_->run(sources, timeout, [&] { return sleep(nanoseconds(0)); });
   was_short_ = spin_->was_short();
   if (!found || *found) return found;
   const auto begin = Clock::now();
-  bool is_ready = never_sleeps_;
+  woken_by_ = files_;
+  bool is_ready = !files_.empty();
   for (Source* source : sources) is_ready = !source->prepare_wait() || is_ready;
   if (is_ready) timeout = nanoseconds(0);  // `stop` takes precedence
-  auto ready = sleep(timeout);
+  const bool is_short = timeout.count() >= 0 && timeout <= kWatchPeriod;
+  const nanoseconds first = is_sure || is_short ? timeout : kWatchPeriod;
+  auto ready = sleep(first);
+  if (ready && !*ready && first != timeout) {
+    HC_TRY(watch(descriptors));
+    ready = sleep(timeout.count() < 0 ? timeout : timeout - first);
+  }
   spin_->note_sleep(Clock::now() - begin);
   if (!ready) return ready;
   return is_ready || *ready;

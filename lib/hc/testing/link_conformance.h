@@ -87,7 +87,26 @@ inline Message numbered(std::int64_t seq, std::int32_t size) {
   return std::move(draft).finish();
 }
 
-/// Sends messages 0, 1, … on another thread and closes the sink. @param size  of each.
+/// Sends messages with this `seq` until a reader that connects meanwhile has received one; its seq.
+/// @param source  becomes the reader, and stays connected.
+inline std::int64_t first_of_next_reader(Sink& sink, const std::string& uri, std::int64_t seq,
+                                         std::unique_ptr<Source>& source) {
+  std::atomic<bool> heard = false, done = false;
+  std::thread sender([&] {
+    while (!heard && sink.send(numbered(seq, 10))) continue;
+    done = true;
+  });
+  source = source_of(uri);
+  Message message;
+  EXPECT_TRUE(*receive(*source, message));
+  const auto first = message.header.seq;
+  heard = true;
+  while (!done && source->take(message)) continue;
+  sender.join();
+  return first;
+}
+
+/// Sends messages 0, 1, … by another thread, and closes the sink. @param size  of each.
 inline std::thread send_all(Sink& sink, int count, std::function<std::int32_t(int)> size) {
   return std::thread([&sink, count, size = std::move(size)] {
     for (int i = 0; i < count; ++i) ASSERT_TRUE(sink.send(numbered(i, size(i))));

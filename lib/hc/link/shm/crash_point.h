@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Places where a test has the process killed, as by `kill -9`. Internal; nothing in a normal build.
+// Points at which a test kills the process, as by `kill -9`. Internal; empty in a normal build.
 
 #ifdef HC_CRASH_POINTS
 #include <csignal>
@@ -9,7 +9,7 @@
 
 namespace hc::internal {
 
-/// Dies when the environment says HC_CRASH_AT=NAME or HC_CRASH_AT=NAME:COUNT, the COUNT-th time.
+/// Kills the process if the environment has HC_CRASH_AT=NAME; NAME:COUNT the COUNT-th time.
 inline void crash_point(std::string_view name) {
   static const char* const kWanted = std::getenv("HC_CRASH_AT");
   if (kWanted == nullptr) return;

@@ -19,9 +19,9 @@ namespace hc::internal {
 namespace {
 
 constexpr std::string_view kMeetingPlace = "@hypercolumn-shm-";
-/// Another one with each change of what the two sides share.
-constexpr std::array<char, 8> kMagic = {'H', 'C', 'S', 'H', 'M', '/', '2', '\n'};
-constexpr std::size_t kMostDescriptors = 4;  // more than are wanted, so that none is overlooked
+/// Changed with every change of the layout or the handshake.
+constexpr std::array<char, 8> kMagic = {'H', 'C', 'S', 'H', 'M', '/', '3', '\n'};
+constexpr std::size_t kMostDescriptors = 4;  // more than expected, so that extra ones are noticed
 constexpr std::uint64_t kMostMemory = std::uint64_t{1} << 40;  // [byte]
 
 struct Received {
@@ -33,7 +33,7 @@ Error malformed(std::string what) {
   return {Code::Malformed, std::move(what)};
 }
 
-/// Sends a greeting, whole or not at all.
+/// Sends a greeting, completely or not at all.
 Status send_greeting(int socket, Greeting greeting, std::span<const int> descriptors) {
   greeting.magic = kMagic;
   iovec part{&greeting, sizeof greeting};
@@ -55,8 +55,8 @@ Status send_greeting(int socket, Greeting greeting, std::span<const int> descrip
   return {};
 }
 
-/// Takes a greeting, which comes in one piece, with so many descriptors; never waits. A refusal
-/// comes without any.
+/// Receives a greeting in one piece, with `wanted` descriptors or, if it refuses, none; never
+/// waits.
 Result<Received> take_greeting(int socket, std::size_t wanted) {
   Received received;
   auto& [greeting, descriptors] = received;
@@ -70,7 +70,7 @@ Result<Received> take_greeting(int socket, std::size_t wanted) {
   auto size = HC_TRY(system_call("recvmsg", "shm", [&] {
     return ::recvmsg(socket, &header, MSG_CMSG_CLOEXEC | MSG_DONTWAIT);
   }));
-  std::size_t count = 0;  // whatever comes is closed again
+  std::size_t count = 0;
   for (cmsghdr* each = CMSG_FIRSTHDR(&header); each != nullptr; each = CMSG_NXTHDR(&header, each)) {
     if (each->cmsg_level != SOL_SOCKET || each->cmsg_type != SCM_RIGHTS) continue;
     for (std::size_t at = CMSG_LEN(0); at + sizeof(int) <= each->cmsg_len; at += sizeof(int)) {
@@ -81,29 +81,28 @@ Result<Received> take_greeting(int socket, std::size_t wanted) {
   }
   if (size == 0) return Error{Code::Closed, "the other side disconnected"};
   if (static_cast<std::size_t>(size) != sizeof greeting || greeting.magic != kMagic)
-    return malformed("what answers is no end of a shared memory link of this version");
-  // The refusal is shown to people, so it is printable.
+    return malformed("the peer is not a shared memory link of this version");
+  // The text is shown to the user, so it must be printable.
   auto end = std::find(greeting.refusal.begin(), greeting.refusal.end(), '\0');
   if (end == greeting.refusal.end() ||
       !std::all_of(greeting.refusal.begin(), end, [](char c) { return c >= ' ' && c <= '~'; }))
-    return malformed("a refusal that is no text");
+    return malformed("the refusal is not printable text");
   if (end != greeting.refusal.begin()) wanted = 0;
   if (count != wanted || (header.msg_flags & MSG_CTRUNC) != 0)
-    return malformed(std::to_string(count) + " descriptors were handed over, not " +
+    return malformed("received " + std::to_string(count) + " descriptors, not " +
                      std::to_string(wanted));
   return received;
 }
 
-/// A pipe that was handed over, opened to be written to. Opened again, since whoever has handed it
-/// over can have writes to the same open file wait; and to be read too, so that writing raises no
-/// signal when the reader has left.
+/// Opens the received pipe again for writing, since the reader can make the received descriptor
+/// blocking; and for reading, so that a write raises no signal after the reader has left.
 Result<Descriptor> open_pipe(const Descriptor& pipe) {
   struct stat status {};
   if (::fstat(pipe.get(), &status) != 0 || !S_ISFIFO(status.st_mode))
-    return malformed("what was handed over is no pipe");
+    return malformed("the received descriptor is not a pipe");
   const std::string path = "/proc/self/fd/" + std::to_string(pipe.get());
   Descriptor own(::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
-  if (own.get() < 0) return malformed("the pipe that was handed over cannot be opened");
+  if (own.get() < 0) return malformed("the received pipe cannot be opened");
   return own;
 }
 
@@ -126,7 +125,7 @@ Status send_hello(int socket, std::uint64_t keep, const SharedMemory& page, int 
   greeting.keep = keep;
   greeting.orders = can_order_everywhere() ? 1 : 0;
   auto sent = send_greeting(socket, greeting, std::array{page_descriptor.get(), wakes});
-  // A publisher that has refused us before we said anything has said why.
+  // If the publisher has already refused, its reason can still be read.
   if (!sent && sent.error().code != Code::Closed) return sent;
   HC_CRASH_POINT("reader greeted");
   return {};
@@ -143,7 +142,7 @@ Result<std::optional<Offer>> take_offer(int socket) {
   if (greeting.refusal[0] != '\0')
     return Error{Code::Closed, std::string("the publisher refuses: ") + greeting.refusal.data()};
   if (greeting.bytes < kLeastMemory || greeting.bytes > kMostMemory)
-    return malformed("no offer: " + std::to_string(greeting.bytes) + " bytes of memory");
+    return malformed("invalid memory size: " + std::to_string(greeting.bytes) + " bytes");
   auto memory = SharedMemory::map(std::move(descriptors[0]), greeting.bytes);
   if (!memory) return malformed(memory.error().detail);
   HC_CRASH_POINT("reader has memory");
@@ -160,10 +159,10 @@ Result<Offer> await_offer(int socket, int stop) {
 Result<Hello> take_hello(int socket, std::uint64_t keep) {
   auto received = HC_TRY(take_greeting(socket, 2));
   auto& [greeting, descriptors] = received;
-  if (greeting.refusal[0] != '\0') return malformed("a reader that refuses");
+  if (greeting.refusal[0] != '\0') return malformed("a reader cannot refuse");
   Hello hello;
   hello.keep = keep;
-  // No reader can have a publisher wait that does not.
+  // A publisher that does not wait for readers waits for none.
   if (greeting.keep > 0 && greeting.keep != kPublishersKeep) hello.keep = greeting.keep;
   hello.orders = greeting.orders == 1;
   auto page = SharedMemory::map(std::move(descriptors[0]), kPageBytes);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How a reader and a publisher of shared memory meet, over a Unix socket: each sends a Greeting,
-// once. The reader's comes with its page and its pipe, the publisher's with its memory. Internal.
+// The handshake of a reader and a publisher of shared memory, over a Unix socket: each sends one
+// Greeting, the reader with its page and its pipe, the publisher with its memory. Internal.
 //
-// From then on nothing is sent. To wake a reader, the publisher writes a byte to its pipe. The
-// reader ends its own direction when it takes no more, and the connection when it holds no more.
+// Nothing else is sent. The publisher wakes the reader with a byte in the pipe. The reader shuts
+// down its direction when it takes no more messages, and closes when it holds none.
 
 #include <array>
 #include <optional>
@@ -16,65 +16,61 @@
 
 namespace hc::internal {
 
-/// A reader that asks for this keeps what the publisher says.
+/// A request to use the publisher's own `keep`.
 constexpr std::uint64_t kPublishersKeep = ~std::uint64_t{0};
 
-/// What either side says. Both are builds of this library on one machine.
+/// The message of either side. Both are builds of this library on the same machine.
 struct Greeting {
   std::array<char, 8> magic;
-  /// Newest messages that wait for this reader at most; 0: all, the publisher waits. The reader
-  /// asks, perhaps for kPublishersKeep; the publisher answers what it is.
+  /// How many of the newest messages to keep for this reader; 0: all, and the publisher waits. The
+  /// reader requests a number or kPublishersKeep; the publisher answers with the actual number.
   std::uint64_t keep;
-  std::uint64_t orders;  ///< 1: the reader can order_everywhere()
-  std::uint64_t begin;   ///< of the publisher: position of the first message for this reader
-  std::uint64_t bytes;   ///< of the publisher's memory
-  std::array<char, 128>
-      refusal;  ///< of the publisher: why it refuses, printable; empty: it does not
+  std::uint64_t orders;  ///< 1: the reader can call order_everywhere()
+  std::uint64_t begin;   ///< from the publisher: position of the first message for this reader
+  std::uint64_t bytes;   ///< size of the publisher's memory
+  /// From the publisher: why it refuses, in printable characters; empty: it accepts.
+  std::array<char, 128> refusal;
 };
 static_assert(sizeof(Greeting) == 168);
 
-/// What a reader asks for, and hands over.
+/// The request of a reader.
 struct Hello {
-  std::uint64_t keep = 0;  ///< newest messages that wait for it at most; 0: all of them
-  bool orders = false;     ///< it can order the stores of both sides
+  std::uint64_t keep = 0;  ///< how many of the newest messages to keep; 0: all
+  bool orders = false;     ///< it can call order_everywhere()
   SharedMemory page;       ///< a ReaderPage
-  Descriptor wakes;        ///< its pipe, open to be written to without waiting: a byte wakes it
+  Descriptor wakes;        ///< its pipe, non-blocking: a byte wakes the reader
 };
 
-/// What a publisher offers.
+/// The answer of a publisher.
 struct Offer {
   std::uint64_t begin = 0;
   std::uint64_t keep = 0;
-  SharedMemory memory;  ///< as the reader maps it
+  SharedMemory memory;  ///< mapped read-only
 };
 
-/// The Unix socket where `shm:NAME` is met: abstract, so that nothing is left of it.
+/// The Unix socket of `shm:NAME`, in the abstract namespace, so that it leaves no file.
 Uri meeting_place(const Uri& uri);
-/// Whether the name is one. Errors: Invalid.
+/// Checks the length of the name. Errors: Invalid.
 Status check_name(const Uri& uri);
 
-/// The reader's side: says what it wants; never waits. Errors: Closed, System.
+/// For the reader: sends its request; never waits. Errors: Closed, System.
 Status send_hello(int socket, std::uint64_t keep, const SharedMemory& page, int wakes);
 
-/// What the publisher has answered; never waits, and gives nothing when there is no answer yet.
+/// The publisher's answer, if it has arrived; never waits.
 ///
-/// Errors: Malformed (no such peer, or what it hands over is not as it should be), Closed (it has
-/// refused or disconnected).
+/// Errors: Malformed (not a publisher, or an invalid descriptor), Closed (refused or disconnected).
 Result<std::optional<Offer>> take_offer(int socket);
 
 /// Waits for the answer, 4 s at most. Errors: as take_offer(), Stopped, System.
 Result<Offer> await_offer(int socket, int stop);
 
-/// The publisher's side: what a reader has said; never waits.
+/// For the publisher: a reader's request; never waits.
 ///
-/// @param keep  of a reader that leaves it to the publisher, or asks for all: a publisher that
-/// waits
-///     for none says so here, and 0 where it waits.
+/// @param keep  the publisher's own, 0 if it waits for readers: replaces kPublishersKeep and 0.
 /// Errors: Malformed, Closed.
 Result<Hello> take_hello(int socket, std::uint64_t keep);
 
-/// Hands the memory over, of `bytes`, with what else the offer says; never waits. Errors: Closed,
-/// System.
+/// Sends the answer with the memory, of `bytes`; never waits. Errors: Closed, System.
 Status answer(int socket, const Offer& offer, std::uint64_t bytes, int read_only_memory);
 void refuse(int socket, std::string_view why);
 

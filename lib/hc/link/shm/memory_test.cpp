@@ -146,7 +146,7 @@ TEST_F(NoPages, WhoLosesNothingGetsAnErrorThatTheHostHasNone) {
   if (!send("", 10, sent)) GTEST_SKIP() << "no seccomp here";
   ASSERT_FALSE(sent);
   EXPECT_EQ(sent.error().text(),
-            "System: no room left: the host has no memory to share: fallocate(): Cannot allocate "
+            "System: no room left: the host is out of shared memory: fallocate(): Cannot allocate "
             "memory");
 }
 

@@ -38,14 +38,14 @@ ShmReaders::~ShmReaders() {
     ending_ = true;
   }
   watch_.end();
-  std::vector<std::shared_ptr<ShmReader>> all;  // whose watches end outside the lock
+  std::vector<std::shared_ptr<ShmReader>> all;  // destroyed without the lock, with their watches
   std::lock_guard lock(mutex_);
   all.swap(all_);
   all.insert(all.end(), current_.begin(), current_.end());
   current_.clear();
 }
 
-/// On the thread that serves links: the publisher's writes the log.
+/// On the reactor's thread, for the log of the publisher's.
 void ShmReaders::remark(std::string line) {
   remarks_.add(std::move(line));
   std::lock_guard lock(mutex_);
@@ -64,7 +64,7 @@ void ShmReaders::accept_all() {
       else if (!each->is_known())
         hear(*each);
       else
-        note_change(*each);  // it takes no more, but may hold messages still
+        note_change(*each);  // it takes no more messages, but may hold some
     }));
     reader->socket = std::move(peer.descriptor);
     reader->patience = patience_;
@@ -72,7 +72,7 @@ void ShmReaders::accept_all() {
     {
       std::lock_guard lock(mutex_);
       if (ending_) return {};
-      if (is_full_of(false)) {  // who says nothing cannot keep others out
+      if (is_full_of(false)) {  // peers that send no Hello must not lock others out
         auto first = std::find_if(all_.begin(), all_.end(),
                                   [](const auto& each) { return !each->is_known(); });
         silent = std::move(*first);
@@ -84,14 +84,14 @@ void ShmReaders::accept_all() {
   });
 }
 
-/// Whether there are as many strangers, or readers that are known, as there may be.
+/// Whether there are kMostReaders that have, or have not, sent their Hello.
 bool ShmReaders::is_full_of(bool known) const {
   auto count = std::count_if(all_.begin(), all_.end(),
                              [&](const auto& each) { return each->is_known() == known; });
   return static_cast<std::size_t>(count) == kMostReaders;
 }
 
-/// A stranger has said something.
+/// Receives the Hello of a peer, and answers.
 void ShmReaders::hear(ShmReader& reader) {
   auto hello = take_hello(reader.socket.get(), keep_);
   HC_CRASH_POINT("publisher greeted");
@@ -104,8 +104,8 @@ void ShmReaders::hear(ShmReader& reader) {
       why = "it has " + std::to_string(kMostReaders) + " readers already";
     if (why.empty()) {
       reader.hello = std::move(*hello);
-      // First: a publisher that has published more than what is read here sees this when it looks
-      // before it takes anything back, which the reader is to have.
+      // Before `published` is read: a publisher that has published more by then sees the change
+      // before it withdraws any message for this reader.
       changed_.store(true, std::memory_order_relaxed);
       order_everywhere();
       reader.begin = reader.seen = head_->published.load(std::memory_order_acquire);
@@ -118,7 +118,7 @@ void ShmReaders::hear(ShmReader& reader) {
     return;
   }
   HC_CRASH_POINT("publisher knows reader");
-  // Edge-triggered: the reader's end of its direction, and then that of the connection.
+  // Edge-triggered: the reader first shuts down its direction, and closes later.
   static_cast<void>(reader.watch.want(EPOLLRDHUP | EPOLLET));
   Offer offer{reader.begin, reader.hello.keep, {}};
   if (!answer(reader.socket.get(), offer, bytes_, read_only_.get())) return let_go(reader);
@@ -126,10 +126,10 @@ void ShmReaders::hear(ShmReader& reader) {
   note_change(reader);
 }
 
-/// A reader or stranger has left, or died, which looks the same: what it held is free.
+/// Removes a reader that has left or died, which looks the same: its slots are free.
 void ShmReaders::let_go(ShmReader& reader) {
   static_cast<void>(reader.watch.want(0));
-  std::shared_ptr<ShmReader> owner;  // goes outside the lock
+  std::shared_ptr<ShmReader> owner;  // destroyed without the lock
   std::lock_guard lock(mutex_);
   auto found = std::find_if(all_.begin(), all_.end(),
                             [&](const auto& each) { return each.get() == &reader; });
@@ -144,7 +144,7 @@ void ShmReaders::note_change(const ShmReader& reader) {
   tell_change(reader);
 }
 
-/// With the lock, so that refresh() sees the flag and the event together.
+/// Requires the lock, so that refresh() sees both the flag and the event.
 void ShmReaders::tell_change(const ShmReader& reader) {
   changed_.store(true, std::memory_order_seq_cst);
   event_.raise();
@@ -152,7 +152,8 @@ void ShmReaders::tell_change(const ShmReader& reader) {
 }
 
 void ShmReaders::refresh() {
-  std::vector<std::shared_ptr<ShmReader>> known;  // and then those before, who end outside the lock
+  std::vector<std::shared_ptr<ShmReader>>
+      known;  // then the former ones, destroyed without the lock
   std::lock_guard lock(mutex_);
   changed_.store(false, std::memory_order_relaxed);
   event_.clear();
@@ -161,7 +162,7 @@ void ShmReaders::refresh() {
   current_.swap(known);
 }
 
-/// Whether a reader has been given up, and has taken nothing since.
+/// Whether a reader was given up and has taken nothing since.
 bool ShmReaders::is_given_up(ShmReader& reader, std::uint64_t published) {
   return reader.patience.is_over() && reader.patience.is_over(reader.cursor(published));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The readers of a publisher of shared memory: lets them in, and notices when they leave or die,
-// on the thread that serves links, whatever the publisher does meanwhile. Internal.
+// The readers of a publisher of shared memory. The reactor's thread accepts them and notices when
+// they leave or die, whatever the publisher's thread does. Internal.
 
 #include <algorithm>
 #include <atomic>
@@ -19,17 +19,17 @@
 
 namespace hc::internal {
 
-/// One reader, as its publisher sees it.
+/// A reader, as seen by its publisher.
 struct ShmReader {
   Descriptor socket;
-  Hello hello;              ///< what it has said
+  Hello hello;
   std::uint64_t begin = 0;  ///< position of its first message
-  std::uint64_t seen = 0;   ///< how far it said that it is, at most; of the publisher's thread
-  std::uint32_t woken = 0;  ///< what `armed` said when it was woken last
-  Patience patience;        ///< of a publisher that waits for it, on whose thread it is used
+  std::uint64_t seen = 0;   ///< the largest cursor seen, by the publisher's thread
+  std::uint32_t woken = 0;  ///< the value of `armed` when it was last woken
+  Patience patience;        ///< of the publisher with this reader, used by its thread
   Watch watch;              ///< last, so that it ends first
 
-  /// Whether it has said what it is; a stranger has not.
+  /// Whether it has sent its Hello.
   [[nodiscard]] bool is_known() const { return hello.page.data() != nullptr; }
   [[nodiscard]] const ReaderPage& page() const {
     return *reinterpret_cast<const ReaderPage*>(hello.page.data());
@@ -37,8 +37,8 @@ struct ShmReader {
   [[nodiscard]] bool left() const {
     return page().cursor.load(std::memory_order_acquire) == ReaderPage::kLeft;
   }
-  /// The position that it takes next, as far as that can be: whatever its page says, at least where
-  /// it has been and at most what has been published.
+  /// The next position that it takes, limited to plausible values: never decreasing, and at most
+  /// `published`.
   [[nodiscard]] std::uint64_t cursor(std::uint64_t published) {
     seen = std::max(seen, std::min(page().cursor.load(std::memory_order_acquire), published));
     return seen;
@@ -47,8 +47,8 @@ struct ShmReader {
 
 class ShmReaders {
  public:
-  /// @param head  of `memory`; says where a reader that comes begins.
-  /// @param keep  for readers that do not say. @param patience  with each.
+  /// @param memory  its head says where a new reader begins.
+  /// @param keep  for readers that do not request a number. @param patience  with each reader.
   static Result<std::unique_ptr<ShmReaders>> make(ListeningSocket socket,
                                                   const SharedMemory& memory, std::uint64_t keep,
                                                   const Patience& patience);
@@ -56,36 +56,35 @@ class ShmReaders {
   ShmReaders(const ShmReaders&) = delete;
   ShmReaders& operator=(const ShmReaders&) = delete;
 
-  /// Those there are, as of the last refresh(). On the publisher's thread.
+  /// The readers, as of the last refresh(). On the publisher's thread.
   [[nodiscard]] const std::vector<std::shared_ptr<ShmReader>>& current() const { return current_; }
 
-  /// Whether some have come or left since, or something is to be logged.
+  /// Whether readers have come or left since, or there are lines to log.
   ///
-  /// A reader that can hold a slot by now has come before the caller's last fence ("hold"), and is
-  /// seen here.
+  /// A reader that may hold a slot was added before the caller's last fence ("hold"), so this is
+  /// true.
   [[nodiscard]] bool changed() const { return changed_.load(std::memory_order_relaxed); }
   void refresh();
-  /// What is to be logged, since this was last called.
+  /// Lines to be logged by the publisher's thread.
   [[nodiscard]] Remarks& remarks() { return remarks_; }
 
-  // Of those there are, on the publisher's thread; `published` is the position it publishes next.
+  // About the current readers, on the publisher's thread. `published` is the next position.
 
-  /// The position below which every reader that loses nothing has taken all, but for those that
-  /// have been given up.
+  /// All positions below have been taken by every lossless reader (keep=all) not given up.
   [[nodiscard]] std::uint64_t taken_by_all(std::uint64_t published);
-  /// The position below which no reader wants anything any more.
+  /// No reader needs any position below.
   [[nodiscard]] std::uint64_t wanted_by_none(std::uint64_t published) const;
-  /// Whom a publisher waits for: the slowest of those that lose nothing, if it has not taken all,
-  /// else anybody who holds something; null when it is nobody, but for those that it has given up.
+  /// The reader to wait for: the slowest lossless one, if it has not taken everything, else any
+  /// that holds a slot. Null if there is none, apart from those given up.
   [[nodiscard]] std::shared_ptr<ShmReader> blocker(std::uint64_t published);
-  /// Whether there are some that have been given up.
+  /// Whether any reader has been given up.
   [[nodiscard]] bool have_given_up() const;
-  /// Nobody is waited for any more.
+  /// Ends the waits of all Patiences.
   void end_waits();
-  /// Wakes those who sleep; whether there were any.
+  /// Wakes sleeping readers; whether there were any.
   bool wake();
 
-  /// Readable when some have come or left, or something is to be logged, since refresh().
+  /// Readable when readers have come or left, or there are lines to log, since refresh().
   [[nodiscard]] int event() const { return event_.descriptor(); }
 
  private:
@@ -111,8 +110,8 @@ class ShmReaders {
   std::vector<std::shared_ptr<ShmReader>> current_;
   std::atomic<bool> changed_{false};
 
-  std::mutex mutex_;                             // of what follows
-  std::vector<std::shared_ptr<ShmReader>> all_;  // who is connected, in the order of coming
+  std::mutex mutex_;                             // of the next two
+  std::vector<std::shared_ptr<ShmReader>> all_;  // in the order in which they connected
   bool ending_ = false;
 
   Watch watch_;

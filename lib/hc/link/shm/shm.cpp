@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shm:NAME`: how either end is opened; sink.h and source.h are what is opened.
+// `shm:NAME`: opens both ends, a ShmSink (sink.h) or a ShmSource (source.h).
 #include <algorithm>
 
 #include <hc/link/paced_source.h>
@@ -12,18 +12,18 @@
 namespace hc::internal {
 namespace {
 
-/// About as long as it takes to sleep and wake: a reader that spins so long never loses more.
+/// About as long as it takes to sleep and wake up, so that spinning at most doubles the cost.
 constexpr std::int64_t kDefaultSpin = 20;  // [µs]
 
-/// How a reader attaches.
+/// How a reader connects.
 struct Wishes {
-  std::uint64_t keep;  ///< kPublishersKeep: as the publisher wants it
+  std::uint64_t keep;  ///< or kPublishersKeep
   std::chrono::microseconds spin;
-  bool waits;  ///< for the publisher's answer, or else take() does without
+  bool waits;  ///< for the publisher's answer; else take() receives it later
   std::shared_ptr<const Descriptor> wakes;
 };
 
-/// Makes the reader of a publisher that has been connected to. Errors: as await_offer().
+/// Makes the reader of a connected publisher. Errors: as await_offer().
 Result<std::unique_ptr<Source>> attach(Descriptor socket, const Wishes& wishes,
                                        const LinkOptions& options) {
   auto attachment = std::make_shared<Attachment>();

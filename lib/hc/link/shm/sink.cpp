@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way of a message: into a cell, and where it is large into a slot.
+// Publishes messages: in a cell, or a cell and a slot if they are large.
 #include <hc/link/shm/sink.h>
+
+#include <sched.h>
 
 #include <array>
 #include <bit>
@@ -19,9 +21,9 @@ using std::memory_order_seq_cst;
 
 static_assert(std::endian::native == std::endian::little);
 
-/// Copies bytes word by word, as they were mostly written; fills the last word. A larger load finds
-/// none of the stores before it whole and waits until all of them have reached the cache, those
-/// into cells too that another processor has.
+/// Copies bytes word by word, and fills the last word. Most of them have just been written word by
+/// word: a wider load could not be forwarded from these stores, and would wait until all stores
+/// before it have reached the cache, including those to cells that another processor has.
 void copy_words(std::span<const std::byte> bytes, char* to) {
   const auto* from = reinterpret_cast<const char*>(bytes.data());
   std::size_t i = 0;
@@ -47,7 +49,7 @@ Status ShmSink::send(const Message& message) {
     audience_.count_lost(traffic_);
     return {};
   }
-  // The header's line and the elements behind it, if they are small, in words.
+  // The header line, followed by the elements if they are small, in words.
   std::array<std::uint64_t, Cell::kWords + kMaxHeaderBytes / sizeof(std::uint64_t)> words;
   char* text = reinterpret_cast<char*>(words.data());
   auto header_bytes =
@@ -88,7 +90,7 @@ void ShmSink::publish(std::span<const std::uint64_t> text, std::uint64_t sizes, 
   const Cell& later = cells_[(published_ + kFetchAhead) % kCells];
   for (std::size_t line = 0; line < kFetchBytes; line += kLine)
     __builtin_prefetch(reinterpret_cast<const char*>(&later) + line, 1);
-  // Who was overtaken and reads this cell now finds `oldest` beyond it afterwards.
+  // A slow reader that is copying this cell will find that `oldest` has passed it.
   std::atomic_thread_fence(memory_order_release);
   cell.slot.store(slot == nullptr ? 0 : slot->begin, memory_order_relaxed);
   cell.sizes.store(sizes, memory_order_relaxed);
@@ -97,6 +99,7 @@ void ShmSink::publish(std::span<const std::uint64_t> text, std::uint64_t sizes, 
   ++published_;
   cell.stamp.store(published_, memory_order_release);
   HC_CRASH_POINT("publisher stamped");
+  head_.processor.store(static_cast<std::uint32_t>(::sched_getcpu()), memory_order_relaxed);
   head_.published.store(published_, memory_order_release);
   HC_CRASH_POINT("publisher published");
   if (waker_.must_fence()) std::atomic_thread_fence(memory_order_seq_cst);  // wake
@@ -110,7 +113,7 @@ Draft ShmSink::loan(const Header& header) {
   auto bytes = header.element_bytes();
   if (ended_) return Sink::loan(header);
   refresh();
-  // What will be copied into a cell, behind a header line as most are, needs no slot.
+  // Behind a header line of usual length the elements fit into a cell.
   if (bytes <= Cell::kTextBytes - kLine) return Sink::loan(header);
   Slot* slot = take_slot(bytes);
   if (slot == nullptr) return Draft::make(header);
@@ -125,18 +128,18 @@ Draft ShmSink::loan(const Header& header) {
 Status ShmSink::close() {
   Status awaited;
   if (audience_.is_awaited()) awaited = await_readers();
-  if (readers_ != nullptr) refresh();  // which writes to the log
+  if (readers_ != nullptr) refresh();  // writes to the log
   end();
   return awaited;
 }
 
-/// Readers have the memory for as long as they want; they need nobody to take what is in it.
+/// Readers keep the memory, and can take the rest of the messages without the publisher.
 void ShmSink::end() {
   if (ended_ || readers_ == nullptr) return;
   ended_ = true;
   head_.closed.store(1, memory_order_release);
   HC_CRASH_POINT("publisher closed");
-  readers_.reset();  // which ends the connections, and so wakes those who sleep
+  readers_.reset();  // closes the connections, which wakes sleeping readers
 }
 
 }  // namespace hc::internal

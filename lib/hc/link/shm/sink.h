@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The publisher of `shm:NAME`: sink.cpp is the way of each message, sink_room.cpp how room is found
-// for it. Not for several threads. Internal.
+// The publisher of `shm:NAME`: sink.cpp publishes messages, sink_room.cpp finds room for them. Not
+// thread-safe. Internal.
 
 #include <array>
 #include <functional>
@@ -31,7 +31,7 @@ class ShmSink final : public Sink {
         options_(std::move(options)) {}
   ~ShmSink() override { end(); }
 
-  /// Lets readers in; before all else. Errors: System.
+  /// Starts to accept readers; to be called first. Errors: System.
   Status begin(ListeningSocket socket) {
     readers_ = HC_TRY(ShmReaders::make(std::move(socket), *memory_, keep_,
                                        Patience(timeout_, options_.awaits_reader, options_.log)));
@@ -52,8 +52,8 @@ class ShmSink final : public Sink {
   void publish(std::span<const std::uint64_t> text, std::uint64_t sizes, Slot* slot);
   void end();
 
-  // Who is there (sink_room.cpp).
-  /// Learns who has come and left. Cost: next to nothing when nobody has.
+  // Readers (sink_room.cpp).
+  /// Updates the readers. Cost: one load if none has come or left.
   void refresh() {
     if (readers_->changed()) meet_readers();
   }
@@ -62,7 +62,7 @@ class ShmSink final : public Sink {
   Status await_readers();
   static Error abandoned() { return {Code::Closed, "the link was abandoned"}; }
 
-  // Where there is room for a message (sink_room.cpp).
+  // Room for messages (sink_room.cpp).
   [[nodiscard]] bool is_too_far_ahead(std::uint64_t bytes);
   Status let_catch_up(std::uint64_t bytes);
   Status wait_for_room(std::uint64_t wanted, const std::function<bool()>& has_room);
@@ -74,27 +74,27 @@ class ShmSink final : public Sink {
   void withdraw(std::uint64_t end);
   void sweep();
 
-  // Readers' messages outlive the sink, and so may those of this process that own slots.
+  // Shared with messages of this process, which may outlive the sink.
   std::shared_ptr<SharedMemory> memory_;
   Head& head_;
   Cell* cells_;
   std::shared_ptr<SlotPool> slots_;
   std::unique_ptr<ShmReaders> readers_;
   Audience audience_;
-  std::uint64_t keep_;  // newest messages for a reader that does not say; 0: all, it is waited for
+  std::uint64_t keep_;  // of the newest messages, unless a reader requests fewer; 0: all
   std::chrono::seconds timeout_;
   LinkOptions options_;
 
   std::uint64_t published_ = 0, oldest_ = 0;  // as in head_
   std::array<Slot*, kCells> slot_of_cell_{};
-  std::array<std::uint64_t, kCells> ahead_{};  // bytes in slots, sent before the message of a cell
-  std::uint64_t slot_bytes_ = 0;               // the same of the next message
-  std::uint64_t taken_ = 0;                    // by all, at the last look
+  std::array<std::uint64_t, kCells> ahead_{};  // bytes sent in slots before the message of a cell
+  std::uint64_t slot_bytes_ = 0;               // bytes sent in slots so far
+  std::uint64_t taken_ = 0;                    // the last result of taken_by_all()
   HeaderMemo memo_;
   Waker waker_{head_};
-  std::size_t present_ = 0;  // readers that still take messages
+  std::size_t present_ = 0;  // readers that take messages
   bool ended_ = false;
-  Status host_;  // whether it had pages for the last slot
+  Status host_;  // an error if the host had no memory for the last slot
   Traffic traffic_;
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How room is found for a message: who is there, what nobody wants or holds any more, and whom to
-// wait for.
+// Finds room for messages: reuses cells and slots that no reader needs, and waits for readers.
 #include <hc/link/shm/sink.h>
 
 #include <algorithm>
@@ -18,10 +17,10 @@ using std::memory_order_relaxed;
 using std::memory_order_release;
 using std::memory_order_seq_cst;
 
-/// How far a publisher that loses nothing gets ahead of its slowest reader: what it writes then is
-/// in the caches still when it is read.
+/// How far a lossless publisher gets ahead of its slowest reader: messages are then still in the
+/// caches when they are read.
 constexpr std::uint64_t kAheadBytes = std::uint64_t{8} << 20;
-constexpr std::uint64_t kAheadMessages = 2;  // at least, however large
+constexpr std::uint64_t kAheadMessages = 2;  // at least, whatever their size
 constexpr std::uint64_t kBatch = 64;         // cells that are withdrawn together
 /// How often a wait checks whether it is to stop.
 constexpr std::chrono::milliseconds kStopCheckPeriod{20};
@@ -37,8 +36,8 @@ void ShmSink::meet_readers() {
   waker_.meet(readers);
 }
 
-/// refresh() for sure, of all who could have learnt where they begin; before one takes back what
-/// they are to have.
+/// refresh() that includes every reader which may know its first position; to be called before
+/// messages are withdrawn.
 void ShmSink::refresh_for_sure() {
   std::atomic_thread_fence(memory_order_seq_cst);
   refresh();
@@ -52,8 +51,8 @@ Status ShmSink::await_readers() {
   });
 }
 
-/// Whether `bytes` more in slots are too many for the slowest of those that lose nothing. Cost: a
-/// look at what each has taken, but only when it seems so from the last look.
+/// Whether another `bytes` in slots are too many for the slowest lossless reader. Reads the cursors
+/// only if it seems so from the last ones.
 bool ShmSink::is_too_far_ahead(std::uint64_t bytes) {
   auto seems_so = [&] {
     return published_ - taken_ >= kAheadMessages &&
@@ -65,8 +64,8 @@ bool ShmSink::is_too_far_ahead(std::uint64_t bytes) {
   return seems_so();
 }
 
-/// Waits until the slowest has caught up so far that `bytes` more are not too many: half of
-/// all at once, since to wake is dear.
+/// Waits until the slowest reader has caught up, to half of the limit, since a wake-up is
+/// expensive.
 Status ShmSink::let_catch_up(std::uint64_t bytes) {
   auto wanted = taken_ + 1;
   while (wanted + 1 < published_ && slot_bytes_ + bytes - ahead_[wanted % kCells] > kAheadBytes / 2)
@@ -74,7 +73,7 @@ Status ShmSink::let_catch_up(std::uint64_t bytes) {
   return wait_for_room(wanted, [&] { return readers_->taken_by_all(published_) >= wanted; });
 }
 
-/// Waits until `has_room()`, or all whom to wait for have been given up.
+/// Waits until `has_room()`, or all readers to wait for have been given up.
 Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>& has_room) {
   struct Wish {
     Head& head;
@@ -87,8 +86,7 @@ Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>&
   head_.wanted.store(wanted, memory_order_relaxed);
   while (true) {
     refresh();
-    const auto reader =
-        readers_->blocker(published_);  // kept, since it may go while one looks for room
+    const auto reader = readers_->blocker(published_);  // shared, since refresh() may remove it
     auto progress = reader == nullptr ? 0 : reader->page().progress.load(memory_order_acquire);
     std::atomic_thread_fence(memory_order_seq_cst);  // room
     if (has_room()) return {};
@@ -96,7 +94,7 @@ Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>&
     if (reader == nullptr && readers_->have_given_up()) return {};
     if (reader == nullptr && !host_)
       return Error{Code::System,
-                   "no room left: the host has no memory to share: " + host_.error().detail};
+                   "no room left: the host is out of shared memory: " + host_.error().detail};
     if (reader == nullptr)
       return Error{Code::TooLarge, "no room left: this program holds all of the memory"};
     const auto now = std::chrono::steady_clock::now();
@@ -108,7 +106,7 @@ Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>&
   }
 }
 
-/// Takes cells below `end` back: readers that come to them skip them.
+/// Withdraws the cells below `end`: readers skip them.
 void ShmSink::withdraw(std::uint64_t end) {
   if (end <= oldest_) return;
   head_.oldest.store(end, memory_order_release);
@@ -120,7 +118,7 @@ void ShmSink::withdraw(std::uint64_t end) {
     }
 }
 
-/// Finds out which slots nobody refers to or holds any more.
+/// Returns slots to the pool that no message refers to and no reader holds.
 void ShmSink::sweep() {
   refresh_for_sure();  // hold
   std::vector<std::uint64_t> held;
@@ -133,14 +131,14 @@ void ShmSink::sweep() {
   HC_CRASH_POINT("publisher swept");
 }
 
-/// Sees that a slot's pages are there; null when the host has no memory for them.
+/// Allocates the pages of a slot; null if the host has no memory for them.
 Slot* ShmSink::reserve(Slot* slot) {
   if (slot == nullptr) return slot;
   host_ = memory_->reserve(slot->begin + slot->bytes);
-  return host_ ? slot : nullptr;  // the next sweep takes it back, and it is tried again
+  return host_ ? slot : nullptr;  // the next sweep returns it to the pool
 }
 
-/// A slot, without taking from a reader what it wants; null when there is none.
+/// A slot that no reader needs; null if there is none.
 Slot* ShmSink::take_slot(std::uint64_t bytes) {
   if (Slot* slot = reserve(slots_->reuse(bytes)); slot != nullptr) return slot;
   refresh_for_sure();
@@ -150,8 +148,8 @@ Slot* ShmSink::take_slot(std::uint64_t bytes) {
   return reserve(slots_->allocate(bytes));
 }
 
-/// A slot, for which the readers that lose messages lose what they have not taken, the oldest
-/// first; null when those that lose none want or hold all the rest.
+/// A slot, if necessary by withdrawing the oldest messages from lossy readers; null if lossless
+/// ones need all others.
 Slot* ShmSink::clear_slot(std::uint64_t bytes) {
   host_ = {};
   Slot* slot = take_slot(bytes);
@@ -164,8 +162,8 @@ Slot* ShmSink::clear_slot(std::uint64_t bytes) {
   return slot;
 }
 
-/// Finds a slot for elements, and copies them if they are not in one already. Null: the message is
-/// lost, as there is no memory for it and one does not wait.
+/// Finds the slot of elements, or copies them to one. Null: the message is dropped, since there is
+/// no memory and the publisher does not wait.
 Status ShmSink::place(const Message& message, Slot*& slot) {
   const std::byte* from = message.elements.data();
   auto bytes = message.elements.size();
@@ -190,12 +188,12 @@ Status ShmSink::place(const Message& message, Slot*& slot) {
   return {};
 }
 
-/// Sees that the next message has a cell.
+/// Makes sure that the next cell is free.
 Status ShmSink::make_cell_free() {
   refresh_for_sure();
   withdraw(std::min(readers_->taken_by_all(published_), published_ - kCells + kBatch));
   if (published_ - oldest_ < kCells) return {};
-  // Half of the ring at once, since to wake is dear.
+  // Half of the ring at once, since a wake-up is expensive.
   auto wanted = published_ - kCells / 2;
   auto room = wait_for_room(wanted, [&] { return readers_->taken_by_all(published_) >= wanted; });
   if (room) withdraw(std::min(readers_->taken_by_all(published_), published_ - kCells + kBatch));

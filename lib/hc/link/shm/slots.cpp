@@ -21,7 +21,7 @@ SlotPool::SlotPool(std::uint64_t begin, std::uint64_t end) {
 
 Slot* SlotPool::reuse(std::uint64_t bytes) {
   bytes = in_lines(bytes);
-  // A slot more than twice as large would be missed by the messages that it was made for.
+  // A slot more than twice as large is left to the messages for which it was made.
   auto fits = [&](const auto& slot) { return slot->bytes >= bytes && slot->bytes / 2 <= bytes; };
   auto last = std::find_if(warm_.rbegin(), warm_.rend(), fits);
   if (last == warm_.rend()) return nullptr;
@@ -61,7 +61,7 @@ Slot* SlotPool::use(std::unique_ptr<Slot> slot) {
   return (used_[begin] = std::move(slot)).get();
 }
 
-/// Makes ranges of the slots that were given back, as large as they can be.
+/// Turns the returned slots into free ranges, and merges adjacent ones.
 void SlotPool::merge_warm() {
   for (const auto& slot : warm_) free_.emplace(slot->begin, slot->begin + slot->bytes);
   warm_.clear();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Which bytes of a publisher's memory are in use. Internal. Pure: knows offsets alone.
+// Allocates slots in a publisher's memory. Internal. Pure: handles offsets only.
 
 #include <atomic>
 #include <cstdint>
@@ -11,35 +11,34 @@
 
 namespace hc::internal {
 
-/// Room for the elements of one message. It may be used again when nobody refers to it here and no
-/// reader holds it.
+/// Room for the elements of one message. It can be reused when nothing in this process refers to it
+/// and no reader holds it.
 struct Slot {
   std::uint64_t begin = 0, bytes = 0;
-  std::uint32_t cells = 0;                 ///< of the ring, that refer to it
-  std::atomic<std::uint32_t> messages{0};  ///< of this process, on any thread, that own it
+  std::uint32_t cells = 0;                 ///< that refer to it
+  std::atomic<std::uint32_t> messages{0};  ///< of this process that own it, on any thread
 
   [[nodiscard]] bool referred_to() const {
     return cells > 0 || messages.load(std::memory_order_acquire) > 0;
   }
 };
 
-/// Gives out slots: the one that was given back last first, since it is in the caches still.
+/// A pool of slots. The one that was returned last is reused first, since it is in the caches.
 class SlotPool {
  public:
-  /// Slots stand in [begin, end), aligned to 64.
+  /// Slots are in [begin, end), aligned to 64.
   SlotPool(std::uint64_t begin, std::uint64_t end);
 
-  /// One of at least `bytes` that was given back; null when there is none of about that size.
-  /// Cost: a look at the slots given back.
+  /// A returned slot of `bytes` to twice that; null if there is none. Cost: linear in their number.
   Slot* reuse(std::uint64_t bytes);
 
-  /// A new one where no slot is; null when there is no room. Cost: a look at the free ranges.
+  /// A new slot; null if there is no room. Cost: linear in the number of free ranges.
   Slot* allocate(std::uint64_t bytes);
 
-  /// The slot in use that begins there; null: none does.
+  /// The slot in use that begins at this offset; null if there is none.
   [[nodiscard]] Slot* find(std::uint64_t begin) const;
 
-  /// Takes back each slot in use of which `is_free(slot)` is true.
+  /// Returns the slots in use for which `is_free(slot)` is true.
   template <typename IsFree>
   void sweep(const IsFree& is_free) {
     for (auto entry = used_.begin(); entry != used_.end();) {
@@ -57,8 +56,8 @@ class SlotPool {
   void merge_warm();
 
   std::map<std::uint64_t, std::unique_ptr<Slot>> used_;  // by begin
-  std::vector<std::unique_ptr<Slot>> warm_;              // given back, the last one last
-  std::map<std::uint64_t, std::uint64_t> free_;          // begin to end; no two touch
+  std::vector<std::unique_ptr<Slot>> warm_;              // returned, in this order
+  std::map<std::uint64_t, std::uint64_t> free_;          // begin to end; no two are adjacent
 };
 
 }  // namespace hc::internal

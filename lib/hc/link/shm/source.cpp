@@ -2,6 +2,7 @@
 #include <hc/link/shm/source.h>
 
 #include <fcntl.h>
+#include <sched.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -20,15 +21,15 @@ using std::memory_order_relaxed;
 using std::memory_order_release;
 using std::memory_order_seq_cst;
 
-/// How often a reader that gets through looks whether it is waited for; see Head::wanted.
-constexpr std::uint64_t kLookEvery = 64;  // messages
+/// After how many small messages a reader looks at Head::wanted.
+constexpr std::uint64_t kLookEvery = 64;
 constexpr std::size_t kCopyHold = kMostHeld - 1;
 constexpr std::size_t kNoHold = kMostHeld;
-constexpr unsigned kDrainEvery = 1024;  // waits; each leaves one byte in the pipe at most
-constexpr unsigned kLookSeldom = 8;     // vain waits, until a silent link's connection is looked at
-constexpr int kMostSkips = 64;  // until who is overtaken again and again looks after other things
+constexpr unsigned kDrainEvery = 1024;  // waits; each leaves at most one byte in the pipe
+constexpr unsigned kLookSeldom = 8;     // waits without a message, until it checks its connection
+constexpr int kMostSkips = 64;  // until a reader that is overtaken repeatedly returns to its caller
 
-/// Lets go of what a message held.
+/// Releases the slot of a message.
 struct LetGo {
   std::shared_ptr<Attachment> attachment;
   std::size_t hold;
@@ -44,7 +45,7 @@ Error damaged(const std::string& what) {
 Result<std::shared_ptr<const Descriptor>> make_wake_pipe() {
   std::array<int, 2> ends;
   HC_TRY(system_call("pipe2", "", [&] { return ::pipe2(ends.data(), O_NONBLOCK | O_CLOEXEC); }));
-  Descriptor writer(ends[1]);  // a publisher opens its own
+  Descriptor writer(ends[1]);  // publishers open their own
   return std::make_shared<const Descriptor>(ends[0]);
 }
 
@@ -54,15 +55,15 @@ ShmSource::~ShmSource() {
   ::shutdown(attachment_->socket.get(), SHUT_WR);
 }
 
-/// Leaves out what was not taken in time.
+/// Skips messages, and counts them as lost.
 void ShmSource::skip_to(std::uint64_t position, std::uint64_t Traffic::*why) {
   if (position <= cursor_) return;
   traffic_.*why += position - cursor_;
   cursor_ = position;
 }
 
-/// The same of what the publisher has taken back. What this reader wanted to keep is lost because
-/// there was no memory for it, or no cell.
+/// Skips withdrawn messages. Those that this reader wanted to keep are lost because there was no
+/// memory or cell for them.
 void ShmSource::skip_withdrawn(std::uint64_t oldest) {
   auto published = attachment_->head().published.load(memory_order_acquire);
   if (keep_ == 0) return skip_to(oldest, &Traffic::dropped_timeout);
@@ -70,7 +71,7 @@ void ShmSource::skip_withdrawn(std::uint64_t oldest) {
   skip_to(oldest, &Traffic::dropped_memory);
 }
 
-/// Copies a cell; false when it is not one, or when another was just being written over it.
+/// Copies a cell; false if it is invalid, or is being overwritten.
 bool ShmSource::copy(Copy& cell) const {
   const Cell& shared = attachment_->cell(cursor_);
   cell.slot = shared.slot.load(memory_order_relaxed);
@@ -84,7 +85,7 @@ bool ShmSource::copy(Copy& cell) const {
   return true;
 }
 
-/// Holds a slot; the last of the holds, which is for messages that are copied, when all are taken.
+/// Holds a slot. If all others are in use, by the last entry, which is for messages to be copied.
 std::size_t ShmSource::take_hold(std::uint64_t slot) {
   auto& held = attachment_->own().held;
   std::size_t index = 0;
@@ -93,10 +94,10 @@ std::size_t ShmSource::take_hold(std::uint64_t slot) {
   return index;
 }
 
-/// Makes a message of a cell that was copied, whose slot is held.
+/// Makes a message from the copy of a cell, whose slot is held.
 Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t hold) {
   std::string_view line(cell.text(), cell.header_bytes);
-  if (!line.ends_with('\n')) return damaged("a header without its end");
+  if (!line.ends_with('\n')) return damaged("a header without a line feed");
   line.remove_suffix(1);
   auto parsed = memo_.parse(line, options_.limits, traffic_.bytes);
   if (!parsed) return parsed.error();
@@ -107,7 +108,7 @@ Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t hold) 
   const auto& memory = attachment_->memory;
   if (hold != kNoHold && (cell.slot < kSlotsBegin || cell.slot % kLine != 0 ||
                           cell.slot >= memory.size() || cell.bytes > memory.size() - cell.slot))
-    return damaged("the place of a slot");
+    return damaged("invalid offset of a slot");
   message.header = header;
   message.byte = traffic_.bytes;
   ++traffic_.messages;
@@ -126,8 +127,8 @@ Status ShmSource::deliver(const Copy& cell, Message& message, std::size_t hold) 
     return {};
   }
   if (!told_ && options_.log)
-    options_.log(Level::Warning, std::to_string(kCopyHold) +
-                                     " messages are held; while it is so, others are copied");
+    options_.log(Level::Warning,
+                 std::to_string(kCopyHold) + " messages are held; others are copied meanwhile");
   told_ = true;
   message = message.keep();
   attachment_->let_go(hold);
@@ -163,7 +164,7 @@ Result<Got> ShmSource::take(Message& message) {
       auto hold = cell.slot == 0 ? kNoHold : take_hold(cell.slot);
       if (!is_withdrawn(hold != kNoHold)) {
         finish_cell(cell.slot != 0);
-        auto delivered = fits ? deliver(cell, message, hold) : damaged("the sizes of a cell");
+        auto delivered = fits ? deliver(cell, message, hold) : damaged("invalid sizes of a cell");
         if (!delivered) {
           if (hold != kNoHold) attachment_->let_go(hold);
           return delivered.error();
@@ -173,13 +174,13 @@ Result<Got> ShmSource::take(Message& message) {
       if (hold != kNoHold) attachment_->let_go(hold);
     }
     auto oldest = head.oldest.load(memory_order_acquire);
-    if (oldest <= cursor_) return damaged("the stamp of a cell");
+    if (oldest <= cursor_) return damaged("invalid stamp of a cell");
     skip_withdrawn(oldest);
   }
-  return Got::Nothing;  // the publisher is faster; wait() comes back at once
+  return Got::Nothing;  // the publisher is faster; wait() returns at once
 }
 
-/// Has the cells that are to come brought here, of those that are there.
+/// Prefetches one of the next cells, if it is published.
 void ShmSource::fetch_ahead() {
   if (cursor_ >= known_ && cursor_ % kFetchAhead == 0)
     known_ = attachment_->head().published.load(memory_order_relaxed);
@@ -189,13 +190,13 @@ void ShmSource::fetch_ahead() {
     __builtin_prefetch(reinterpret_cast<const char*>(&later) + line);
 }
 
-/// Whether the publisher has taken the cell back by now, whose slot is held, or which was copied.
+/// Whether the cell was withdrawn before it was copied or its slot was held.
 bool ShmSource::is_withdrawn(bool holds) const {
   std::atomic_thread_fence(holds ? memory_order_seq_cst : memory_order_acquire);  // hold
   return attachment_->head().oldest.load(memory_order_acquire) > cursor_;
 }
 
-/// Says that the cell has been taken. Whoever reads that also reads what is held by then.
+/// Advances the cursor. A publisher that reads it also sees the slots held before.
 void ShmSource::finish_cell(bool has_slot) {
   HC_CRASH_POINT("reader holds");
   ++cursor_;
@@ -216,6 +217,9 @@ void ShmSource::attach(Offer offer) {
 
 Source::Spin ShmSource::spin() const {
   if (!attached()) return {};
+  // While it spins, the publisher cannot run on the same processor.
+  const auto processor = attachment_->head().processor.load(memory_order_relaxed);
+  if (processor == static_cast<std::uint32_t>(::sched_getcpu())) return {};
   return {&attachment_->cell(cursor_).stamp, cursor_ + 1, spin_};
 }
 
@@ -223,7 +227,7 @@ bool ShmSource::is_ready() const {
   return attachment_->cell(cursor_).stamp.load(memory_order_acquire) > cursor_ || has_ended();
 }
 
-/// Notices that the publisher has left.
+/// Checks whether the publisher has left.
 void ShmSource::look_at_socket() {
   char byte;
   auto size = ::recv(attachment_->socket.get(), &byte, 1, MSG_DONTWAIT);
@@ -237,7 +241,7 @@ void ShmSource::drain_pipe() const {
 
 bool ShmSource::prepare_wait() {
   if (!attached()) return true;
-  // Who is armed still has been woken by another link, or by the end of this one's connection.
+  // If it is still armed, it was woken by another link, or by the end of this connection.
   if (armed_ && ++vain_waits_ % kLookSeldom == 0) look_at_socket();
   if (++arming_ % kDrainEvery == 0) drain_pipe();
   if (arming_ == 0) ++arming_;

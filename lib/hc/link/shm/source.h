@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A reader of `shm:NAME`: takes messages out of the publisher's memory, which may be written over
-// meanwhile. Internal.
+// The reader of `shm:NAME`: takes messages from the publisher's memory, which may be overwritten at
+// any time. Internal.
 
 #include <array>
 #include <chrono>
@@ -14,8 +14,7 @@
 
 namespace hc::internal {
 
-/// A connection to a publisher. Messages that view its memory keep it, also when the source is
-/// gone.
+/// A connection to a publisher. Messages that view its memory share it, and may outlive the source.
 struct Attachment {
   Descriptor socket;
   SharedMemory page, memory;
@@ -26,7 +25,7 @@ struct Attachment {
     return reinterpret_cast<const Cell*>(memory.data() + kRingBegin)[position % kCells];
   }
 
-  /// Wakes the publisher if it waits for what this reader has just taken. A fence comes before.
+  /// Wakes the publisher if it waits for this cursor. The caller has put a fence before.
   void offer_cells() {
     auto wanted = head().wanted.load(std::memory_order_relaxed);
     if (wanted != 0 && own().cursor.load(std::memory_order_relaxed) >= wanted) wake_publisher();
@@ -47,19 +46,19 @@ struct Attachment {
   }
 };
 
-/// A pipe by which publishers wake a reader: one for all connections of a link. Errors: System.
+/// The pipe through which publishers wake a reader, for all connections of a link. Errors: System.
 Result<std::shared_ptr<const Descriptor>> make_wake_pipe();
 
 class ShmSource final : public Source {
  public:
-  /// The reader of a publisher that has been greeted, but has perhaps not answered.
+  /// The reader has sent its request; the publisher may not have answered yet.
   ShmSource(std::shared_ptr<Attachment> attachment, std::shared_ptr<const Descriptor> wakes,
             std::chrono::microseconds spin, LinkOptions options)
       : attachment_(std::move(attachment)),
         wakes_(std::move(wakes)),
         spin_(spin),
         options_(std::move(options)) {}
-  /// Takes the publisher's answer.
+  /// Sets the publisher's answer.
   void attach(Offer offer);
 
   ~ShmSource() override;
@@ -79,8 +78,8 @@ class ShmSource final : public Source {
     [[nodiscard]] const char* text() const { return reinterpret_cast<const char*>(words.data()); }
   };
 
-  /// Nothing comes where there was nothing a moment ago: the publisher has left, or has closed and
-  /// all that it published has been taken.
+  /// Given that there was no message before this call: whether the publisher is gone, or has closed
+  /// and everything published has been taken.
   [[nodiscard]] bool has_ended() const {
     const Head& head = attachment_->head();
     return publisher_gone_ || (head.closed.load(std::memory_order_acquire) != 0 &&
@@ -108,14 +107,14 @@ class ShmSource final : public Source {
   std::shared_ptr<const Descriptor> wakes_;
   std::uint64_t cursor_ = 0;
   std::uint64_t keep_ = 0;
-  std::uint64_t known_ = 0;  // positions below are known to be published
+  std::uint64_t known_ = 0;  // the last value of `published` seen
   std::chrono::microseconds spin_;
   LinkOptions options_;
   std::uint32_t arming_ = 0;
   bool armed_ = false;
   unsigned vain_waits_ = 0;
   bool publisher_gone_ = false;
-  bool told_ = false;  // that too many are held
+  bool told_ = false;  // it has been logged that too many messages are held
   HeaderMemo memo_;
   Traffic traffic_;
 };

@@ -14,10 +14,10 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-constexpr std::chrono::microseconds kSpinAlone{1};   // until a reader that spins lets others run
-constexpr std::size_t kSpinLooks = 16;               // at sources, between two looks at the clock
+constexpr std::chrono::microseconds kSpinAlone{1};   // then it yields the processor
+constexpr std::size_t kSpinLooks = 16;               // at words, between two reads of the clock
 constexpr std::chrono::milliseconds kPollPeriod{1};  // of descriptors, while spinning
-constexpr int kShortWait = 4;  // a wait that is not much longer than the spin, in spins
+constexpr int kShortWait = 4;  // the longest wait after which it spins, in spins
 
 void relax() {
 #if defined(__x86_64__) || defined(__i386__)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Looks at shared memory for a while before a reader sleeps. Internal. Of one thread.
+// Polls shared memory for a while before a reader sleeps. Internal. Used by one thread.
 
 #include <chrono>
 #include <functional>
@@ -11,21 +11,21 @@
 
 namespace hc::internal {
 
-/// The part of a wait in which a message that is about to come is found without a system call.
+/// The first part of a wait, which finds an imminent message without a system call.
 ///
-/// Spinning pays only where the next message comes soon: not after a wait much longer than the
-/// spin. A module with a camera at 30 Hz would burn 20 µs an image for nothing.
+/// It is skipped after a wait much longer than the spin, since the next message is then unlikely to
+/// come soon: a module with a camera at 30 Hz would waste 20 µs per image.
 class Spin {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Spins as long as the sources ask for, at most `timeout` (below 0: no limit); whether one of
-  /// them has a message, or `poll` has said so, which is called every millisecond.
+  /// Spins as long as the sources ask for, at most `timeout` (below 0: no limit). Returns whether
+  /// one of them has a message, or `poll`, which is called every millisecond, returned true.
   ///
   /// Errors: those of `poll`.
   Result<bool> run(std::span<Source* const> sources, std::chrono::nanoseconds timeout,
                    const std::function<Result<bool>()>& poll);
-  /// How long the reader slept afterwards.
+  /// Tells how long the reader slept afterwards.
   void note_sleep(std::chrono::nanoseconds time) { last_wait_ = time; }
 
   /// Whether the last run() took about a microsecond at most.

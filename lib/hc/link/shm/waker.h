@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Wakes the readers of shared memory that sleep, and leaves out the publisher's fence when nobody
-// has slept for a while: then 1.7 times as many messages of 96 B a second go through (bench/links,
-// shm_polled, between two cores). Internal.
+// Wakes sleeping readers of shared memory, and skips the publisher's fence when none has slept
+// recently, which moves 1.7 times as many messages of 96 B per second (bench/links, shm_polled,
+// between two cores). Internal.
 
 #include <algorithm>
 #include <atomic>
@@ -11,13 +11,13 @@
 
 namespace hc::internal {
 
-/// What a publisher knows of the sleep of its readers. Who goes to sleep while the fence is left
-/// out orders the stores of both sides (order_everywhere()).
+/// Decides when a publisher needs a fence before it looks for sleeping readers. While it skips the
+/// fence, a reader calls order_everywhere() before it sleeps.
 class Waker {
  public:
   explicit Waker(Head& head) : head_(head) {}
 
-  /// To be called when readers came or went.
+  /// To be called when readers have come or left.
   void meet(const std::vector<std::shared_ptr<ShmReader>>& readers) {
     may_leave_fence_ =
         ordering_ && std::all_of(readers.begin(), readers.end(),
@@ -25,17 +25,17 @@ class Waker {
     fence_again();
   }
 
-  /// Whether a fence is needed between a message's publication and wake().
+  /// Whether a fence is needed between the publication of a message and wake().
   [[nodiscard]] bool must_fence() const { return fencing_; }
 
-  /// Wakes those who sleep, after a message has been published.
+  /// Wakes sleeping readers, after a message has been published.
   void wake(ShmReaders& readers) {
     if (readers.wake()) {
       fence_again();
     } else if (fencing_ && may_leave_fence_ && ++undisturbed_ >= kUndisturbed) {
       fencing_ = false;
       head_.unfenced.store(1, std::memory_order_relaxed);
-      // Who has not seen that yet is seen here.
+      // A reader that has not seen this yet is seen by the next line.
       std::atomic_thread_fence(std::memory_order_seq_cst);
       if (readers.wake()) fence_again();
     }
@@ -46,17 +46,17 @@ class Waker {
     undisturbed_ = 0;
     if (fencing_) return;
     fencing_ = true;
-    std::atomic_thread_fence(std::memory_order_seq_cst);  // of what was published without one
+    std::atomic_thread_fence(std::memory_order_seq_cst);  // for messages published without it
     head_.unfenced.store(0, std::memory_order_release);
   }
 
-  static constexpr int kUndisturbed = 64;  // messages while nobody slept, until it is skipped
+  static constexpr int kUndisturbed = 64;  // messages without a sleeper, until it is skipped
 
   Head& head_;
   const bool ordering_ = allow_ordering();
-  bool may_leave_fence_ = false;  // all readers can order the stores of both sides
+  bool may_leave_fence_ = false;  // all readers can call order_everywhere()
   bool fencing_ = true;           // not Head::unfenced
-  int undisturbed_ = 0;           // messages published since a reader slept
+  int undisturbed_ = 0;           // messages since a reader slept
 };
 
 }  // namespace hc::internal

@@ -41,12 +41,6 @@ Result<std::unique_ptr<Connection>> Connection::make(ConnectedSocket connection,
   return made;
 }
 
-Connection::~Connection() {
-  std::lock_guard lock(mutex_);
-  if (!failed_ && connected()) static_cast<void>(writer_.write());
-  fail({Code::Closed, "the link was closed"});
-}
-
 void Connection::connect(ConnectedSocket connection, TimePoint now) {
   is_tcp_ = is_tcp(connection.get());
   writer_.start(std::move(connection));
@@ -115,7 +109,7 @@ Result<bool> Connection::hand_over(std::unique_lock<std::mutex>& lock, Outgoing&
   return all_written();
 }
 
-/// Begins a message, for which there is no hindrance.
+/// Collects a message or writes it at once; nothing is queued before it.
 void Connection::put(const Parcel& parcel, TimePoint now) {
   const bool is_first = writer_.gathered() == 0;
   if (writer_.add(parcel)) {
@@ -123,7 +117,7 @@ void Connection::put(const Parcel& parcel, TimePoint now) {
     bool pays = !is_first || gathering_.pays(now - last_write_ < kFollowTime);
     if (pays && writer_.gathered() < kFlushBytes && now - oldest_ < kFlushAge) {
       is_gathering_ = true;
-      // The reactor has work only when no further message comes; else they are written here.
+      // The reactor writes the batch only if no further message is sent.
       if (!std::exchange(flush_is_due_, true)) watch_.call_at(flush_due());
       return;
     }
@@ -142,7 +136,7 @@ void Connection::write() {
   watch_.call_at(look_due_);
 }
 
-/// Does all that can be done by now without waiting.
+/// Does everything that is due and possible without waiting.
 void Connection::advance(TimePoint now) {
   if (failed_) return;
   if (look_due_ <= now) look_at_reader(now);
@@ -174,8 +168,8 @@ void Connection::fail(const Error& why) {
     losses_.dropped_disconnect += queue_.clear(losses_) + writer_.clear();
     return;
   }
-  // The message that send() is called with is the last one, in the queue or begun. Its caller gets
-  // the error, so it does not count as lost.
+  // The last message, in the queue or the writer, is the one being sent. Its caller gets the error,
+  // so it does not count as lost.
   Traffic reported;
   const bool is_queued = queue_.clear(reported) > 0;
   auto begun = writer_.clear();
@@ -189,8 +183,7 @@ void Connection::look_at_reader(TimePoint now) {
   if (look.vanished) lose_connection({Code::Closed, "the reader does not respond"}, now);
 }
 
-/// Whether the connection has failed while nobody used it; asked, as an event may be an older
-/// one's.
+/// Checks whether the connection has failed. The event that led here may be of an earlier one.
 void Connection::check_connection(TimePoint now) {
   pollfd polled{writer_.descriptor(), 0, 0};
   if (!connected() || ::poll(&polled, 1, 0) <= 0) return;
@@ -202,11 +195,11 @@ void Connection::check_connection(TimePoint now) {
                   now);
 }
 
-/// The reactor calls.
+/// Called by the reactor.
 void Connection::on_event(std::uint32_t events) {
   std::lock_guard lock(mutex_);
   flush_is_due_ = false;
-  if (events != 0) wanted_ = 0;  // it comes once
+  if (events != 0) wanted_ = 0;  // events are one-shot
   if (failed_ || waits_) return;
   const auto now = clock_now();
   if ((events & (EPOLLERR | EPOLLHUP)) != 0) check_connection(now);
@@ -214,7 +207,7 @@ void Connection::on_event(std::uint32_t events) {
   arm(now);
 }
 
-/// Has the reactor call when there is something to do.
+/// Has the reactor call on_event() when there is something to do.
 void Connection::arm(TimePoint now) {
   if (failed_) return;
   want(static_cast<std::uint32_t>(awaited_events()));
@@ -224,20 +217,22 @@ void Connection::arm(TimePoint now) {
   watch_.call_at(when);
 }
 
-/// The events that the connection, or the attempt at one, waits for; those of poll and epoll are
-/// the same.
+/// The events to wait for, of the connection or the attempt to make one. Those of poll and epoll
+/// have the same values.
 short Connection::awaited_events() const {
   if (!connected()) return dialer_->events();
-  return blocked_ ? POLLOUT : POLLERR;
+  if (blocked_) return POLLOUT;
+  // Without a dialer the next write is soon enough to notice a lost connection.
+  return dialer_ != nullptr ? POLLERR : 0;
 }
 
-/// Has the descriptor watched for events, each of which comes once. A file cannot be, and need not.
+/// Watches the descriptor for events, each reported once. Files cannot be watched, and need not be.
 void Connection::want(std::uint32_t events) {
   if (std::exchange(wanted_, events) == events) return;
   static_cast<void>(watch_.want(events == 0 ? 0 : events | EPOLLONESHOT));
 }
 
-/// When there is something to do next, beside the descriptor's events.
+/// When there is something to do next, whatever the descriptor's events.
 TimePoint Connection::due(TimePoint now) {
   if (failed_) return TimePoint::max();
   if (!connected()) return dialer_->due();
@@ -247,9 +242,9 @@ TimePoint Connection::due(TimePoint now) {
   return std::min(when, queue_.ready_at(now, losses_));
 }
 
-/// Waits until all has been written.
-/// @param message  that is being sent; null: the link is being closed, which needs no connection.
-/// @param give_up  set when it is to stop inside a message.
+/// Waits until everything is written.
+/// @param message  being sent; null: the link is being closed, for which it need not be connected.
+/// @param give_up  when to give up although a message is partly written.
 Status Connection::drain(std::unique_lock<std::mutex>& lock, Outgoing* message,
                          std::optional<TimePoint> give_up) {
   const bool closing = message == nullptr;
@@ -279,22 +274,21 @@ Status Connection::drain(std::unique_lock<std::mutex>& lock, Outgoing* message,
       arm(now);
       return waited.error();
     }
-    patience_.end();  // it has its own end now
+    patience_.end();  // give_up limits the wait from now on
     give_up = clock_now() + kGrace;
   }
   arm(clock_now());
   return {};
 }
 
-/// Whether it is to be waited for the reader. What waits for its turn alone does not wait for it.
+/// Whether to go on waiting. A message that only waits for its turn does not wait for the reader.
 bool Connection::has_patience(TimePoint now) {
   if (blocked_ || !connected()) return patience_.waits(writer_.total(), now);
   patience_.end();
   return true;
 }
 
-/// Drops the message that a thread waits with, or lets it be written whenever the reader takes it
-/// where it was begun.
+/// Drops the message being sent; one that was partly written is finished when the reader allows.
 void Connection::give_up_reader(Outgoing& message) {
   if (take_back()) {
     ++losses_.dropped_timeout;
@@ -304,7 +298,7 @@ void Connection::give_up_reader(Outgoing& message) {
   }
 }
 
-/// Drops a message where the reader that was given up has taken nothing since.
+/// Drops a message if the reader was given up and has taken nothing since.
 bool Connection::drops_for_reader(const Outgoing& message, TimePoint now) {
   if (connected() && all_written()) patience_.renew();
   if (!patience_.is_over(writer_.total())) return false;
@@ -314,18 +308,18 @@ bool Connection::drops_for_reader(const Outgoing& message, TimePoint now) {
   return true;
 }
 
-/// Takes back the message that a thread waits with; false when it was begun.
+/// Removes the message being sent; false if it was partly written.
 bool Connection::take_back() {
   if (queue_.empty()) return writer_.take_back();
   queue_.take_back();
   return true;
 }
 
-/// Waits for room, a connection, or the time when something is to be done.
+/// Waits for room, a connection, or the time when something is due.
 Result<bool> Connection::wait(std::unique_lock<std::mutex>& lock, std::optional<TimePoint> give_up,
                               TimePoint now) {
   int descriptor = !connected() ? dialer_->descriptor() : blocked_ ? writer_.descriptor() : -1;
-  if (wanted_ != EPOLLERR) want(0);  // this thread sees to it
+  if (wanted_ != EPOLLERR) want(0);  // this thread waits for it
   const auto until = std::min({due(now), patience_.due(), give_up.value_or(TimePoint::max())});
   const short events = awaited_events();
   waits_ = true;

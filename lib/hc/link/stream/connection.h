@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The sending side of one connection: what is to go over it waits, is begun, and goes, by the
-// thread that sends or, where that one is not to wait, by the reactor. Internal.
+// The sending side of one connection. Messages are written by the thread that sends them or, where
+// that thread must not wait, by the reactor. Internal.
 
 #include <algorithm>
 #include <memory>
@@ -20,18 +20,17 @@
 
 namespace hc::internal {
 
-/// Learns whether messages follow so close that it pays to gather them: written one by one, 20 to
-/// 35 times fewer messages of 96 B a second go over a socket (bench/links). Who answers a question
-/// sends nothing more, though; so the more often it was in vain to wait for another message, the
-/// longer a row of them must be before the next one is gathered.
+/// Decides whether to collect messages and write them together: 20 to 35 times as many of 96 B go
+/// over a socket (bench/links). But a single message would only be delayed; so each batch that
+/// stays small doubles the number that must follow one another before the next batch is started.
 class Gathering {
  public:
-  /// Counts a message that follows, or not; gives whether to gather it.
+  /// Counts a message, which follows the one before closely or not. Returns whether to collect it.
   bool pays(bool follows) {
     row_ = follows ? row_ + 1 : 0;
     return row_ > wanted_;
   }
-  /// Says how many messages were written at once in the end.
+  /// Reports how many messages were written together.
   void learn(std::size_t count) {
     bool was_worth_it = count >= kWorthwhile;
     if (!was_worth_it) row_ = 0;
@@ -45,50 +44,47 @@ class Gathering {
 
 /// Sends the messages of one thread over one connection, with the help of the reactor.
 ///
-/// A message is written at once where nothing waits. When some follow right behind another,
-/// small ones are gathered, up to kFlushBytes or kFlushAge, whichever comes first; see Gathering.
-/// What is gathered or partly written has been begun and is finished; the policy is about what
-/// waits behind it.
-///
-/// The lock is free while a sending thread waits; that thread then sees to all there is to do, and
-/// the reactor to nothing.
+/// A message is written at once if the queue is empty. Small messages in close succession are
+/// collected, up to kFlushBytes or for kFlushAge; see Gathering. The policy applies to the queue
+/// only: messages that were collected or partly written are never dropped. A sending thread that
+/// waits releases the lock, and does all the work in place of the reactor.
 class Connection final : public Sink {
  public:
-  /// How long a reader may take, after `stop`, for the rest of a message.
+  /// After `stop`, how long to wait for a reader to take the rest of a message.
   static constexpr std::chrono::seconds kGrace{2};
-  /// How often a reader that owes an answer is looked after, whether it is still there.
+  /// How often to check that a reader which has not acknowledged everything is still alive.
   static constexpr std::chrono::seconds kLookPeriod{1};
-  /// Messages follow one another when no more time has passed since the last system call.
+  /// Two messages are in close succession if the last system call is no longer ago than this.
   static constexpr std::chrono::microseconds kFollowTime{3};
   static constexpr std::chrono::microseconds kFlushAge{150};
   static constexpr std::size_t kFlushBytes = 60 << 10;
 
   /// @param connection  may be none (-1) with a dialer.
-  /// @param dialer  reconnects when the connection is lost; without one the link ends with it.
+  /// @param dialer  reconnects when the connection is lost; without it the link ends.
   ///
   /// Errors: System.
   static Result<std::unique_ptr<Connection>> make(ConnectedSocket connection, const Policy& policy,
                                                   const LinkOptions& options,
                                                   std::unique_ptr<Dialer> dialer = nullptr);
-  ~Connection() override;
+  ~Connection() override { abandon(); }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
   Status send(const Message& message) override;
   Status close() override;
-  /// Ends the link with what can be written at once; the rest is lost.
+  /// Writes as much as the descriptor takes without waiting, and drops the rest.
   void abandon() override;
   [[nodiscard]] Traffic traffic() const override;
   std::optional<std::size_t> peers() override;
 
-  // Of a message that goes to several, for who counts them.
-  /// Takes a message; whether all that was taken is with the kernel, and not in memory of ours.
+  // For sinks with several connections, which count messages themselves.
+  /// Sends a message. Returns whether everything sent so far has been written to the descriptor.
   /// Errors: as Sink::send.
   Result<bool> send(Outgoing& message, TimePoint now);
-  /// Waits until all has been written, unless it is not `patient`, and ends the stream.
+  /// Waits until everything is written, if `patient`, and ends the stream.
   /// Errors: as Sink::close.
   Status close(bool patient);
-  /// What was lost or throttled; `bytes` is minus those of messages that were dropped.
+  /// Counts of lost and throttled messages; `bytes` is the negated size of the dropped ones.
   [[nodiscard]] Traffic losses() const;
   /// Whether the connection has failed for good.
   [[nodiscard]] bool has_failed() const;
@@ -140,25 +136,26 @@ class Connection final : public Sink {
   const int stop_;
   const LogSink log_;
   std::unique_ptr<Dialer> dialer_;
-  SendQueue<Parcel> queue_;  // not begun
+  SendQueue<Parcel> queue_;
   Patience patience_;
-  StreamWriter writer_;   // begun
-  bool blocked_ = false;  // the last write found no room for all
+  StreamWriter writer_;   // collected or partly written messages, ahead of the queue
+  bool blocked_ = false;  // the last write could not write everything
   bool is_tcp_ = false;
   Gathering gathering_;
-  TimePoint connected_at_, last_write_, oldest_;  // the last: when the first was gathered
+  TimePoint connected_at_, last_write_;
+  TimePoint oldest_;  // when the first message of the batch was collected
   TimePoint look_due_ = TimePoint::max();
   bool is_gathering_ = false;
-  bool flush_is_due_ = false;  // the reactor will look at what is gathered
+  bool flush_is_due_ = false;  // the reactor will write the batch
   std::optional<Error> failed_;
   Traffic losses_;
   Encoder encoder_;
-  std::uint64_t messages_ = 0, bytes_ = 0;  // that send() has taken
-  Remarks remarks_;                         // for the log of the thread that sends
+  std::uint64_t messages_ = 0, bytes_ = 0;  // sent
+  Remarks remarks_;                         // logged by the sending thread
   std::uint32_t wanted_ = 0;                // of watch_
-  bool waits_ = false;                      // a thread, in wait()
-  bool is_sending_ = false;                 // a thread, in send()
-  Watch watch_;  // of the connection or the dialer's attempt, and of the next time
+  bool waits_ = false;                      // a thread is in wait()
+  bool is_sending_ = false;                 // a thread is in send()
+  Watch watch_;  // of the connection or the dialer's attempt, and the timer
 };
 
 }  // namespace hc::internal

@@ -40,7 +40,7 @@ Result<ConnectedSocket> Dialer::dial(TimePoint now) {
     return std::move(attempt_);
   }
   if (!was_there_ && !why_.empty() && now >= begin_ + kQuiet && !std::exchange(is_awaited_, true)) {
-    // "waiting" where the longest time that can be asked for amounts to for ever.
+    // The longest time that an option accepts is as good as for ever.
     log(Level::Warning, "no peer yet (" + why_ + "); " +
                             (first_ >= std::chrono::hours(24)
                                  ? "waiting"
@@ -91,7 +91,7 @@ void Dialer::try_next(TimePoint now) {
     fail(errno, now);
 }
 
-/// Whether the current attempt has succeeded; ends it if it has failed.
+/// Whether the current attempt has succeeded. Ends it if it has failed.
 bool Dialer::is_connected(TimePoint now) {
   if (attempt_.channel) return has_agreed(now);
   pollfd polled{attempt_.get(), POLLOUT, 0};
@@ -132,7 +132,7 @@ void Dialer::fail(int number, TimePoint now) {
   auto pause = draw_pause(backoff_, random_);
   bool away = number == ENETUNREACH || number == EHOSTUNREACH || number == ENETDOWN;
   next_try_ += away ? std::min<std::chrono::nanoseconds>(pause, kAway) : pause;
-  next_try_ = std::max(std::min(next_try_, give_up_), now);  // once more at the very end
+  next_try_ = std::max(std::min(next_try_, give_up_), now);  // one last attempt at the end
 }
 
 }  // namespace hc::internal

@@ -11,11 +11,10 @@ namespace hc::internal {
 namespace {
 
 constexpr std::int64_t kMostSeconds = 86'400;  // of waiting
-/// How long after a sender has closed that is logged: when both ends are stopped together, the
-/// reader ends meanwhile.
+/// The delay before a closed connection is logged: a reader that is stopped with it logs nothing.
 constexpr std::chrono::milliseconds kLogAfter{200};
 
-/// A source that outlives its connection; see dial_source().
+/// A source that reconnects; see dial_source().
 class DialingSource final : public Source {
  public:
   DialingSource(std::unique_ptr<Dialer> dialer, Made made, std::unique_ptr<Loop> loop,
@@ -64,7 +63,7 @@ class DialingSource final : public Source {
   }
 
  private:
-  /// Does what is due for a connection, and watches for what is due next.
+  /// Works on the connection, and sets up the events and the time to continue at.
   Status dial() {
     auto now = std::chrono::steady_clock::now();
     watch_.reset();  // before the dialer closes its descriptor
@@ -112,18 +111,18 @@ class DialingSource final : public Source {
 
   std::unique_ptr<Dialer> dialer_;
   Made made_;
-  std::unique_ptr<Loop> loop_;  // of what follows; calls nothing, its descriptor is watched
+  std::unique_ptr<Loop> loop_;  // only its descriptor is used
   Loop::Handle watch_;          // of the connection, or the attempt to make one
   Loop::Handle retry_;
   LinkOptions options_;
-  std::unique_ptr<Source> source_;  // null: there is no connection
+  std::unique_ptr<Source> source_;  // null: not connected
   TimePoint connected_at_;
-  bool finishing_ = false;  // the peer will not come back
+  bool finishing_ = false;  // do not reconnect
   bool ended_ = false;
-  Traffic past_;  // of connections that were lost
+  Traffic past_;  // of former connections
 };
 
-/// None where the link is to end with its connection. Errors: Invalid.
+/// Null if the link ends with its connection. Errors: Invalid.
 Result<std::unique_ptr<Dialer>> dialer_for(const Peer& peer, const Uri& uri) {
   auto patience = HC_TRY(number_option(uri, "reconnect", 0, {0, kMostSeconds}));
   if (patience == 0) return std::unique_ptr<Dialer>();

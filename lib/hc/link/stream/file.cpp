@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `-`: standard input and output, so that modules work in a shell pipe. `file:PATH`: a file, a FIFO
-// or a device by name; the same bytes as on a wire. file_sink.cpp writes them.
+// `-`: standard input and output, so that modules work in a shell pipe. `file:PATH`: a file, FIFO
+// or device; the same bytes as over a network. file_sink.cpp writes them.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,20 +13,19 @@
 namespace hc::internal {
 namespace {
 
-/// Lets a pipe hold more than the kernel's 64 KiB; harmless where it is none.
+/// Enlarges a pipe beyond the kernel's 64 KiB; no effect on other files.
 void widen_pipe(int descriptor) {
   constexpr int kPipeBytes = 1 << 20;
   ::fcntl(descriptor, F_SETPIPE_SZ, kPipeBytes);
 }
 
-/// A non-blocking descriptor for what `number` is open on, without changing `number` for the other
-/// processes that share it; only that of a socket still blocks.
+/// A non-blocking descriptor of the file that `number` refers to, which stays as it is for other
+/// processes that share it. The descriptor of a socket may still block.
 Result<Descriptor> reopen_without_waiting(int number, int access_mode) {
   struct stat status {};
   HC_TRY(system_call("fstat", "", [&] { return ::fstat(number, &status); }));
   if (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode)) {
-    // A second open gets flags of its own; setting them on the first would set them for the shell
-    // and for everybody else who shares it.
+    // Opened again, since flags of `number` are shared with the shell and others.
     std::string path = "/proc/self/fd/" + std::to_string(number);
     Descriptor own(::open(path.c_str(), access_mode | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
     if (own) {
@@ -54,7 +53,7 @@ Result<Descriptor> open_path(const Uri& uri, int flags, int stop) {
     struct stat status {};
     bool is_fifo = ::stat(path, &status) == 0 && S_ISFIFO(status.st_mode);
     if (number != ENXIO || !is_fifo) return system_error("open", uri.rest, number);
-    // Nobody has opened it for reading yet.
+    // A FIFO that is not yet open for reading.
     HC_TRY(wait_for(-1, 0, stop, std::chrono::steady_clock::now() + backoff.next()));
   }
 }

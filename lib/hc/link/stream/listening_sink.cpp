@@ -16,9 +16,8 @@
 namespace hc::internal {
 namespace {
 
-// Between messages that follow one another one looks for new peers only so often.
-constexpr std::chrono::microseconds kFollowTime{10};
-constexpr std::chrono::milliseconds kNewPeerPeriod{1};
+// How often a sink that sends looks for peers that have connected or left.
+constexpr std::chrono::milliseconds kLookPeriod{1};
 
 /// A connection for each reader; see listening_sink().
 class ListeningSink final : public Sink {
@@ -42,9 +41,9 @@ class ListeningSink final : public Sink {
     while (true) {
       auto fate = audience_.decide(peers_.size());
       if (fate == Audience::Fate::End) return Error{Code::Closed, "all readers disconnected"};
-      auto now = std::chrono::steady_clock::now();
-      const bool follows = now - last_send_ < kFollowTime && now - last_look_ < kNewPeerPeriod;
-      if (fate != Audience::Fate::Sent || !follows) {
+      const auto now = std::chrono::steady_clock::now();
+      const bool looks = fate != Audience::Fate::Sent || now - last_look_ >= kLookPeriod;
+      if (looks) {
         let_in();
         last_look_ = now;
         fate = audience_.decide(peers_.size());
@@ -57,11 +56,9 @@ class ListeningSink final : public Sink {
         HC_TRY(await_readers());
         continue;
       }
-      auto has = put_to_all(outgoing, now);
-      if (has && !*has) has = has_reader();
-      if (!has) return has.error();
-      if (!*has) continue;  // the message is for the next who comes
-      last_send_ = now;
+      const bool is_pending = HC_TRY(put_to_all(outgoing, now));
+      const bool is_unsure = !is_pending && (looks || peers_.empty());
+      if (is_unsure && !HC_TRY(has_reader())) continue;  // the next reader gets the message
       ++traffic_.messages;
       traffic_.bytes += outgoing.size();
       return {};
@@ -71,7 +68,7 @@ class ListeningSink final : public Sink {
   Status close() override {
     Status awaited;
     if (audience_.is_awaited()) awaited = await_readers();
-    let_in();  // who has just come finds the end too
+    let_in();  // so that new peers see the end, too
     bool patient = true;
     for (auto& peer : peers_) {
       auto closed = peer->close(patient);
@@ -110,7 +107,7 @@ class ListeningSink final : public Sink {
   }
 
  private:
-  /// Makes peers of those who wait outside, as far as there is room.
+  /// Accepts waiting connections, up to kMaxPeers.
   void accept_all() {
     auto has_room = [this] {
       for (std::size_t i = peers_.size(); i-- > 0 && peers_.size() >= kMaxPeers;)
@@ -125,7 +122,7 @@ class ListeningSink final : public Sink {
         });
   }
 
-  /// Another link may listen here from now on, while this object still exists.
+  /// Frees the address for another link while this object still exists.
   void stop_listening() {
     while (!peers_.empty()) leave(peers_.size() - 1);
     listening_.reset();
@@ -133,7 +130,7 @@ class ListeningSink final : public Sink {
   }
 
   void let_in() {
-    if (socket_.is_paused) accept_all();  // there may be room by now
+    if (socket_.is_paused) accept_all();  // a peer may have left
     static_cast<void>(loop_->turn(std::chrono::milliseconds(0)));
   }
 
@@ -145,71 +142,66 @@ class ListeningSink final : public Sink {
   }
 
   void leave(std::size_t peer) {
-    // Its dropped bytes count where no other reader has got them.
+    // Dropped bytes do not count if another reader got them.
     Traffic losses = peers_[peer]->losses();
     if (peers_.size() > 1) losses.bytes = 0;
     traffic_ += losses;
     peers_.erase(peers_.begin() + static_cast<std::ptrdiff_t>(peer));
-    last_look_ = {};  // there is room for who waits outside
+    last_look_ = {};  // a waiting peer may have its place
   }
 
-  /// Whether some of what a peer is to get is in memory of ours still, so that it is no use to ask
-  /// whether it has been taken.
+  /// Sends a message to all peers. Returns whether a part of it is still to be written.
   Result<bool> put_to_all(Outgoing& message, TimePoint now) {
-    bool is_ours = false;
+    bool is_pending = false;
     for (std::size_t i = 0; i < peers_.size();) {
       auto sent = peers_[i]->send(message, now);
       if (!sent && (sent.error().code == Code::Stopped || sent.error().code == Code::Truncated))
         return sent.error();
-      is_ours = is_ours || (sent && !*sent);
+      is_pending = is_pending || (sent && !*sent);
       if (sent)
         ++i;
       else
         leave(i);
     }
-    return is_ours;
+    return is_pending;
   }
 
-  /// Whether a peer has taken what was sent to it, or will.
+  /// Whether a peer has received the last message, or will.
   ///
-  /// A peer that has shut its own side may read on, as `nc -N` does, or have left. Over TCP a write
-  /// succeeds in either case; what shows it is its kernel's answer, an acknowledgement or a reset.
+  /// A peer that has shut down its direction may still read, as `nc -N` does, or have left. Over
+  /// TCP a write succeeds in both cases; its kernel then answers: acknowledgement or reset.
   [[nodiscard]] Result<bool> has_taken(const Connection& peer) const {
     Backoff backoff(std::chrono::milliseconds(1), std::chrono::milliseconds(200));
     while (true) {
       pollfd polled{peer.descriptor(), POLLRDHUP, 0};
       ::poll(&polled, 1, 0);
-      if ((polled.revents & (POLLERR | POLLHUP)) != 0) return false;
-      bool shut = (polled.revents & POLLRDHUP) != 0;
+      if (polled.revents != POLLRDHUP) return polled.revents == 0;
       int unanswered = 0;
-      if (!shut || !policy_.writer_waits() ||
-          ::ioctl(peer.descriptor(), SIOCOUTQ, &unanswered) != 0 || unanswered == 0)
+      if (!policy_.writer_waits() || ::ioctl(peer.descriptor(), SIOCOUTQ, &unanswered) != 0 ||
+          unanswered == 0)
         return true;
       if (look_at_peer(peer.descriptor()).vanished) return false;
       HC_TRY(wait_for(-1, 0, options_.stop, std::chrono::steady_clock::now() + backoff.next()));
     }
   }
 
-  /// Whether there is a reader that has taken what was sent; one is enough.
+  /// Whether at least one reader has received the last message. Removes those that have left.
   Result<bool> has_reader() {
-    while (!peers_.empty()) {
-      auto taken = HC_TRY(has_taken(*peers_.back()));
-      if (taken) return true;
-      leave(peers_.size() - 1);
-    }
+    for (; !peers_.empty(); leave(peers_.size() - 1))
+      if (HC_TRY(has_taken(*peers_.back()))) return true;
     return false;
   }
 
   ListeningSocket socket_;
-  std::unique_ptr<Loop> loop_;  // of the listening socket
+  std::unique_ptr<Loop> loop_;  // watches the listening socket
   Loop::Handle listening_;
   Audience audience_;
-  Policy policy_;  // of each peer
+  Policy policy_;  // for each peer
   LinkOptions options_;
-  TimePoint last_send_, last_look_;  // the latter: who wants to be let in
+  TimePoint last_look_;  // for peers that have connected or left
   Encoder encoder_;
   std::vector<std::unique_ptr<Connection>> peers_;
-  Traffic traffic_;  // with the losses of those that have left
+  Traffic traffic_;  // including losses of peers that have left
 };
 
 }  // namespace

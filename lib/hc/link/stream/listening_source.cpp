@@ -12,7 +12,7 @@
 namespace hc::internal {
 namespace {
 
-/// Takes turns with those of its peers who have messages; see listening_source().
+/// Takes messages from its peers in turn; see listening_source().
 class ListeningSource final : public Source {
  public:
   ListeningSource(ListeningSocket socket, std::unique_ptr<Loop> loop, LinkOptions options,
@@ -29,7 +29,7 @@ class ListeningSource final : public Source {
   }
 
   Result<Got> take(Message& message) override {
-    constexpr int kTakesBetween = 64;  // before the others are asked, whatever the ready ones have
+    constexpr int kTakesBetween = 64;  // then it looks for events, even if messages are waiting
     message = {};
     if (ready_.empty() || ++takes_ > kTakesBetween) {
       takes_ = 0;
@@ -67,19 +67,19 @@ class ListeningSource final : public Source {
   struct Peer {
     std::unique_ptr<StreamSource> source;
     bool is_ready = false;  // is in ready_
-    TimePoint said_at;      // something, last
+    TimePoint said_at;      // when it last sent something
     Loop::Handle watch, header_due;
   };
 
-  /// Gives a peer that has begun a message its time for the header.
+  /// Starts the time limit for a header, if a peer has sent a part of one.
   void await_rest(Peer& peer) {
     peer.said_at = std::chrono::steady_clock::now();
     if (!peer.source->in_header()) return peer.header_due.reset();
     if (peer.header_due) return;
     peer.header_due = loop_->call_at(peer.said_at + times_.header, [this, each = &peer] {
-      // What this module had no time to read is not late.
+      // The rest may have arrived while this module was busy.
       if (has_unread(*each)) return each->header_due.reset();
-      leave(*each, "closed a connection: no whole header in " +
+      leave(*each, "closed a connection: no complete header in " +
                        std::to_string(times_.header.count()) + " s");
     });
   }
@@ -88,7 +88,7 @@ class ListeningSource final : public Source {
     return ::ioctl(peer.source->descriptor(), FIONREAD, &unread) == 0 && unread > 0;
   }
 
-  /// Lets in who waits, as far as there is room or can be made.
+  /// Accepts waiting connections, if there is room or a silent peer to replace.
   void accept_all() {
     auto is_full = [this] { return peers_.size() == kMaxPeers; };
     auto has_room = [&] { return !is_full() || find_idlest() != peers_.size(); };
@@ -99,7 +99,8 @@ class ListeningSource final : public Source {
         ready_.push_back(each);
       }));
       if (is_full())
-        leave(*peers_[find_idlest()], "closed the peer that was silent longest, to let another in");
+        leave(*peers_[find_idlest()],
+              "closed the peer that was silent longest, to make room for a new one");
       set_up_reader(accepted.get());
       peer->source = std::make_unique<StreamSource>(std::move(accepted), options_);
       peer->watch = std::move(watched);
@@ -109,8 +110,8 @@ class ListeningSource final : public Source {
     });
   }
 
-  /// The peer that is silent longest, of those that are so between messages, or for long inside
-  /// one; peers_.size() when there is none.
+  /// The peer that has been silent longest, between messages or for PeerTimes::silence inside one;
+  /// peers_.size() if there is none.
   [[nodiscard]] std::size_t find_idlest() const {
     std::size_t idlest = peers_.size();
     const auto now = std::chrono::steady_clock::now();
@@ -131,15 +132,15 @@ class ListeningSource final : public Source {
   }
 
   ListeningSocket socket_;
-  std::unique_ptr<Loop> loop_;  // of the listening socket and all peers
+  std::unique_ptr<Loop> loop_;  // watches the listening socket and all peers
   Loop::Handle listening_;
   LinkOptions options_;
   PeerTimes times_;
   std::vector<std::unique_ptr<Peer>> peers_;
-  std::vector<Peer*> ready_;  // those that may have messages; they take turns
-  std::size_t turn_ = 0;
-  int takes_ = 0;  // since the others were last asked
-  Traffic left_;   // of the peers that have left
+  std::vector<Peer*> ready_;  // may have messages
+  std::size_t turn_ = 0;      // the next of ready_
+  int takes_ = 0;             // since the last look for events
+  Traffic left_;              // of peers that have left
 };
 
 }  // namespace

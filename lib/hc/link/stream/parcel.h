@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A message on its way out, encoded once for all who get it. Internal.
+// An encoded message, shared by all connections that send it. Internal.
 
 #include <cstddef>
 #include <memory>
@@ -10,31 +10,31 @@
 
 namespace hc::internal {
 
-/// The bytes of a message.
+/// The bytes of an encoded message.
 struct Parcel {
   /// Messages up to this size are copied, which takes no longer than a system call. [byte]
   static constexpr std::size_t kMostCopied = 8 << 10;
 
   Pieces pieces;
-  std::shared_ptr<const void> owner;  ///< keeps the pieces alive; null: the caller does
+  std::shared_ptr<const void> owner;  ///< of the pieces; null: the caller keeps them alive
 
   [[nodiscard]] std::size_t size() const {
     return pieces[0].size() + pieces[1].size() + pieces[2].size();
   }
 };
 
-/// A message that is sent, to one reader or several.
+/// A message that is being sent, to one reader or several.
 class Outgoing {
  public:
-  /// @param pieces  of `message`; both live as long as this.
+  /// @param pieces  of `message`; both must outlive this object.
   Outgoing(const Pieces& pieces, const Message& message)
       : message_(message), borrowed_{pieces, nullptr} {}
 
   [[nodiscard]] const Parcel& borrowed() const { return borrowed_; }
   [[nodiscard]] std::size_t size() const { return borrowed_.size(); }
 
-  /// The same with an owner. The first call shares elements that have one and copies others.
-  /// Cost: two allocations, or three.
+  /// The same with an owner. The first call copies the elements, unless they have an owner.
+  /// Cost: two or three allocations.
   const Parcel& kept() {
     if (kept_.owner != nullptr) return kept_;
     struct Copy {

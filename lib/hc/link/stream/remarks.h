@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Lines for a log that come from any thread, and are logged on the one that the log belongs to.
-// Internal.
+// Log lines from any thread, to be logged by the thread that owns the log. Internal.
 
 #include <atomic>
 #include <mutex>
@@ -13,7 +12,7 @@
 
 namespace hc::internal {
 
-/// Keeps what is to be logged, kMost lines at most, as others may have us say much.
+/// Keeps at most kMost lines, so that peers cannot fill the memory.
 class Remarks {
  public:
   static constexpr std::size_t kMost = 64;
@@ -27,14 +26,14 @@ class Remarks {
     any_.store(true, std::memory_order_relaxed);
   }
 
-  /// Logs what there is. Cost: next to nothing when there is nothing.
+  /// Logs the lines and removes them. Cost: one load if there are none.
   void flush(const LogSink& log) {
     if (!any_.load(std::memory_order_relaxed)) return;
     std::unique_lock lock(mutex_);
     any_.store(false, std::memory_order_relaxed);
     auto lines = std::exchange(lines_, {});
     if (auto more = std::exchange(more_, 0); more > 0)
-      lines.emplace_back(Level::Warning, "and " + std::to_string(more) + " lines more");
+      lines.emplace_back(Level::Warning, "and " + std::to_string(more) + " more lines");
     lock.unlock();
     if (!log) return;
     for (const auto& [level, line] : lines) log(level, line);

@@ -11,7 +11,7 @@ Result<Got> StreamSource::take(Message& message) {
   while (true) {
     auto got = HC_TRY(reader_.next(message));
     if (got) return Got::Message;
-    // Who asked and got an answer waits for the next one now: to read once more would be in vain.
+    // The last read took everything, so another one would most likely find nothing.
     if (std::exchange(is_dry_, false) && between_messages()) return nothing();
     auto space = reader_.space();
     ssize_t size = read(space);
@@ -28,7 +28,7 @@ Result<Got> StreamSource::take(Message& message) {
     }
     if (size < 0 && errno == EINTR) continue;
     if (size < 0 && errno == EAGAIN) return nothing();
-    // A peer that was killed with our bytes unread resets the connection: the end of what it said.
+    // A peer that is killed while it has unread bytes resets the connection: the end of its stream.
     if (size < 0 && (channel != nullptr || errno != ECONNRESET)) {
       auto error = channel != nullptr ? channel->failure() : system_error("read", "");
       if (error.code == Code::Closed && !between_messages()) error.code = Code::Truncated;
@@ -46,25 +46,25 @@ ssize_t StreamSource::read(std::span<std::byte> space) {
                     : ::read(descriptor_.get(), space.data(), space.size());
 }
 
-/// Nothing more for now. Who waits inside a large message is woken for a good part of it (by TCP;
-/// Unix sockets wake for every piece): each wake keeps the writer from its work.
+/// Prepares to wait. Inside a large message TCP wakes the reader only for a good part of it, since
+/// each wake-up interrupts the writer; Unix sockets wake it for every piece.
 Got StreamSource::nothing() {
   constexpr std::uint64_t kGoodPart = std::uint64_t{128} << 10;
   int bytes = static_cast<int>(std::clamp<std::uint64_t>(reader_.missing(), 1, kGoodPart));
-  const bool can_ask = is_socket_ && !descriptor_.channel;  // which has taken some of it already
+  const bool can_ask = is_socket_ && !descriptor_.channel;  // a channel reads ahead
   if (can_ask && std::exchange(wakes_at_, bytes) != bytes)
     ::setsockopt(descriptor_.get(), SOL_SOCKET, SO_RCVLOWAT, &bytes, sizeof bytes);
   return Got::Nothing;
 }
 
 bool StreamSource::awaits_writer() const {
-  // Reading gives 0 before a writer has come as it does when all have left; only poll can tell.
+  // A read returns 0 both before the first writer and after the last one; poll() differs.
   pollfd polled{descriptor_.get(), POLLIN, 0};
   return may_await_writer_ && reader_.bytes() == 0 && ::poll(&polled, 1, 0) == 0;
 }
 
 Status StreamSource::resume() {
-  // The reader begins again where the refused message began, and so must the file.
+  // Both the reader and the file continue at the beginning of the refused message.
   auto begin = begin_ + static_cast<off_t>(reader_.message_begin());
   struct stat status {};
   if (::fstat(descriptor_.get(), &status) != 0 || !S_ISREG(status.st_mode)) return Source::resume();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Messages out of any descriptor that carries a stream of bytes: pipe, file, terminal, socket, and
-// what stdio, file, tcp and unix share beside. Internal. sink.h has the other end.
+// Reads messages from a stream of bytes: pipe, file, terminal or socket. Internal.
 
 #include <cstdint>
 #include <memory>
@@ -12,10 +11,10 @@
 
 namespace hc::internal {
 
-/// Takes messages from a descriptor whose reads do not wait; those of sockets never do.
+/// Takes messages from a descriptor that is non-blocking or a socket.
 class StreamSource final : public Source {
  public:
-  /// @param may_await_writer  it is a FIFO, opened by name, perhaps before its first writer.
+  /// @param may_await_writer  the descriptor is a FIFO, opened perhaps before its first writer.
   StreamSource(ConnectedSocket descriptor, const LinkOptions& options,
                bool may_await_writer = false)
       : descriptor_(std::move(descriptor)),
@@ -27,9 +26,9 @@ class StreamSource final : public Source {
   [[nodiscard]] int descriptor() const override { return descriptor_.get(); }
   [[nodiscard]] Traffic traffic() const override { return {reader_.messages(), reader_.bytes()}; }
   Status resume() override;
-  /// Whether nothing has come yet of the next message.
+  /// Whether no byte of the next message has arrived.
   [[nodiscard]] bool between_messages() const { return reader_.finish().has_value(); }
-  /// Whether a part of the next message's header line has come.
+  /// Whether the header line of the next message has arrived in part.
   [[nodiscard]] bool in_header() const { return reader_.in_header(); }
 
  private:
@@ -39,10 +38,10 @@ class StreamSource final : public Source {
 
   ConnectedSocket descriptor_;
   bool may_await_writer_;
-  off_t begin_;            // where in a file the stream begins, -1 in what is none [byte]
-  bool is_socket_ = true;  // until a first read says otherwise
-  bool is_dry_ = false;    // the last read gave all there was, which has been taken
-  int wakes_at_ = 1;       // bytes, in what is a socket
+  off_t begin_;            // of the stream in the file; -1: not a file [byte]
+  bool is_socket_ = true;  // until the first read fails with ENOTSOCK
+  bool is_dry_ = false;    // the last read took everything
+  int wakes_at_ = 1;       // SO_RCVLOWAT of a socket [byte]
   StreamReader reader_;
 };
 

@@ -26,7 +26,7 @@ Result<Addresses> resolve(const Uri& uri, int flags) {
   return Addresses(list, ::freeaddrinfo);
 }
 
-/// The check of each connection with `same_user=1`; empty without it. Errors: Invalid.
+/// Checks the user of each connection if `same_user=1`, else empty. Errors: Invalid.
 Result<std::function<Status(int)>> admission(const Uri& uri, Connected how, const char* what) {
   auto same_user = HC_TRY(number_option(uri, "same_user", 0, {0, 1}));
   if (same_user == 0) return std::function<Status(int)>();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `unix:PATH` and `unix-listen:PATH`: between processes of one host. `@NAME` is in the abstract
-// namespace: it leaves no file, and only processes of the same user are let in.
+// namespace: it leaves no file, and accepts only processes of the same user.
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -35,10 +35,8 @@ Result<Address> address_of(const Uri& uri) {
                                                (is_abstract(uri) ? 0 : 1)));
 }
 
-/// Whether a socket's file was left behind by a process that was killed: no socket is bound to it.
-///
-/// Asked with a socket of the other kind, which a listener does not notice; a connection would
-/// take the place of its first reader.
+/// Whether the file of a socket was left behind by a process that was killed. Tried with a datagram
+/// socket, which a listener does not notice; a stream connection would count as its first reader.
 bool is_left_behind(const Uri& uri, const Address& address) {
   Descriptor probe(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (::connect(probe.get(), address.get(), address.size) == 0 || errno != ECONNREFUSED)
@@ -47,14 +45,13 @@ bool is_left_behind(const Uri& uri, const Address& address) {
   return ::stat(uri.rest.c_str(), &status) == 0 && S_ISSOCK(status.st_mode);
 }
 
-/// The check of each connection to an abstract name, which has no permissions of its own.
+/// Checks the user of each connection to an abstract name, since it has no file permissions.
 std::function<Status(int)> admission(const Uri& uri, const char* what) {
   if (!is_abstract(uri)) return {};
   return [what](int socket) { return check_own(unix_peer_user(socket), what); };
 }
 
-/// A descriptor of its own for the socket that whoever has started this program holds for it at an
-/// address (spec/module.md, section 4); none (-1): there is no such one.
+/// Duplicates the inherited socket that listens at an address (spec/module.md, section 4), if any.
 Descriptor held_for_us(const Address& address) {
   const char* numbers = std::getenv(kListeners);
   std::istringstream words(numbers == nullptr ? "" : numbers);
@@ -64,7 +61,7 @@ Descriptor held_for_us(const Address& address) {
     if (::getsockname(number, reinterpret_cast<sockaddr*>(&place), &size) != 0 ||
         size != address.size || std::memcmp(&place, address.get(), size) != 0)
       continue;
-    ::fcntl(number, F_SETFD, FD_CLOEXEC);  // is not for what this program starts
+    ::fcntl(number, F_SETFD, FD_CLOEXEC);  // not for child processes
     return Descriptor(::fcntl(number, F_DUPFD_CLOEXEC, 0));
   }
   return {};

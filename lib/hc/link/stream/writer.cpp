@@ -18,7 +18,7 @@
 namespace hc::internal {
 namespace {
 
-/// Keeps SIGPIPE, which a write to a pipe without a reader raises, from a process that may not
+/// Suppresses SIGPIPE, which a write to a pipe without a reader raises, for programs that do not
 /// ignore it. Sockets have a flag for that.
 class NoPipeSignal {
  public:
@@ -33,7 +33,7 @@ class NoPipeSignal {
   NoPipeSignal(const NoPipeSignal&) = delete;
   NoPipeSignal& operator=(const NoPipeSignal&) = delete;
 
-  /// Consumes the signal where it has been raised, so that it is not delivered later.
+  /// Consumes the raised signal, so that it is not delivered later.
   void take() const {
     constexpr timespec kNow{};
     ::sigtimedwait(&pipe_, nullptr, &kNow);
@@ -128,7 +128,7 @@ void StreamWriter::advance(std::size_t size) {
   if (large_left_ == 0) large_ = {};
 }
 
-/// Removes whole messages that have been written from the buffer.
+/// Removes completely written messages from the buffer.
 void StreamWriter::forget_written() {
   auto first = std::upper_bound(ends_.begin(), ends_.end(), written_);
   std::size_t begin = first == ends_.begin() ? 0 : *(first - 1);
@@ -138,7 +138,7 @@ void StreamWriter::forget_written() {
   written_ -= begin;
 }
 
-/// Without room for the rest of a message, its beginning would damage the file for readers.
+/// Removes the beginning of a message that could not be written completely, for lack of space.
 void StreamWriter::cut_file() const {
   const int file = descriptor_.get();
   const auto end = ::lseek(file, 0, SEEK_CUR);
