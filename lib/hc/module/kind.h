@@ -241,7 +241,7 @@ using Image = MessageOf<ImageKind>;
 template <typename K>
 struct DraftOf : Draft {
   using Scalar = typename K::Scalar;
-  [[nodiscard]] MatrixView<Scalar> matrix() const { return view<Scalar>(); }
+  [[nodiscard]] MatrixView<Scalar> matrix() const { return view<Scalar>(*this); }
   [[nodiscard]] Numbers<Scalar> numbers() const { return matrix().numbers(); }
 };
 
