@@ -18,7 +18,7 @@ using std::chrono::nanoseconds;
 
 constexpr std::uint64_t kStop = 0;  // the number of the stop descriptor
 
-// How often descriptors are added again: epoll forgets one that is closed without a word.
+// How often descriptors are added again, since epoll silently drops one that is closed.
 constexpr std::chrono::milliseconds kWatchPeriod{10};
 
 std::uint64_t next_number() {
@@ -69,7 +69,7 @@ Status WaitSet::watch(int descriptor, std::uint32_t events, std::uint64_t number
   return {};
 }
 
-/// Makes these the sources that are watched.
+/// Watches these sources and no others.
 Status WaitSet::prepare(std::span<Source* const> sources) {
   if (poll_ && std::ranges::equal(sources_, sources, {}, {}, &Source::number_)) return {};
   // A new instance, since descriptors of sources may have been closed and opened elsewhere.
@@ -88,7 +88,7 @@ Status WaitSet::prepare(std::span<Source* const> sources) {
   return {};
 }
 
-/// Makes these the descriptors that are watched.
+/// Watches these descriptors and no others, besides those of sources.
 Status WaitSet::watch(std::span<const int> descriptors) {
   watched_at_ = Clock::now();
   for (int each : descriptors_)
@@ -100,7 +100,7 @@ Status WaitSet::watch(std::span<const int> descriptors) {
   return {};
 }
 
-/// Waits for what is watched.
+/// Waits for the watched descriptors.
 Result<bool> WaitSet::sleep(nanoseconds timeout) {
   std::array<epoll_event, 8> events;
   const int count = HC_TRY(system_call(
@@ -123,11 +123,11 @@ Result<bool> WaitSet::wait(std::span<Source* const> sources, std::span<const int
                     timeout.count() < 0 ? Deadline::max() : Clock::now() + timeout);
   }
   HC_TRY(prepare(sources));
-  bool is_sure = descriptors.empty();  // that the descriptors are those that epoll watches
+  bool is_fresh = descriptors.empty();  // none can have been closed since it was added
   if (!std::ranges::equal(descriptors, descriptors_) ||
-      (!is_sure && Clock::now() - watched_at_ >= kWatchPeriod)) {
+      (!is_fresh && Clock::now() - watched_at_ >= kWatchPeriod)) {
     HC_TRY(watch(descriptors));
-    is_sure = true;
+    is_fresh = true;
   }
   auto found = spin_->run(sources, timeout, [&] { return sleep(nanoseconds(0)); });
   was_short_ = spin_->was_short();
@@ -138,10 +138,10 @@ Result<bool> WaitSet::wait(std::span<Source* const> sources, std::span<const int
   for (Source* source : sources) is_ready = !source->prepare_wait() || is_ready;
   if (is_ready) timeout = nanoseconds(0);  // `stop` takes precedence
   const bool is_short = timeout.count() >= 0 && timeout <= kWatchPeriod;
-  const nanoseconds first = is_sure || is_short ? timeout : kWatchPeriod;
+  const nanoseconds first = is_fresh || is_short ? timeout : kWatchPeriod;
   auto ready = sleep(first);
   if (ready && !*ready && first != timeout) {
-    HC_TRY(watch(descriptors));
+    HC_TRY(watch(descriptors));  // before it sleeps for long
     ready = sleep(timeout.count() < 0 ? timeout : timeout - first);
   }
   spin_->note_sleep(Clock::now() - begin);
