@@ -60,6 +60,7 @@ struct GraphModule {
   std::map<std::string, Lined<Encoding>> encodings;      ///< of output ports
   std::map<std::string, Lined<Addressee>> to;            ///< of output ports
   Restart restart = Restart::Failure;
+  std::optional<Lined<std::string>> clock;  ///< `--clock`
   Lined<std::int64_t> hang;  ///< without a report for so long it is restarted [s]; 0: never
   std::optional<Lined<std::string>> mode;     ///< a task's
   std::vector<Lined<std::string>> modes;      ///< it works in; empty: all
