@@ -60,6 +60,7 @@ struct GraphModule {
   std::map<std::string, Lined<Encoding>> encodings;      ///< of output ports
   std::map<std::string, Lined<Addressee>> to;            ///< of output ports
   Restart restart = Restart::Failure;
+  std::optional<Lined<std::string>> clock;  ///< `--clock`
   Lined<std::int64_t> hang;  ///< restarted after this time without a report [s]; 0: never
   std::optional<Lined<std::string>> mode;     ///< of a task
   std::vector<Lined<std::string>> modes;      ///< in which it works; empty: all

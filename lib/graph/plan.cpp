@@ -46,6 +46,7 @@ void check_needs_no_control(Problems& problems, const GraphModule& module,
     problems.add(place, kNeedsControl, module.name, key);
   };
   for (const auto& [port, to] : module.to) refuse(to.place, "to");
+  if (module.clock) refuse(module.clock->place, "clock");
   if (module.mode) refuse(module.mode->place, "mode");
   if (!module.modes.empty()) refuse(module.modes.front().place, "modes");
   if (!module.exclusive.empty()) refuse(module.exclusive.front().place, "exclusive");
@@ -79,6 +80,7 @@ void plan_module(Planning& planning, const Describe& describe, const GraphModule
   planned.host = module.host.value;
   planned.group = module.group;
   planned.options = {"--name", module.name};
+  if (module.clock) planned.add_option("--clock", module.clock->value);
   planned.restart = module.restart;
   planned.hang = std::chrono::seconds(module.hang.value);
   planned.ends_graph = module.ends_graph;

@@ -6,6 +6,7 @@
 
 #include <frames/messages.h>
 #include <frames/module_frames.h>
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <transports/all.h>
 #include <vision/messages.h>
@@ -14,13 +15,17 @@
 #include <room/world.h>
 #include "ears.h"
 #include "eyes.h"
+#include "neck.h"
 #include "parameters.h"
 #include "schedule.h"
 #include "truth.h"
 
 namespace {
 
-constexpr double kTick = 250;                   // how often the schedule is checked [Hz]
+constexpr double kTick = 250;                 // how often the schedule is checked [Hz]
+constexpr std::chrono::seconds kSilence{60};  // longest wait of an image for a pose
+constexpr std::chrono::nanoseconds kNow{0};
+constexpr auto kAll = std::numeric_limits<std::int64_t>::max();
 const Eigen::Vector3d kUnderground(0, 0, -10);  // position of an absent ball [m]
 
 /// Made when the parameters are known.
@@ -48,11 +53,16 @@ int main(int argc, char** argv) {
   auto sound = module.output("sound", hc::sound(2).in(hc::Coord::kSound16k),
                              "sound at the left and right ear");
   Truth truth(module);
+  auto neck_pose = module.output(
+      "neck_pose",
+      hc::transformation().in(hc::transform_coord(hc::Coord::kRobot, hc::Coord::kHead)),
+      "T_robot_head as the images were taken: what a neck reports");
   const Parameters parameters{module};
 
   // The head's pose comes from the input `gaze`.
   hc::ModuleFrames frames{module, {.input = false}};
   std::unique_ptr<Scene> scene;
+  std::optional<Neck> neck;  // in the time of messages
   std::string last_parameter;
   module.on_start([&] {
     auto renderer = hc::value_or_end(hc::graphics::Renderer::make());
@@ -73,19 +83,23 @@ int main(int argc, char** argv) {
                           Eyes(parameters, head, drawing, left, right),
                           Ears(ear("left_ear"), ear("right_ear"), sound, start)});
     last_parameter = *parameters.text;
+    const auto delay = hc::duration(*parameters.neck_delay).count();
+    if (delay == 0 || *parameters.paced) return;
+    neck.emplace(delay, start);
+    module.generate({});  // `step` takes the images
   });
 
   auto write = [&](const std::string& what) {
     scene->world.write(what);
     truth.send_board(module.now(), what);
   };
-  module.on(gaze, [&](const auto& message) {
-    const auto q = hc::rotation_of(message);
-    if (!q) return module.log("gaze: " + q.error().detail);
-    if (message.header.time <= 0) return;
-    auto fed = frames.feed("robot", "head", message.header.time, Eigen::Isometry3d(*q));
+  auto write_parameter = [&] {
+    if (*parameters.text != last_parameter) write(last_parameter = *parameters.text);
+  };
+  auto turn = [&](std::int64_t time, const Eigen::Quaterniond& R_robot_head) {
+    auto fed = frames.feed("robot", "head", time, Eigen::Isometry3d(R_robot_head));
     if (!fed) module.log("gaze: " + fed.error().detail);
-  });
+  };
   module.on(text, [&](const auto& message) { write(std::string(message.text())); });
 
   auto look = [&](const Eigen::Vector3d& ball, const Eigen::Isometry3d& T_world_head) {
@@ -108,6 +122,8 @@ int main(int argc, char** argv) {
     const bool is_absent = *parameters.ball == "absent";
     look(is_absent ? kUnderground : ball.position, T_world_head);
     truth.send_poses(time, T_world_head, scene->head);
+    if (neck_pose.linked())
+      neck_pose.send(hc::numbers_of(frames.nearest("robot", "head", time)), time);
     truth.send_ball(time, ball, !is_absent, T_world_head * scene->head.left_eye, scene->camera);
     if (schedule.begins_second()) {
       truth.send_board(time, scene->world.text());
@@ -115,19 +131,53 @@ int main(int argc, char** argv) {
     }
     scene->ears.hear_until(time, T_world_head);
   };
+  auto is_done = [&] {
+    return *parameters.count > 0 && scene->schedule.number() >= *parameters.count;
+  };
   module.generate([&] {
     const bool is_paced = *parameters.paced;
     if (is_paced) module.keep_rate(kTick);
-    if (*parameters.text != last_parameter) write(last_parameter = *parameters.text);
+    write_parameter();
     const std::int64_t now = module.now();
-    scene->eyes.send_due(is_paced ? now : std::numeric_limits<std::int64_t>::max());
+    scene->eyes.send_due(is_paced ? now : kAll);
+    if (is_done()) return scene->eyes.empty() ? module.stop() : void();
     auto& schedule = scene->schedule;
-    if (*parameters.count > 0 && schedule.number() >= *parameters.count)
-      return scene->eyes.empty() ? module.stop() : void();
     if (is_paced) schedule.catch_up(now);
     if (is_paced && !schedule.is_due(now, frames.awaits("world", "head", schedule.time()))) return;
     take();
     schedule.next();
+  });
+
+  // In the time of messages: the image of a time says that this time has come, and is taken when
+  // all poses until then are known. So nothing depends on how fast the modules are.
+  hc::Timeout silence = module.after(kSilence, [&] {
+    if (neck)
+      throw hc::ModuleError(
+          hc::format("gaze: image {} has waited {} s for a pose: a module of the loop sent nothing "
+                     "for an image, or neck_delay is too short",
+                     scene->schedule.number(), kSilence.count()));
+  });
+  hc::Timeout step = module.after(kNow, [&] {
+    if (!neck) return;
+    auto& schedule = scene->schedule;
+    if (is_done()) return module.stop();
+    if (!neck->knows(schedule.time())) return;
+    write_parameter();
+    while (const auto pose = neck->next(schedule.time())) turn(pose->time, pose->R_robot_head);
+    take();
+    scene->eyes.send_due(kAll);
+    schedule.next();
+    silence.restart();
+    step.restart(kNow);
+  });
+  module.on(gaze, [&](const auto& message) {
+    const auto q = hc::rotation_of(message);
+    if (!q) return module.log("gaze: " + q.error().detail);
+    const auto time = message.header.time;
+    if (time <= 0) return;
+    if (!neck) return turn(time, *q);
+    neck->add(time, *q);
+    step.restart(kNow);
   });
   return module.run(argc, argv);
 }

@@ -27,6 +27,9 @@ class ModuleReader {
       fields_.integer(number, 0, kMaxAddress)(port);
       if (number.place.line != 0) module_.addresses[port.key] = number;
     };
+    auto clock = [&](const Node& value, std::size_t) {
+      module_.clock = {*value.as<std::string>(), value.place};
+    };
     auto links = [&](bool to_input) {
       return fields_.each([this, to_input](const Node& port) { read_links(port, to_input); });
     };
@@ -39,6 +42,7 @@ class ModuleReader {
                   {"addresses", fields_.each(address)},
                   {"encodings", fields_.each(encoding)},
                   {"to", fields_.each([&](const Node& value) { read_addressee(value); })},
+                  {"clock", fields_.choice({"machine", "messages"}, clock)},
                   {"restart", read_restart(fields_, module_.restart)},
                   {"hang", fields_.integer(module_.hang, 0, kMaxSeconds)},
                   {"mode", fields_.text(module_.mode)},

@@ -43,6 +43,14 @@ TEST(Modes, ModulesGetTheirModes) {
   EXPECT_EQ(planned.modules[2].exclusive, (std::set<std::string>{"command"}));
 }
 
+TEST(Modes, ModulesGetTheirClock) {
+  const auto planned = must(plan("[modules.task]\nclock = \"messages\"\n[modules.actor]\n"));
+  EXPECT_EQ(values_of(planned.modules[0], "--clock"), (Strings{"messages"}));
+  EXPECT_EQ(values_of(planned.modules[1], "--clock"), Strings());
+  EXPECT_EQ(wrong("[modules.task]\nclock = \"sun\"\n"),
+            "g.toml:3: \"clock\" must be \"machine\" or \"messages\"");
+}
+
 TEST(Modes, ModulesThatShowThemGetTheirNames) {
   auto planned =
       must(plan("[modules.titled]\n[modules.other]\nprogram = \"titled\"\nparameters.mode_names = "
@@ -112,6 +120,7 @@ TEST(Modes, ProgramsThatKnowNoControlAreNotAsked) {
   refused("mode = \"a\"", "mode");
   refused("modes = [\"a\"]", "modes");
   refused("exclusive = [\"in\"]", "exclusive");
+  refused("clock = \"messages\"", "clock");
 }
 
 TEST(Modes, AnActorHasOneWriterUnlessItIsExclusiveOrRouted) {
