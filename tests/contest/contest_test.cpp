@@ -192,14 +192,13 @@ class Contest {
       say(*person_, who, hc::table().message({salience}));
       rules_.bid_of_person(who, salience, now);
     } else if (what == 3) {  // of another time: it changes nothing
-      say(link, who,
-          hc::table()
-              .message({salience})
-              .at(clock_.wall() - pick(0, 1) * 7'200'000'000'000 + 3'600'000'000'000));
+      auto message = hc::table().message({salience});
+      message.header.time = clock_.wall() - pick(0, 1) * 7'200'000'000'000 + 3'600'000'000'000;
+      say(link, who, message);
     } else if (what == 4) {
       const auto word = static_cast<std::uint8_t>(
           std::array{0, 0, 0, 1, 2, 2, 3}.at(static_cast<std::size_t>(pick(0, 6))));
-      say(*stop_, who, hc::table().message({word}));
+      say(*stop_, who, hc::table<std::uint8_t>().message({word}));
       rules_.stop({who.source, word, 0, now}, now);
     } else {
       say(link, who, hc::table().message({salience}));
