@@ -156,8 +156,7 @@ BENCHMARK(doubles_read_reference)->Arg(0)->Arg(1);
 /// An SVGA image in memory: what decoding costs beside copying it.
 void image_decode(benchmark::State& state) {
   std::string bytes = hc::encode(
-      std::move(hc::Draft::make({hc::MatrixType::RgbImage, 3, hc::Scalar::U8, hc::Encoding::Binary},
-                                800, 600))
+      std::move(hc::Draft::make({hc::MatrixType::RgbImage, 3, hc::Scalar::U8, hc::Encoding::Binary}, 600, 800))
           .finish());
   hc::Message message;
   for (auto _ : state) {
@@ -190,8 +189,7 @@ BENCHMARK(hostile_header);
 
 /// The same of a zstd frame that holds more than the header promises.
 void hostile_zstd(benchmark::State& state) {
-  auto zeros = hc::Draft::make({hc::MatrixType::Map, 1, hc::Scalar::U8, hc::Encoding::Binary},
-                               100'000'000, 1);
+  auto zeros = hc::Draft::make({hc::MatrixType::Map, 1, hc::Scalar::U8, hc::Encoding::Binary}, 1, 100'000'000);
   std::memset(zeros.elements().data(), 0, zeros.elements().size());
   auto packed = *hc::compress(std::move(zeros).finish(), hc::Encoding::Zstd);
   packed.header.width = 1;

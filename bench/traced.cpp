@@ -36,9 +36,9 @@ double run(bool is_traced) {
   static int number = 0;
   const std::string name = "inproc:traced-" + std::to_string(++number) + "-";
   hc::Module module{"double", "Doubles."};
-  auto in = module.input("in", hc::table<double>(), "");
-  auto out = module.output("out", hc::table<double>(), "");
-  module.on(in, [&](const auto& message) { out.send(hc::table({2 * message.numbers()[0]})); });
+  auto in = module.input("in", hc::table(), "");
+  auto out = module.output("out", hc::table(), "");
+  module.on(in, [&](const auto& message) { out.send({2 * message.numbers()[0]}); });
   std::vector<std::string> words = {"double", "--in=" + name + "in", "--out=out=" + name + "out"};
   std::vector<std::thread> readers;
   readers.push_back(drain(name + "out"));
@@ -49,7 +49,7 @@ double run(bool is_traced) {
   auto sink = must(hc::open_sink(must(hc::parse_uri(name + "in"))));
   std::thread sender([&] {
     for (int i = 0; i < kMessages; ++i)
-      if (!sink->send(hc::table({1.0 * i}))) std::_Exit(1);
+      if (!sink->send(hc::table().message({1.0 * i}))) std::_Exit(1);
     static_cast<void>(sink->close());
   });
   std::vector<char*> arguments;

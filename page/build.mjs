@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bundles the page: node build.mjs OUT. OUT gets index.html, page.js, page.css and the chunks that
-// page.js loads later, and no other such files; and assets.cpp, behind modules/web/assets.h, which
-// takes them in, compressed. Fails where the first load is above the limit.
+// page.js loads later, and no other such files; and assets.cpp, the source for modules/web/assets.h,
+// with their compressed contents. Fails if the first load exceeds the limit.
 import {
   appendFileSync,
   copyFileSync,
@@ -47,7 +47,7 @@ const result = await build({
 appendFileSync(join(out, "page.js"), licences());
 copyFileSync(join(here, "index.html"), join(out, "index.html"));
 
-/** The licences of the packages that are in the bundles, as a comment. */
+/** The licences of the bundled packages, as a comment. */
 function licences() {
   const packages = new Set(
     Object.keys(result.metafile.inputs)
@@ -61,7 +61,7 @@ function licences() {
   return `/*\nThis page contains the following packages.\n\n${texts.join("\n\n")}\n*/\n`;
 }
 
-/** The files that are loaded at once: the page, and all that page.js imports statically. */
+/** The files loaded initially: the page, and the static imports of page.js. */
 function firstLoad() {
   const names = new Set(["index.html", "page.css"]);
   const outputs = Object.entries(result.metafile.outputs).map(([path, output]) => ({

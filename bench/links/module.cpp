@@ -25,14 +25,14 @@ int main(int argc, char** argv) {
   auto processor = module.parameter("processor", -1, "", "to run on; -1: any");
   auto ports = module.parameter("ports", 1, "", "that are linked, and used in turn");
   auto rate = module.parameter("rate", 0.0, "Hz", "of a timer that does nothing");
-  using Kind = decltype(hc::intensity_image<std::uint8_t>());
+  using Kind = decltype(hc::intensity_image());
   std::vector<hc::Input<Kind>> inputs;
   std::vector<hc::Output<Kind>> outputs;
   for (std::size_t i = 0; i < kPorts; ++i) {
     const auto number = std::to_string(i);
-    inputs.push_back(module.input("in" + number, hc::intensity_image<std::uint8_t>(), "messages"));
+    inputs.push_back(module.input("in" + number, hc::intensity_image(), "messages"));
     outputs.push_back(
-        module.output("out" + number, hc::intensity_image<std::uint8_t>(), "messages"));
+        module.output("out" + number, hc::intensity_image(), "messages"));
   }
   std::optional<hc::MessageOf<Kind>> own;
   std::optional<bench::Rounds> rounds;
@@ -53,10 +53,9 @@ int main(int argc, char** argv) {
     setup.seconds = *seconds;
     const auto width = static_cast<std::int32_t>(*bytes) - (setup.is_small() ? kHeaderBytes : 0);
     if (setup.is_small())
-      own = hc::intensity_image<std::uint8_t>(
-          width, 1, std::vector<std::uint8_t>(setup.bytes - kHeaderBytes));
+      own = hc::intensity_image().message(std::vector<std::uint8_t>(setup.bytes - kHeaderBytes));
     else
-      own = {outputs[0].loan(width, 1).finish()};
+      own = {outputs[0].loan(1, width).finish()};
     own->header.time = module.now();
     if (!*asks) return;
     rounds.emplace(setup);

@@ -26,7 +26,7 @@ def start():
 @module.on(image)
 def invert(message):
     with made.loan(message.height, message.width) as out:
-        numpy.invert(message.array, out)
+        numpy.invert(message.matrix, out)
 
 
 @module.on(number)

@@ -36,17 +36,17 @@ int main(int argc, char** argv) {
   auto bytes = module.parameter("bytes", 1440000, "byte", "of an image");
   auto count = module.parameter("count", 1000, "", "messages");
   auto rate = module.parameter("rate", 0.0, "Hz", "of messages; 0: as fast as they are taken");
-  auto image = module.input("image", hc::intensity_image<std::uint8_t>(), "an image");
-  auto number = module.input("number", hc::table<double>(), "numbers");
-  auto made = module.output("made", hc::intensity_image<std::uint8_t>(), "an image");
-  auto numbers = module.output("numbers", hc::table<double>(), "numbers");
+  auto image = module.input("image", hc::intensity_image(), "an image");
+  auto number = module.input("number", hc::table(), "numbers");
+  auto made = module.output("made", hc::intensity_image(), "an image");
+  auto numbers = module.output("numbers", hc::table(), "numbers");
   std::int64_t sent = 0;
   Meter meter;
 
   module.on(image, [&](const auto& message) {
     const auto pixels = message.numbers();
     if (*role == "middle") {
-      auto draft = made.loan(message.header.width, message.header.height);
+      auto draft = made.loan(message.header.height, message.header.width);
       std::transform(pixels.begin(), pixels.end(), draft.numbers().begin(),
                      [](std::uint8_t each) { return static_cast<std::uint8_t>(~each); });
       return made.send(std::move(draft));
@@ -71,15 +71,15 @@ int main(int argc, char** argv) {
       if (*rate > 0) module.keep_rate(*rate);
       ++sent;
       if (*role == "numbers") {
-        numbers.send(hc::table({1.0, 2.0, static_cast<double>(sent)}).at(module.now()));
+        numbers.send({1.0, 2.0, static_cast<double>(sent)}, module.now());
       } else {
-        auto draft = made.loan(static_cast<std::int32_t>(*bytes), 1);
+        auto draft = made.loan(1, static_cast<std::int32_t>(*bytes));
         // With a rate it is the way that is measured, by the time when it begins.
         std::ranges::fill(draft.numbers(), static_cast<std::uint8_t>(sent));
         draft.header.time = *rate > 0 ? module.now() : sent;
         made.send(std::move(draft));
       }
-      return sent < *count;
+      if (sent >= *count) module.stop();
     });
   return module.run(argc, argv);
 }

@@ -18,17 +18,17 @@ namespace {
 constexpr int kBuffers = 8;
 constexpr std::chrono::milliseconds kSilence{1000};
 constexpr std::chrono::milliseconds kForEver = std::chrono::hours(24 * 365 * 100);
-constexpr std::chrono::milliseconds kBeginning{2000};  // so much more until the first image
-// A camera's time that is further from ours is by another clock.
+constexpr std::chrono::milliseconds kBeginning{2000};  // additional time for the first image
+// A camera's time that differs more is of another clock.
 constexpr std::int64_t kMostAge = 10'000'000'000;  // [ns]
 
-/// Looking for cameras works on lists that all have in common.
+/// Guards Aravis' global lists of cameras.
 std::mutex& search_mutex() {
   static std::mutex mutex;
   return mutex;
 }
 
-/// Takes an error of GLib's, and gives it free.
+/// Owns a GError.
 class Failure {
  public:
   Failure() = default;
@@ -43,7 +43,6 @@ class Failure {
   [[nodiscard]] Error error(Code code = Code::System) const {
     return {code, error_ != nullptr ? error_->message : "unknown error of Aravis"};
   }
-  /// What was done, or asked for, unless it has failed.
   [[nodiscard]] Status status() const { return error_ != nullptr ? Status(error()) : Status(); }
   template <typename T>
   [[nodiscard]] Result<T> or_error(const T& value) const {
@@ -58,7 +57,7 @@ std::int64_t wall_clock() {
   return g_get_real_time() * 1000;
 }
 
-/// Has the camera give pixels that we can read.
+/// Sets the requested pixel format, or one that to_bgr() supports.
 Status choose_format(ArvCamera* camera, const std::string& wanted) {
   Failure failure;
   if (!wanted.empty()) {
@@ -70,13 +69,13 @@ Status choose_format(ArvCamera* camera, const std::string& wanted) {
   if (is_known(now)) return {};
   if (!wanted.empty())
     return Error{Code::Unsupported,
-                 "pixel format " + wanted + " is none of Mono8, RGB8, BGR8 and 8-bit Bayer"};
+                 "pixel format " + wanted + " is not one of Mono8, RGB8, BGR8, 8-bit Bayer"};
   guint count = 0;
   gint64* all = arv_camera_dup_available_pixel_formats(camera, &count, failure.out());
   if (failure) return failure.error();
   const std::vector<gint64> formats(all, all + count);
   g_free(all);
-  // Colours rather than grey, and fewer bytes rather than more.
+  // Prefers colour to grey, then fewer bytes.
   for (auto like :
        {PixelFormat::BayerRG8, PixelFormat::BayerBG8, PixelFormat::BayerGR8, PixelFormat::BayerGB8,
         PixelFormat::Rgb8, PixelFormat::Bgr8, PixelFormat::Mono8})
@@ -85,10 +84,10 @@ Status choose_format(ArvCamera* camera, const std::string& wanted) {
       arv_camera_set_pixel_format(camera, static_cast<ArvPixelFormat>(format), failure.out());
       if (!failure) return {};
     }
-  return Error{Code::Unsupported, "has none of Mono8, RGB8, BGR8 and 8-bit Bayer"};
+  return Error{Code::Unsupported, "supports none of Mono8, RGB8, BGR8, 8-bit Bayer"};
 }
 
-/// A flag of its own life: Aravis may be about to set it when its camera is let go.
+/// The flag is shared, since Aravis may set it while its camera is being released.
 using Flag = std::shared_ptr<std::atomic<bool>>;
 
 void note_loss(ArvDevice*, Flag* is_lost) {
@@ -99,9 +98,9 @@ void forget_flag(gpointer flag, GClosure*) {
   delete static_cast<Flag*>(flag);
 }
 
-/// Asks for a rate; how long the camera may be silent, for ever when it waits for a trigger.
+/// Sets the frame rate. Returns how long the camera may be silent; unlimited if triggered.
 std::chrono::milliseconds choose_rate(ArvCamera* camera, double rate) {
-  Failure ignored;  // many have no such thing
+  Failure ignored;  // many cameras lack these features
   const char* trigger = arv_camera_is_feature_available(camera, "TriggerMode", ignored.out())
                             ? arv_camera_get_string(camera, "TriggerMode", ignored.out())
                             : nullptr;
@@ -121,10 +120,10 @@ struct Camera::Handles {
   ArvCamera* camera = nullptr;
   ArvStream* stream = nullptr;
   Flag is_lost = std::make_shared<std::atomic<bool>>(false);  // set on Aravis' thread
-  gulong handler = 0;                                         // of what sets it
-  std::chrono::milliseconds timeout = kSilence;               // beside that for the exposure
+  gulong handler = 0;                                         // signal handler that sets it
+  std::chrono::milliseconds timeout = kSilence;               // in addition to the exposure
   std::chrono::steady_clock::time_point heard = std::chrono::steady_clock::now();
-  double exposure = 0;  // as we have set it [s]
+  double exposure = 0;  // last set [s]
 
   Handles() = default;
   Handles(const Handles&) = delete;
@@ -134,7 +133,7 @@ struct Camera::Handles {
     if (camera != nullptr) {
       if (handler != 0) g_signal_handler_disconnect(arv_camera_get_device(camera), handler);
       if (!*is_lost && stream != nullptr) {
-        Failure ignored;  // it may be disconnected
+        Failure ignored;  // the camera may be disconnected
         arv_camera_stop_acquisition(camera, ignored.out());
       }
     }

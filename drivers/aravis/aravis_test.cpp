@@ -8,7 +8,7 @@
 namespace hc::aravis {
 namespace {
 
-/// The next image, however slow the machine is; the test's watchdog ends a wait without end.
+/// Waits for the next image; the test's watchdog limits the wait.
 Result<Image> wait_for_image(Camera& camera) {
   while (true) {
     auto image = camera.next(std::chrono::milliseconds(500));
@@ -57,7 +57,7 @@ TEST(Aravis, chooses_the_gain_itself_until_it_is_set_and_when_it_is_to_again) {
     ASSERT_TRUE(camera->set_gain(3));
     EXPECT_FALSE(camera->chooses_gain().value_or(true));
   }
-  // Of the exposure this one has no choice, and that is no error.
+  // This camera has a fixed exposure, which is not an error.
   EXPECT_FALSE(camera->chooses_exposure());
   EXPECT_TRUE(camera->choose_exposure());
 }

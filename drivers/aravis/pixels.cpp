@@ -10,15 +10,15 @@ namespace hc::aravis {
 namespace {
 
 struct Conversion {
-  int type;  // of the matrix that the pixels are
-  int code;  // of cvtColor, -1: none
+  int type;  // of the raw matrix
+  int code;  // for cvtColor, -1: none
 };
 
 std::optional<Conversion> conversion_of(std::uint32_t format) {
   switch (static_cast<PixelFormat>(format)) {
     case PixelFormat::Mono8:
       return Conversion{CV_8UC1, cv::COLOR_GRAY2BGR};
-    // OpenCV calls a pattern by its second row, from the second pixel on.
+    // OpenCV names a pattern by its second row, from the second pixel.
     case PixelFormat::BayerRG8:
       return Conversion{CV_8UC1, cv::COLOR_BayerBG2BGR};
     case PixelFormat::BayerBG8:
@@ -46,8 +46,8 @@ Result<cv::Mat> to_bgr(std::uint32_t format, int width, int height,
   const auto conversion = conversion_of(format);
   if (!conversion)
     return Error{Code::Unsupported, "pixel format " + std::to_string(format) +
-                                        " is none of Mono8, RGB8, BGR8 and 8-bit Bayer"};
-  // Bayer's colours take two rows and columns.
+                                        " is not one of Mono8, RGB8, BGR8, 8-bit Bayer"};
+  // Bayer interpolation needs two rows and columns.
   if (width < 2 || height < 2 || padding < 0)
     return Error{Code::Malformed,
                  "an image of " + std::to_string(width) + " x " + std::to_string(height)};
@@ -57,7 +57,7 @@ Result<cv::Mat> to_bgr(std::uint32_t format, int width, int height,
   const std::size_t needed = step * static_cast<std::size_t>(height - 1) + row;
   if (pixels.size() < needed)
     return Error{Code::Malformed, std::to_string(pixels.size()) + " bytes, " +
-                                      std::to_string(needed) + " make an image"};
+                                      std::to_string(needed) + " needed for an image"};
   const cv::Mat raw(height, width, conversion->type, const_cast<std::byte*>(pixels.data()), step);
   if (conversion->code < 0) return raw.clone();
   cv::Mat bgr;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The pixels of GenICam cameras as images. Pure.
+// Converts the pixels of GenICam cameras to images. Pure.
 
 #include <cstdint>
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace hc::aravis {
 
-/// Formats as the Pixel Format Naming Convention of the EMVA numbers them.
+/// Numbers of the EMVA's Pixel Format Naming Convention.
 enum class PixelFormat : std::uint32_t {
   Mono8 = 0x01080001,
   BayerGR8 = 0x01080008,
@@ -21,14 +21,14 @@ enum class PixelFormat : std::uint32_t {
   Bgr8 = 0x02180015,
 };
 
-/// Whether to_bgr() takes a format.
+/// Whether to_bgr() supports a format.
 bool is_known(std::uint32_t format);
 
-/// An image of a camera's pixels, in memory of its own.
+/// Converts pixels to an image with separate memory.
 ///
-/// @param pixels  more than an image is ignored.
+/// @param pixels  bytes beyond the image are ignored.
 /// @param padding  after each row [byte].
-/// @returns  (height, width, 3) u8: blue, green, red. Bayer's colours are interpolated.
+/// @returns  (height, width, 3) u8: blue, green, red; Bayer patterns are interpolated.
 ///
 /// Errors: Unsupported (the format), Malformed (too few bytes for the size).
 Result<cv::Mat> to_bgr(std::uint32_t format, int width, int height,

@@ -18,7 +18,7 @@ std::uint32_t number(PixelFormat format) {
   return static_cast<std::uint32_t>(format);
 }
 
-/// An image of one colour as a sensor with a pattern such as "RGGB" sees it.
+/// The raw image of a uniform colour from a sensor with a pattern such as "RGGB".
 std::vector<std::uint8_t> mosaic(const char* pattern, int red, int green, int blue) {
   std::vector<std::uint8_t> values;
   for (int y = 0; y < kHeight; ++y)

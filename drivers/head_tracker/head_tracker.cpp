@@ -20,7 +20,7 @@ Error failed(const std::string& what) {
   return {Code::System, what + ": " + std::strerror(errno)};
 }
 
-/// When the kernel got a packet; now, where it does not say.
+/// The kernel's time of arrival of a packet, else the current time.
 std::int64_t arrival(msghdr& message) {
   timespec time{};
   ::clock_gettime(CLOCK_REALTIME, &time);
@@ -56,7 +56,7 @@ Result<HeadTracker> HeadTracker::open(const std::string& host, int port, Senders
   if (!owned) return failed(where);
   const int socket = owned.get();
   HeadTracker tracker(std::move(owned), port, std::move(senders));
-  // Without SO_REUSEADDR, which would let a second program take the packets of the first.
+  // No SO_REUSEADDR, which would let a second program steal the packets.
   if (::bind(socket, found->ai_addr, found->ai_addrlen) != 0) return failed(where);
   const int on = 1;
   if (::setsockopt(socket, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on) != 0) return failed(where);
@@ -80,7 +80,7 @@ Result<std::optional<TimedHeadPose>> HeadTracker::receive(MonotonicTime now,
     message.msg_iovlen = 1;
     message.msg_control = control.data();
     message.msg_controllen = control.size();
-    const ssize_t size = ::recvmsg(socket_.get(), &message, MSG_TRUNC);  // gives the whole size
+    const ssize_t size = ::recvmsg(socket_.get(), &message, MSG_TRUNC);  // returns the full size
     if (size < 0) {
       if (errno == EAGAIN || errno == EWOULDBLOCK) break;
       if (errno == EINTR || errno == ECONNREFUSED) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A head tracker that sends opentrack's UDP packets to a port.
+// Receives the UDP packets of a head tracker, as sent by opentrack.
 
 #include <cstdint>
 #include <functional>
@@ -18,13 +18,13 @@
 
 namespace hc {
 
-/// A pose, and when its packet came.
+/// A pose and the arrival of its packet.
 struct TimedHeadPose {
   HeadPose pose;
-  std::int64_t time = 0;  ///< of the packet's arrival [ns since the Unix epoch]
+  std::int64_t time = 0;  ///< [ns since the Unix epoch]
 };
 
-/// Gets what may happen often, to log the first of a kind and count the others.
+/// Called with problems that may be frequent; logs the first of a kind and counts the others.
 using Problem = std::function<void(const std::string& kind, std::string_view line)>;
 
 /// Receives packets. For one thread.
@@ -36,10 +36,9 @@ class HeadTracker {
   /// Errors: Invalid (no address), System (the port is in use, …).
   static Result<HeadTracker> open(const std::string& host, int port, Senders senders);
 
-  /// The newest pose that has come; older ones are of no use for following a head. Nothing when no
-  /// valid packet has come. Never waits.
+  /// Takes the newest pose and discards older ones; nothing without a valid packet. Never blocks.
   ///
-  /// @param problem  gets a line for each packet that is ignored.
+  /// @param problem  called for each ignored packet.
   ///
   /// Errors: System.
   Result<std::optional<TimedHeadPose>> receive(MonotonicTime now, const Problem& problem);

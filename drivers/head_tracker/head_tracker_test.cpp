@@ -43,7 +43,7 @@ class Sender {
   int socket_;
 };
 
-/// Counts what is ignored.
+/// Counts ignored packets.
 struct Ignored {
   int count = 0;
   std::string last;
@@ -53,7 +53,7 @@ struct Ignored {
   };
 };
 
-/// No other hosts are heard.
+/// Accepts packets only from this host.
 hc::Senders nobody() {
   return {{}, std::chrono::seconds(1)};
 }
@@ -117,7 +117,7 @@ TEST(HeadTracker, a_port_in_use_is_an_error) {
 
 TEST(HeadTracker, a_wrong_host_is_an_error) {
   EXPECT_EQ(hc::refused(HeadTracker::open("999.0.0.1.", 0, nobody())).code, hc::Code::Invalid);
-  // An address that this machine has not.
+  // An address of another machine.
   EXPECT_EQ(hc::refused(HeadTracker::open("192.0.2.1", 0, nobody())).code, hc::Code::System);
 }
 

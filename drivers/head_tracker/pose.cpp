@@ -14,10 +14,9 @@
 namespace hc {
 namespace {
 
-// A room, and a turn each way; one of opentrack's axes that is upside down has 360°.
+// The size of a room, and a full turn each way; an inverted axis of opentrack can give 360°.
 constexpr double kMostCentimetres = 2000, kMostDegrees = 360;
-// Smaller than any rounding error of a measured number, but what doubles in the other order of
-// bytes look like: 10 is 4.6e-320 then.
+// Below any measurement noise, but above big-endian doubles: 10 reads as 4.6e-320.
 constexpr double kLeast = 1e-30;
 constexpr const char* kNames[] = {"x", "y", "z", "yaw", "pitch", "roll"};
 
@@ -53,10 +52,10 @@ Result<HeadPose> read_head_packet(std::span<const std::byte> packet) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     numbers[i] = little_endian(packet.subspan(8 * i, 8));
     const double size = std::abs(numbers[i]);
-    // Written so that not-a-number fails too.
+    // Written so that NaN fails, too.
     if (!(size <= (i < 3 ? kMostCentimetres : kMostDegrees)) || (size > 0 && size < kLeast))
       return Error{Code::Malformed, hc::format("a packet whose {} is {}{}", kNames[i], numbers[i],
-                                               size < kLeast ? ", as by big-endian numbers" : "")};
+                                               size < kLeast ? ", probably big-endian" : "")};
   }
   const auto [x, y, z, yaw, pitch, roll] = numbers;
   constexpr double kRadians = std::numbers::pi / 180, kMetres = 0.01;

@@ -16,7 +16,7 @@ using hc::HeadPose;
 using hc::read_head_packet;
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kClose = 1e-12;  // some roundings of numbers around 1
+constexpr double kClose = 1e-12;  // a few rounding errors of numbers around 1
 
 std::array<std::byte, 48> packet(const std::array<double, 6>& numbers) {
   std::array<std::byte, 48> bytes{};
@@ -32,7 +32,7 @@ HeadPose pose(double x, double y, double z, double yaw, double pitch, double rol
 }
 
 TEST(HeadPacket, known_bytes) {
-  // 1.0 is 0x3FF0000000000000: the lowest byte comes first.
+  // 1.0 is 0x3FF0000000000000, little-endian.
   std::array<std::byte, 48> bytes{};
   bytes[6] = std::byte(0xF0);
   bytes[7] = std::byte(0x3F);
@@ -66,7 +66,7 @@ TEST(HeadPacket, refuses_what_is_no_pose) {
   const double wrong[] = {std::numeric_limits<double>::quiet_NaN(),
                           std::numeric_limits<double>::infinity(),
                           -std::numeric_limits<double>::infinity(), 1e300, -1e6,
-                          // In the other order of bytes: 10, 0.5 and 0.1f.
+                          // In big-endian order: 10, 0.5 and 0.1f.
                           4.6e-320, 1.12e-319, 2.5e-305, -1e-31, 2001};
   for (double number : wrong)
     for (std::size_t at = 0; at < 6; ++at) {
@@ -89,7 +89,7 @@ TEST(HeadPose, relative_to_where_it_was_zeroed) {
   const HeadPose zero = pose(10, 20, 30, -90, 0, 0);  // looks to the left
   EXPECT_LT(zero.relative_to(zero).angles().norm(), kClose);
   EXPECT_LT(zero.relative_to(zero).p.norm(), kClose);
-  // 0.1 m farther to the tracker's left is forward for who looked there.
+  // The head looked to the tracker's left, so 0.1 m in that direction is forward.
   const HeadPose moved = pose(0, 20, 30, -120, 0, 0).relative_to(zero);
   EXPECT_LT((moved.p - Eigen::Vector3d(0.1, 0, 0)).norm(), kClose);
   EXPECT_LT((moved.angles() - Eigen::Vector3d(0, 0, 30 * kDegree)).norm(), kClose);
@@ -118,7 +118,7 @@ TEST(HeadPacket, what_is_written_is_read_as_the_same) {
 }
 
 TEST(HeadPacket, is_written_as_opentrack_does) {
-  // One metre up is 100 cm of y, its second number: 0x4059000000000000.
+  // One metre up is y = 100 cm, the second number: 0x4059000000000000.
   const auto packet = hc::write_head_packet({Eigen::Matrix3d::Identity(), {0, 0, 1}});
   EXPECT_EQ(packet[15], std::byte(0x40));
   EXPECT_EQ(packet[14], std::byte(0x59));

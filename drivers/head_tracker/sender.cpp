@@ -29,7 +29,7 @@ Result<HeadPoseSender> HeadPoseSender::open(const std::string& address) {
   to.sin_family = AF_INET;
   to.sin_port = htons(place.port);
   if (place.port == 0 || ::inet_pton(AF_INET, place.host.c_str(), &to.sin_addr) != 1)
-    return Error{Code::Invalid, "\"" + address + "\" is no address and port of IPv4"};
+    return Error{Code::Invalid, "\"" + address + "\" is not an IPv4 address and port"};
   if (::connect(sender.socket_.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0)
     return not_sent("UDP " + address);
   return sender;
@@ -38,7 +38,7 @@ Result<HeadPoseSender> HeadPoseSender::open(const std::string& address) {
 Result<void> HeadPoseSender::send(const HeadPose& pose) {
   const auto packet = write_head_packet(pose);
   if (::send(socket_.get(), packet.data(), packet.size(), 0) >= 0) return {};
-  // ECONNREFUSED is of an earlier packet that nobody received.
+  // ECONNREFUSED reports that an earlier packet had no receiver.
   if (errno == ECONNREFUSED || errno == EAGAIN || errno == EINTR) return {};
   return not_sent("send");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Sends poses of a head as opentrack does, to whoever listens at an address.
+// Sends poses of a head as opentrack packets to an address.
 
 #include <string>
 #include <utility>
@@ -14,14 +14,12 @@ namespace hc {
 /// For one thread.
 class HeadPoseSender {
  public:
-  /// @param address  "127.0.0.1:4242", of IPv4.
+  /// @param address  IPv4, "127.0.0.1:4242".
   ///
-  /// Errors: Invalid (no address, or no port), System.
+  /// Errors: Invalid (not an address and port), System.
   static Result<HeadPoseSender> open(const std::string& address);
 
-  /// Sends a packet. A packet that nobody receives is lost, as on any network.
-  ///
-  /// Errors: System.
+  /// Sends a packet; lost without a receiver. Errors: System.
   Result<void> send(const HeadPose& pose);
 
  private:

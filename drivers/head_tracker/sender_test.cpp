@@ -38,7 +38,7 @@ TEST(HeadPoseSender, an_address_that_is_none_is_an_error) {
 }
 
 TEST(HeadPoseSender, continues_when_nobody_hears_it) {
-  auto sender = sender_to(listening().port());  // which is closed at once
+  auto sender = sender_to(listening().port());  // closed at once
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(sender.send({}));
 }
 

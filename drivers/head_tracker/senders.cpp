@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMostChecks = 8;  // so that many senders do not starve the module
 
-/// An IPv4 address that came to a socket of IPv6, as itself.
+/// Converts an IPv4-mapped IPv6 address to IPv4.
 sockaddr_storage plain(const sockaddr_storage& from) {
   const auto& six = reinterpret_cast<const sockaddr_in6&>(from);
   if (from.ss_family != AF_INET6 || !IN6_IS_ADDR_V4MAPPED(&six.sin6_addr)) return from;
@@ -41,7 +41,7 @@ std::string host_of(const sockaddr_storage& from) {
 Status Senders::admit(const sockaddr_storage& sender, MonotonicTime now) {
   const sockaddr_storage from = plain(sender);
   const std::string host = host_of(from);
-  // The port is at the same place in both families.
+  // The port has the same offset in both families.
   const std::string address =
       host + " port " + std::to_string(ntohs(reinterpret_cast<const sockaddr_in&>(from).sin_port));
   if (const auto* holder = turn_.holder(now); holder != nullptr && *holder != address)
@@ -67,7 +67,7 @@ Status Senders::check(const sockaddr_storage& from, const std::string& host,
   else if (*user)
     status = check_own(**user, address + ", ");
   else if (std::find(hosts_.begin(), hosts_.end(), host) == hosts_.end())
-    status = Error{Code::Closed, address + ": another host, which `sender` does not name"};
+    status = Error{Code::Closed, address + ": another host, not listed in `sender`"};
   known_.push_back({address, status});
   return status;
 }

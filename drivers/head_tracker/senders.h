@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Who is heard of all that send packets to a tracker's port: UDP has no connections and no
-// password.
+// Access control for a tracker's UDP port, since UDP has neither connections nor passwords.
 
 #include <sys/socket.h>
 #include <sys/types.h>
@@ -20,26 +19,25 @@
 
 namespace hc {
 
-/// Hears processes of this user and of root on this host, and the hosts that are named; one sender
-/// at a time, until it is silent. For one thread.
+/// Accepts processes of this user and of root on this host, and listed hosts; one sender at a time,
+/// until it is silent. For one thread.
 class Senders {
  public:
-  /// Gives the user of an address, nothing for one of another host.
+  /// Returns the user of a local address, nothing for another host.
   using UserOf = std::function<Result<std::optional<uid_t>>(const sockaddr_storage& from)>;
 
-  /// @param hosts  addresses of other hosts that are heard, "192.168.1.7".
-  /// @param silence  a sender that is silent for longer makes room for another.
+  /// @param hosts  addresses of other accepted hosts, "192.168.1.7".
+  /// @param silence  after which another sender is accepted.
   Senders(std::vector<std::string> hosts, std::chrono::nanoseconds silence,
           UserOf user_of = udp_sender_user)
       : hosts_(std::move(hosts)), user_of_(std::move(user_of)), turn_(silence) {}
 
-  /// Begins to handle the packets that have come, which ends what is known of users: another
-  /// process may have an address by now.
+  /// Starts a batch of packets: looks up users again, since addresses may have changed hands.
   void begin() { known_.clear(); }
-  /// Whether the packet that came from this address is heard.
+  /// Whether to accept a packet from this address.
   ///
-  /// Errors: Closed (another user, a host that is not named, another sender has the turn).
-  /// Cost: of each address since begin() a look at the host's sockets, for at most eight of them.
+  /// Errors: Closed (another user, a host not listed, another sender is active).
+  /// Cost: one look-up in the host's sockets per address since begin(), at most eight.
   Status admit(const sockaddr_storage& from, MonotonicTime now);
 
  private:

@@ -35,13 +35,13 @@ sockaddr_storage address(const std::string& host, std::uint16_t port) {
 
 class SendersTest : public ::testing::Test {
  protected:
-  /// Whether a packet from there is heard; else why not.
+  /// "heard" if a packet from there is accepted, otherwise the reason.
   std::string admit(const std::string& host, std::uint16_t port) {
     const auto status = senders.admit(address(host, port), now);
     return status ? "heard" : status.error().detail;
   }
 
-  /// By port, those of this host; -1: nobody's.
+  /// User by port on this host; -1: none.
   std::map<int, std::optional<uid_t>> users{
       {1, ::geteuid()}, {2, kOther}, {3, ::geteuid()}, {4, 0}, {5, {}}};
   int looks = 0;
@@ -70,7 +70,7 @@ TEST_F(SendersTest, root_is_heard) {
 }
 
 TEST_F(SendersTest, of_other_hosts_those_that_are_named) {
-  EXPECT_EQ(admit("192.0.2.8", 5), "192.0.2.8 port 5: another host, which `sender` does not name");
+  EXPECT_EQ(admit("192.0.2.8", 5), "192.0.2.8 port 5: another host, not listed in `sender`");
   EXPECT_EQ(admit("::ffff:192.0.2.7", 5), "heard");
   now += milliseconds(1001);
   EXPECT_EQ(admit("2001:db8::7", 5), "heard");
@@ -90,7 +90,7 @@ TEST_F(SendersTest, one_is_heard_until_it_is_silent) {
 TEST_F(SendersTest, an_address_that_another_user_took_over_is_not_heard_any_more) {
   EXPECT_EQ(admit("127.0.0.1", 1), "heard");
   users[1] = kOther;
-  EXPECT_EQ(admit("127.0.0.1", 1), "heard");  // of those that came together
+  EXPECT_EQ(admit("127.0.0.1", 1), "heard");  // of the same batch
   senders.begin();
   EXPECT_NE(admit("127.0.0.1", 1), "heard");
   EXPECT_EQ(admit("127.0.0.1", 3), "heard");  // whose turn it is now

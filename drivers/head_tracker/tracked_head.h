@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A person's head by a tracker: listens once the port is free, gives poses since a zero, and logs a
-// line for each change. Never waits.
+// Tracks a person's head: listens as soon as the port is free, returns poses relative to a zero,
+// and logs each change. Never blocks.
 
 #include <chrono>
 #include <cstdint>
@@ -19,10 +19,10 @@
 namespace hc {
 
 struct TrackedHeadOptions {
-  std::string host;  ///< and port: as of HeadTracker::open(); no host: it does not listen
+  std::string host;  ///< host, port: as in HeadTracker::open(); "": does not listen
   int port = 0;
-  std::vector<std::string> senders;  ///< other hosts that are heard, as of Senders
-  /// Without a pose for so long it is logged, and another sender may be heard.
+  std::vector<std::string> senders;  ///< other accepted hosts, as in Senders
+  /// Time without a pose until that is logged and another sender is accepted.
   std::chrono::nanoseconds silence = std::chrono::seconds(1);
   bool centre_first = true;  ///< the first pose is the zero; else the tracker's
 };
@@ -30,20 +30,20 @@ struct TrackedHeadOptions {
 /// For one thread.
 class TrackedHead {
  public:
-  static constexpr std::chrono::milliseconds kLook{20};  ///< how often pass() is to be called
+  static constexpr std::chrono::milliseconds kLook{20};  ///< period of pass()
 
   TrackedHead(TrackedHeadOptions options, LogSink log, Problem problem)
       : options_(std::move(options)), log_(std::move(log)), problem_(std::move(problem)) {}
 
-  /// Opens the port, retrying while it is in use, and logs when no pose has come for a while.
+  /// Opens the port, retrying while it is in use, and logs a silence.
   ///
-  /// Errors: Invalid (the host is no address).
+  /// Errors: Invalid (the host is not an address).
   Status pass(MonotonicTime now);
   /// For poll(); -1 while it does not listen.
   [[nodiscard]] int descriptor() const { return tracker_ ? tracker_->descriptor() : -1; }
-  /// Where it listens, "127.0.0.1:4242"; empty while it does not.
+  /// The listening address, "127.0.0.1:4242"; empty while it does not listen.
   [[nodiscard]] const std::string& address() const { return address_; }
-  /// The newest pose that has come, since the zero; nothing where none has.
+  /// Takes the newest pose, relative to the zero; nothing if none has arrived.
   ///
   /// Errors: System.
   Result<std::optional<TimedHeadPose>> receive(MonotonicTime now);
@@ -59,7 +59,7 @@ class TrackedHead {
   std::optional<HeadTracker> tracker_;
   Backoff backoff_;
   std::string address_;
-  // When the last pose came, or listening began; nothing: silence was logged.
+  // Time of the last pose or of the start of listening; nothing once a silence is logged.
   std::optional<MonotonicTime> active_;
   bool receives_ = false, is_first_ = true, centres_next_ = false;
   HeadPose zero_;

@@ -26,7 +26,7 @@ class TrackedHeadTest : public ::testing::Test {
               problems.push_back(kind + ": " + std::string(line));
             }};
   }
-  /// A tracker that listens, and a sender of packets to it.
+  /// A listening tracker and a sender.
   hc::TrackedHead connected(bool centre_first = true) {
     auto made = head(0, centre_first);
     EXPECT_TRUE(made.pass(now));
@@ -38,7 +38,7 @@ class TrackedHeadTest : public ::testing::Test {
     log.clear();
     return made;
   }
-  /// The position that comes of a pose which is sent.
+  /// Sends a pose and returns the resulting position.
   Eigen::Vector3d feed(hc::TrackedHead& head, double x) {
     EXPECT_TRUE(sender->send({.p = {x, 0, 0}}));
     const auto pose = hc::must(head.receive(now));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What has changed about a joystick since it was last looked at, and so is worth a message. Pure.
+// Detects changes of a joystick's state that are worth a message. Pure.
 
 #include <string>
 #include <utility>
@@ -12,15 +12,15 @@
 namespace hc {
 
 struct JoystickChanges {
-  std::string line;  ///< for the log, which one was connected or disconnected; empty: neither
+  std::string line;  ///< to log: which joystick was connected or disconnected; empty: neither
   Level level = Level::Info;  ///< of the line
   bool stick = false, axes = false, buttons = false;
 };
 
 class JoystickWatch {
  public:
-  /// What is new in a state; each change is given once.
-  /// @param dead_zone  as of stick_of().
+  /// The changes since the last state.
+  /// @param dead_zone  as in stick_of().
   JoystickChanges take(const JoystickState& state, double dead_zone) {
     const JoystickState last = std::exchange(state_, state);
     const Stick last_stick = std::exchange(stick_, stick_of(state.axes, dead_zone));
@@ -35,7 +35,7 @@ class JoystickWatch {
     changes.buttons = state.buttons != last.buttons;
     return changes;
   }
-  /// The stick as of the last state.
+  /// The stick in the last state.
   [[nodiscard]] const Stick& stick() const { return stick_; }
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The device file of a joystick, which one process alone has: a stick moves one robot.
+// The device file of a joystick, locked by one process, since a stick moves one robot.
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -13,11 +13,11 @@
 namespace hc {
 
 struct DeviceFile {
-  Descriptor file;        ///< none (-1) where it cannot be opened
-  bool is_taken = false;  ///< another process has it
+  Descriptor file;        ///< -1 if it cannot be opened
+  bool is_taken = false;  ///< locked by another process
 
-  /// Opens a device file, "/dev/input/event5", for reading without waiting, and locks it (flock)
-  /// until it is closed or the process has ended.
+  /// Opens a device file, "/dev/input/event5", for non-blocking reading, and locks it (flock) until
+  /// it is closed or the process ends.
   static DeviceFile open(const std::string& path) {
     DeviceFile made;
     made.file = Descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));

@@ -33,7 +33,7 @@ bool put(std::vector<T>& all, int at, T value) {
 
 }  // namespace
 
-/// The open joystick: SDL's, and its device file to be woken by.
+/// The open joystick: SDL's handle, and its device file for poll().
 struct Joystick::Device {
   SDL_GameController* controller = nullptr;  // null for a joystick without a mapping
   SDL_Joystick* joystick = nullptr;
@@ -46,7 +46,7 @@ struct Joystick::Device {
     else if (joystick != nullptr)
       SDL_JoystickClose(joystick);
   }
-  /// Every descriptor of a device file gets all events, so SDL misses none that are read here.
+  /// Each descriptor of a device file gets all events, so reading here does not take SDL's.
   void open_file() {
     const char* path = SDL_JoystickPath(joystick);
     if (path != nullptr && std::string_view(path).starts_with("/dev/"))
@@ -63,7 +63,7 @@ struct Joystick::Device {
 Joystick::Joystick() = default;
 
 Result<std::unique_ptr<Joystick>> Joystick::open() {
-  SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");  // there is no window
+  SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");  // we have no window
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
   if (SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) != 0)
     return Error{Code::System, std::string("SDL: ") + SDL_GetError()};
@@ -87,7 +87,7 @@ int Joystick::descriptor() const {
 }
 
 bool Joystick::update() {
-  // No event says that another process has let go of one.
+  // There is no event when another process releases a joystick.
   if (device_ == nullptr && !taken_.empty() && SDL_TICKS_PASSED(SDL_GetTicks(), look_again_) &&
       attach_any())
     return true;
@@ -106,7 +106,7 @@ bool Joystick::update() {
       case SDL_JOYDEVICEREMOVED:
         if (device_ == nullptr || device_->id != event.jdevice.which) break;
         detach();
-        attach_any();  // a second one may be there
+        attach_any();  // there may be a second one
         return true;
       case SDL_CONTROLLERAXISMOTION:
         if (is_ours(event.caxis.which, true))
@@ -135,8 +135,7 @@ bool Joystick::update() {
   return changed;
 }
 
-/// Takes the first joystick that can be opened and that no other process has, game controllers
-/// before others.
+/// Opens the first free joystick, game controllers before others.
 bool Joystick::attach_any() {
   taken_.clear();
   look_again_ = SDL_GetTicks() + kTakenTime;

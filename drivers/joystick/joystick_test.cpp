@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// With SDL's virtual joysticks, which are in the process alone.
+// Uses SDL's virtual joysticks, which exist only in this process.
 #include <drivers/joystick/joystick.h>
 
 #include <SDL2/SDL.h>
@@ -24,14 +24,14 @@ class JoystickTest : public testing::Test {
     while (SDL_NumJoysticks() > 0 && SDL_JoystickIsVirtual(0) == SDL_TRUE)
       SDL_JoystickDetachVirtual(0);
   }
-  /// Whether there is a change within the watchdog's time.
+  /// Waits for a change, limited by the watchdog.
   [[nodiscard]] bool changes() const {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (!joystick->update())
       if (std::chrono::steady_clock::now() > end) return false;
     return true;
   }
-  /// Plugs a controller in, and gives SDL's other end of it.
+  /// Plugs in a virtual controller and returns its SDL handle.
   SDL_Joystick* plug_in(SDL_JoystickType type = SDL_JOYSTICK_TYPE_GAMECONTROLLER) {
     const int index = SDL_JoystickAttachVirtual(type, 6, 15, 0);
     EXPECT_GE(index, 0) << SDL_GetError();
@@ -64,7 +64,7 @@ TEST_F(JoystickTest, each_press_and_release_is_a_change) {
   for (int i = 0; i < 3; ++i)
     for (Uint8 pressed : {Uint8{1}, Uint8{0}}) {
       SDL_JoystickSetVirtualButton(pad, 1, pressed);
-      SDL_JoystickUpdate();  // the event is made, and nobody has taken it
+      SDL_JoystickUpdate();  // queues the event, which is not yet polled
     }
   for (int i = 0; i < 6; ++i) {
     ASSERT_TRUE(changes());
@@ -81,7 +81,7 @@ TEST_F(JoystickTest, one_that_goes_lets_everything_go_and_comes_back) {
     ASSERT_TRUE(changes());
   SDL_JoystickDetachVirtual(0);
   const auto& state = joystick->state();
-  while (!state.name.empty()) ASSERT_TRUE(changes());  // SDL lets go of it first
+  while (!state.name.empty()) ASSERT_TRUE(changes());  // SDL releases its axes and buttons first
   EXPECT_EQ(state.axes.size(), 6);
   EXPECT_EQ(std::count(state.axes.begin(), state.axes.end(), 0.0), 6);
   EXPECT_EQ(std::count(state.buttons.begin(), state.buttons.end(), 1), 0);

@@ -17,8 +17,8 @@ struct Stick {
 };
 
 /// The stick of a controller's first two axes, each −1 … 1, right and down > 0.
-/// @param dead_zone  what is nearer to the middle of an axis counts as 0, and what is beyond it is
-/// rescaled, so that there is no jump and the end is still 1. [0 … 1)
+/// @param dead_zone  smaller deflections of an axis are 0, larger ones are rescaled to start at 0
+/// and end at 1 [0 … 1).
 inline Stick stick_of(std::span<const double> axes, double dead_zone) {
   const auto beyond = [&](double value) {
     const double distance = std::abs(value) - dead_zone;
@@ -26,7 +26,7 @@ inline Stick stick_of(std::span<const double> axes, double dead_zone) {
     return std::copysign(std::min(distance / (1 - dead_zone), 1.0), value);
   };
   if (axes.size() < 2) return {};
-  // Subtracted, so that the middle is no negative zero.
+  // Subtracted, to avoid a negative zero.
   return {0.0 - beyond(axes[0]), beyond(axes[1])};
 }
 

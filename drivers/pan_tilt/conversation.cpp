@@ -12,14 +12,14 @@ namespace {
 
 constexpr std::array<const char*, 14> kQuestions = {"pr", "tr", "pn", "px", "tn", "tx", "pu",
                                                     "tu", "pl", "tl", "ps", "ts", "pa", "ta"};
-// A partial command left in the unit becomes an invalid one, which it refuses.
+// Turns a partial command left in the unit into an invalid one, which it refuses.
 constexpr const char* kNoWord = "-";
 constexpr std::string_view kAskPan = "pp", kAskTilt = "tp";
 constexpr double kArcsecond = std::numbers::pi / 180 / 3600;  // [rad]
-constexpr double kSlack = 50;  // of a place beyond what the greatest speed allows [position]
+constexpr double kSlack = 50;  // beyond the distance at maximum speed [position]
 
 Error garbage(const std::string& text) {
-  return {Code::Malformed, "garbage: \"" + text + "\" answers nothing that was asked"};
+  return {Code::Malformed, "garbage: \"" + text + "\" is an unexpected answer"};
 }
 
 int bounded(double value, double least, double most) {
@@ -65,7 +65,7 @@ void Conversation::try_again(MonotonicTime now) {
             pan_tilt::command(kQuestions[0]);
 }
 
-/// Halts a unit that may move and cannot be asked: once in a try.
+/// Halts a unit that may be moving and does not answer; once per try.
 void Conversation::halt_unheard(MonotonicTime now) {
   const bool is_left = may_move_ || (heading_ && is_late(now));
   if (hold_.count() == 0 || !is_left || has_halted_) return;
@@ -73,7 +73,7 @@ void Conversation::halt_unheard(MonotonicTime now) {
   has_halted_ = true;
 }
 
-/// Starts over: at once if nothing came, else when no more garbage comes.
+/// Starts over: at once after silence, else when the garbage has ended.
 void Conversation::fail(MonotonicTime now, Error error) {
   const bool is_silent = error.code == Code::Closed;
   fault_ = std::move(error);
@@ -92,7 +92,7 @@ void Conversation::take(MonotonicTime now, std::string_view bytes) {
   }
   reader_.feed(bytes);
   while (auto reply = reader_.next()) {
-    // What echo and an older talk have left comes before the first answer.
+    // Echoes and answers of an earlier session precede the first answer.
     const bool is_first = phase_ == Phase::Begins && asked_ == 0;
     if (!*reply && is_first) continue;
     if (!*reply) return fail(now, reply->error());
@@ -128,18 +128,18 @@ void Conversation::become_ready(MonotonicTime now) {
   const bool is_sound = s[PR] > 0 && s[TR] > 0 && s[PN] < s[PX] && s[TN] < s[TX] && s[PL] >= 0 &&
                         s[TL] >= 0 && s[PU] > 0 && s[TU] > 0 && s[PL] <= s[PU] && s[TL] <= s[TU] &&
                         std::all_of(s.begin(), s.end(), [](double v) { return std::abs(v) < 1e6; });
-  if (!is_sound) return fail(now, {Code::Malformed, "garbage: limits that make no sense"});
+  if (!is_sound) return fail(now, {Code::Malformed, "garbage: inconsistent limits"});
   phase_ = Phase::Ready;
   tries_ = 0;
   may_move_ = false;
   if (std::exchange(halt_follows_, false)) say(now, "", {Awaits::Halted});
   Pace reported;
   for (std::size_t i = 0; i < reported.size(); ++i) reported[i] = bounded(s[PS + i], -1e6, 1e6);
-  // Who moved it by its speed alone has left one with a sign, or none.
+  // Velocity control may have left a signed speed or 0.
   if (!own_pace_)
     own_pace_ = {reachable_speed(0, std::abs(s[PS])), reachable_speed(1, std::abs(s[TS])),
                  std::max(reported[2], 1), std::max(reported[3], 1)};
-  // A unit that was switched off and on meanwhile has forgotten its pace.
+  // A unit that was power-cycled has lost its pace.
   pace_.reset();
   pace_at_ = now;
   if (!is_known_) pace_ = reported;
@@ -160,12 +160,13 @@ std::chrono::nanoseconds Conversation::on_line(std::size_t bytes) const {
   return duration(static_cast<double>(bytes) / bytes_per_second_);
 }
 
-/// When the unit was where its answers of so many bytes say.
+/// When the unit was at the reported position.
+/// @param answered  bytes of the answers.
 MonotonicTime Conversation::seen_at(MonotonicTime now, const Look& look,
                                     std::size_t answered) const {
   const auto earliest = look.sent, latest = now - on_line(answered);
   if (latest >= earliest) return earliest + (latest - earliest) / 2;
-  return look.time + (now - look.time) / 2;  // a faster line
+  return look.time + (now - look.time) / 2;  // the line is faster than set
 }
 
 bool Conversation::awaits(Awaits answer) const {
@@ -173,7 +174,7 @@ bool Conversation::awaits(Awaits answer) const {
 }
 
 void Conversation::look(MonotonicTime now) {
-  // The tilt of the look before may still be on the line, which is idle in this direction.
+  // The previous tilt may still be on the line to us; the other direction is idle.
   if (phase_ != Phase::Ready || awaits(Awaits::Pan)) return;
   say(now, pan_tilt::command(kAskPan), {Awaits::Pan});
   looks_.push_back({now, written_});
@@ -209,7 +210,7 @@ void Conversation::set_pace(double speed, double acceleration) {
   acceleration_ = acceleration;
 }
 
-/// The nearest speed that an axis can turn with [position/s].
+/// The nearest speed of which an axis is capable [position/s].
 int Conversation::reachable_speed(std::size_t axis, double wanted) const {
   return bounded(wanted, std::max(settings_[PL + axis], 1.0), settings_[PU + axis]);
 }
@@ -249,7 +250,7 @@ void Conversation::hear(MonotonicTime now, const Reply& reply) {
     remark_ = "refused: " + reply.text;
     if (awaited == Awaits::PanSet || awaited == Awaits::TiltSet) is_heading_sure_ = false;
     if (is_place) return fail(now, garbage("! " + reply.text));
-    if (awaited == Awaits::PaceSet) {  // it would turn with another, and so it is not to turn
+    if (awaited == Awaits::PaceSet) {  // do not move with a wrong pace
       pace_.reset();
       pace_at_ = now + kTimeOut;
       wanted_.reset();
@@ -270,22 +271,22 @@ void Conversation::hear_place(MonotonicTime now, int axis, const std::string& te
   const double most = settings_[PU + i] * seconds + kSlack;
   if (std::abs(*value) > 1e6 || std::trunc(*value) != *value ||
       (place_ && std::abs(*value - (*place_)[i]) > most))
-    return fail(now, {Code::Malformed, "garbage: it cannot be at " + text});
+    return fail(now, {Code::Malformed, "garbage: impossible position " + text});
   heard_[i] = static_cast<int>(*value);
-  constexpr std::size_t kFrame = 4;  // "* " before it, the end of the line after it
+  constexpr std::size_t kFrame = 4;  // "* " and the line end
   heard_bytes_ = (axis == 0 ? 0 : heard_bytes_) + text.size() + kFrame;
   if (axis == 0) return;
   const Look look = looks_.front();
   looks_.pop_front();
   place_ = heard_;
   place_time_ = look.time;
-  // An answer to a query so long ago has waited to be read: its time is unknown.
+  // Such a late answer was waiting to be read: its time is unknown.
   if (now - look.time >= kTimeOut) return;
   const auto time = seen_at(now, look, heard_bytes_);
   gaze_ = Gaze{heard_[0] * step(0), tilt_at(time, -heard_[1] * step(1)), time};
 }
 
-/// Where the tilt was when the pan was seen: its own question arrived a little later.
+/// The tilt at the time of the pan; interpolated, since its query arrived a little later.
 double Conversation::tilt_at(MonotonicTime time, double seen) {
   const auto last = std::exchange(tilt_seen_, TiltSeen{time, seen});
   if (!last || time <= last->time) return seen;
@@ -293,7 +294,7 @@ double Conversation::tilt_at(MonotonicTime time, double seen) {
   return seen - (seen - last->tilt) * std::min(1.0, later / hc::seconds(time - last->time));
 }
 
-/// Whether the unit has been seen where it was commanded to go.
+/// Whether the unit has reached the commanded position.
 bool Conversation::arrived() const {
   return place_ && place_time_ > heading_since_ && std::abs((*place_)[0] - (*heading_)[0]) <= 1 &&
          std::abs((*place_)[1] - (*heading_)[1]) <= 1;
@@ -320,11 +321,11 @@ void Conversation::pass(MonotonicTime now) {
 void Conversation::halt(MonotonicTime now) {
   forget();
   if (phase_ != Phase::Ready || !heading_ || awaits(Awaits::Halted) || arrived()) return;
-  is_heading_sure_ = false;  // and is no heading any more once the answer has come
+  is_heading_sure_ = false;  // the heading ends when the answer arrives
   say(now, pan_tilt::command("h"), {Awaits::Halted});
 }
 
-/// Whether no command has come for too long.
+/// Whether the last command is older than the hold time.
 bool Conversation::is_late(MonotonicTime now) const {
   return hold_.count() > 0 && now - commanded_ > hold_;
 }

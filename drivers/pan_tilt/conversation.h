@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The host's side of the talk with a pan-tilt unit: who asked what, which answer belongs to it, and
-// what to do when none comes or it makes no sense. Pure: bytes in, bytes out, at a time that is
-// given and does not fall.
+// The host's side of the dialogue with a pan-tilt unit: matches answers to questions, and handles
+// missing and invalid ones. Pure: bytes in, bytes out; times come from
+// the caller and do not decrease.
 
 #include <array>
 #include <deque>
@@ -16,28 +16,28 @@
 
 namespace hc::pan_tilt {
 
-/// Where a head looks [rad]: pan > 0 to the left, tilt > 0 down. (The unit's own tilt is up.)
+/// Orientation of a head [rad]: pan > 0 left, tilt > 0 down. (The unit's tilt > 0 is up.)
 struct Gaze {
   double pan = 0, tilt = 0;
-  MonotonicTime time{0};  ///< when it looked there: see Conversation::set_line()
+  MonotonicTime time{0};  ///< see Conversation::set_line()
 };
 
-/// Begins with `- ft ed ci`, asks what the unit is like, twice, since a wrong answer would stay,
+/// Starts with `- ft ed ci`, then queries the unit's settings twice, since an error would persist,
 /// and is ready when both agree. At most one question (both positions), one command (both axes),
-/// one pace and one halt are without answer at a time; of commands that come meanwhile the newest
-/// is sent. A line that brings garbage or no answer for kTimeOut is reset; what was commanded
-/// before is not sent again, and its motion is halted, whether the unit answers or not.
+/// one pace and one halt are unanswered at a time; of commands given meanwhile only the newest is
+/// sent. After garbage, or without an answer for kTimeOut, the line is reset; earlier commands are
+/// not repeated, and their motion is halted, even if the unit does not answer.
 class Conversation {
  public:
   static constexpr std::chrono::milliseconds kTimeOut{500};
-  static constexpr std::chrono::milliseconds kQuiet{60};  ///< after garbage, before a new try
-  static constexpr int kTries = 3;                        ///< before the line is lost
-  static constexpr std::chrono::milliseconds kLife{200};  ///< of a command
+  static constexpr std::chrono::milliseconds kQuiet{60};  ///< silence after garbage, before a retry
+  static constexpr int kTries = 3;                        ///< until the line is lost
+  static constexpr std::chrono::milliseconds kLife{200};  ///< of a queued command
 
   enum class Phase {
-    Closed,  ///< there is no line
-    Begins,  ///< it is being found out what is there
-    Ready,   ///< commands are taken
+    Closed,  ///< no line
+    Begins,  ///< querying the unit
+    Ready,   ///< accepts commands
     Lost,    ///< no valid answer in kTries tries: reopen the line
   };
   [[nodiscard]] Phase phase() const { return phase_; }
@@ -46,47 +46,44 @@ class Conversation {
   void begin(MonotonicTime now);
   void end();
 
-  /// What came.
   void take(MonotonicTime now, std::string_view bytes);
-  /// Time passes: answers are overdue, motions are halted. To be called every few ms.
+  /// Handles timeouts: overdue answers, motions to halt. Call every few ms.
   void pass(MonotonicTime now);
 
-  /// Asks where the unit looks, unless it was asked and has not answered.
+  /// Queries the position, unless a query is unanswered.
   void look(MonotonicTime now);
-  /// Has it turn there, or to the nearest it can; false when it is not ready, and nothing is done
-  /// then. The angles are finite [rad].
+  /// Turns to these finite angles [rad], or the nearest reachable. False if not ready.
   ///
-  /// @param life  how long it may still be sent: one that waits longer for the answer to another is
-  /// forgotten.
+  /// @param life  a command that waits longer for another's answer is dropped.
   bool command(MonotonicTime now, double pan, double tilt, std::chrono::nanoseconds life = kLife);
-  /// How fast it turns [rad/s, rad/s²], or the nearest it can; 0: as it did when it was met. While
-  /// the unit refuses a pace it is asked again every kTimeOut, and takes no commands.
+  /// Sets the speed and acceleration [rad/s, rad/s²], or the nearest possible; 0: as found at the
+  /// start. While the unit refuses a pace, it is sent again every kTimeOut, and commands fail.
   void set_pace(double speed, double acceleration);
-  /// How fast bytes go either way [1/s]; 0, as at first: at once. A unit answers with where it is
-  /// as the question arrives, behind all that was written before; the answer then takes its time,
-  /// too. What time is left is taken to be as long before that as after it.
+  /// Sets the rate of bytes in each direction [1/s]; 0 (default): infinite. A unit reports its
+  /// position when the question arrives, after all earlier bytes; the answer takes time, too. The
+  /// remaining delay is assumed to be half before and half after that.
   void set_line(double bytes_per_second) { bytes_per_second_ = bytes_per_second; }
-  /// Halts a motion that was commanded when no command was taken for so long, and what the unit may
-  /// be at when it is met; 0: never.
+  /// Halts a commanded motion after this time without a command, and any motion found at the start;
+  /// 0: never.
   void set_hold(std::chrono::nanoseconds hold) { hold_ = hold; }
-  /// A command that has not been sent yet is not sent any more.
+  /// Drops a command not yet sent.
   void forget() { wanted_.reset(); }
-  /// Halts a motion that was commanded, at once.
+  /// Halts a commanded motion at once.
   void halt(MonotonicTime now);
-  /// What ends the motion that was commanded, if there may be one: for the end of a program.
+  /// The bytes that halt a commanded motion, to write at the end of a program; empty if none.
   [[nodiscard]] std::string last_words() const { return heading_ ? "h " : ""; }
 
-  // What is to be done now; each is given once.
-  std::string bytes() { return std::exchange(bytes_, {}); }           ///< to be written
-  std::optional<Gaze> gaze() { return std::exchange(gaze_, {}); }     ///< the unit has reported
-  std::optional<Error> fault() { return std::exchange(fault_, {}); }  ///< why it is reset
-  std::string remark() { return std::exchange(remark_, {}); }         ///< the unit refused that
+  // Results, each returned once.
+  std::string bytes() { return std::exchange(bytes_, {}); }           ///< to write
+  std::optional<Gaze> gaze() { return std::exchange(gaze_, {}); }     ///< reported by the unit
+  std::optional<Error> fault() { return std::exchange(fault_, {}); }  ///< reason of a reset
+  std::string remark() { return std::exchange(remark_, {}); }         ///< e.g. a refusal
 
-  /// "pan -158.9 … 158.9 degrees, …", once it has been ready.
+  /// "pan from -158.9 to 158.9, …"; valid once ready.
   [[nodiscard]] std::string character() const;
 
  private:
-  // In the order in which they are asked.
+  // In the order of the queries.
   enum Setting { PR, TR, PN, PX, TN, TX, PU, TU, PL, TL, PS, TS, PA, TA, Settings };
   enum class Awaits { Pan, Tilt, PanSet, TiltSet, PaceSet, Halted };
   using Places = std::array<int, 2>;  // pan, tilt [position]
@@ -119,38 +116,38 @@ class Conversation {
   std::optional<Gaze> gaze_;
   std::optional<Error> fault_;
 
-  bool may_move_ = true;       // as somebody else has left it
+  bool may_move_ = true;       // from an earlier session
   bool has_halted_ = false;    // in this try
-  bool halt_follows_ = false;  // its answer comes after that to the first question
+  bool halt_follows_ = false;  // the halt's answer follows that to the first question
   int tries_ = 0;
-  std::size_t asked_ = 0;  // while it begins: the setting that is being asked
+  std::size_t asked_ = 0;  // in Phase::Begins: the setting being queried
   bool is_known_ = false;  // settings have been read on this line
   std::array<double, Settings> settings_ = {};
-  std::optional<Pace> own_pace_, pace_;  // as it was met; as it is, none: refused
-  MonotonicTime pace_at_{0};             // no pace is sent before
+  std::optional<Pace> own_pace_, pace_;  // found at the start; current, none if refused
+  MonotonicTime pace_at_{0};             // earliest time to send a pace
   double speed_ = 0, acceleration_ = 0;
-  std::optional<MonotonicTime> quiet_at_;  // a new try, once nothing comes any more
+  std::optional<MonotonicTime> quiet_at_;  // when to retry, unless more garbage arrives
 
   std::deque<Awaits> awaited_;
-  MonotonicTime overdue_{0};  // when the oldest answer is
+  MonotonicTime overdue_{0};  // deadline of the oldest answer
   MonotonicTime heading_since_{0}, commanded_{0};
   double bytes_per_second_ = 0;
-  MonotonicTime written_{0};  // when all bytes are sent
-  /// A question for the place.
+  MonotonicTime written_{0};  // when all bytes have left
+  /// A query of the position.
   struct Look {
-    MonotonicTime time;  // when it was asked,
-    MonotonicTime sent;  // and when it had left
+    MonotonicTime time;  // when written
+    MonotonicTime sent;  // when its last byte left
   };
-  std::deque<Look> looks_;  // without an answer
+  std::deque<Look> looks_;  // unanswered
   std::optional<Places> wanted_, heading_, place_;
   MonotonicTime wanted_until_{0};
-  bool is_heading_sure_ = false;  // the unit has taken the command
+  bool is_heading_sure_ = false;  // the unit has accepted the command
   Places heard_ = {};
   std::size_t heard_bytes_ = 0;
-  MonotonicTime place_time_{0};  // when place_ was asked
+  MonotonicTime place_time_{0};  // when place_ was queried
   struct TiltSeen {
     MonotonicTime time;  // of the pan
-    double tilt;         // [rad], as it was answered
+    double tilt;         // as reported [rad]
   };
   std::optional<TiltSeen> tilt_seen_;
   std::chrono::nanoseconds hold_{0};

@@ -37,7 +37,7 @@ TEST(Conversation, reports_where_the_unit_looks_and_when) {
   line.run(milliseconds(200));
   ASSERT_GE(line.gazes.size(), 3U);
   for (const Gaze& gaze : line.gazes) {
-    // Asked at a multiple of 20 ms, answered 8 ms later and taken with the next look.
+    // Asked at a multiple of 20 ms, answered 8 ms later and read with the next poll.
     EXPECT_NEAR(static_cast<double>(gaze.time.count() % 20'000'000), 4e6, 1.1e6);
   }
   const Gaze last = line.gazes.back();
@@ -50,20 +50,20 @@ TEST(Conversation, on_a_slow_line_a_gaze_has_the_time_at_which_the_unit_looked_t
   Line line;
   line.begin_slowly();
   line.gazes.clear();
-  std::deque<std::pair<MonotonicTime, double>> turned;  // when it was where
+  std::deque<std::pair<MonotonicTime, double>> turned;  // times and angles
   line.host.command(line.now, 1, 0.5);
   for (int i = 0; i < 800; ++i) {
     turned.emplace_back(line.now, line.unit.pan(line.seconds()));
     if (i % 30 == 0) line.host.command(line.now, 1 + 0.001 * i, 0.5);  // before the question
     line.step();
   }
-  // A look begins while the answers to the one before are on the line.
+  // A poll begins while the previous answers are still on the line.
   ASSERT_GT(line.gazes.size(), 35U);
   for (const auto& gaze : line.gazes) {
     const auto at = std::find_if(turned.begin(), turned.end(),
                                  [&](const auto& each) { return each.first >= gaze.time; });
     ASSERT_NE(at, turned.end());
-    // Answers to commands that are on the line before it make it later.
+    // Answers to commands ahead of it on the line delay it.
     constexpr double kFastest = 1.05, kOff = 0.0045;  // [rad/s], [s]
     EXPECT_NEAR(gaze.pan, at->second * kStep, kFastest * kOff);
   }
@@ -73,7 +73,7 @@ TEST(Conversation, on_a_slow_line_the_tilt_is_that_of_the_time_of_the_pan) {
   Line line;
   line.begin_slowly();
   line.host.command(line.now, 0, 0.8);
-  line.run(milliseconds(150));  // until it turns evenly
+  line.run(milliseconds(150));  // until its speed is constant
   line.gazes.clear();
   const auto begin = line.now;
   const auto tilt = [&] { return -line.unit.tilt(line.seconds()) * kStep; };
@@ -194,8 +194,7 @@ TEST(Conversation, a_corrupted_answer_is_not_believed_for_ever) {
   line.host.bytes();
   line.host.take(line.now, "*\r\n*\r\n*\r\n* 125.1428\r\n");
   line.run(milliseconds(1000));
-  EXPECT_EQ(line.faults,
-            std::vector<std::string>{"garbage: \"185.1428\" answers nothing that was asked"});
+  EXPECT_EQ(line.faults, std::vector<std::string>{"garbage: \"185.1428\" is an unexpected answer"});
   check_recovery(line);
 }
 
@@ -260,11 +259,11 @@ TEST(Conversation, asked_slower_than_it_can_the_unit_turns_as_slowly_as_it_can) 
 }
 
 TEST_F(Begun, no_command_is_taken_until_a_pace_is_accepted) {
-  line.unit.take(1.3, "pl200 tl200 ");  // by somebody else, behind the host's back
+  line.unit.take(1.3, "pl200 tl200 ");  // by another program, unknown to the host
   line.commands();
   line.host.set_pace(0.05, 0);
   line.host.pass(line.now);
-  EXPECT_TRUE(line.host.command(line.now, 1, 0));  // waits for the pace to be taken
+  EXPECT_TRUE(line.host.command(line.now, 1, 0));  // waits until the pace is accepted
   line.run(milliseconds(100));
   EXPECT_EQ(line.commands(), "ps56 ts56 pa2000 ta2000 ");
   ASSERT_FALSE(line.remarks.empty());
@@ -279,7 +278,7 @@ TEST_F(Begun, no_command_is_taken_until_a_pace_is_accepted) {
   line.run(milliseconds(1000));
   EXPECT_EQ(line.commands(), "pp1114 tp0 ");
   EXPECT_NEAR(line.gazes.back().pan, 56 * kStep, 3 * kStep);
-  // Another pace is tried at once.
+  // A different pace is tried at once.
   line.unit.take(10, "pl200 ");
   line.host.set_pace(0.06, 0);
   line.run(milliseconds(50));
@@ -330,7 +329,7 @@ TEST_F(Begun, a_place_where_it_cannot_be_is_garbage) {
   line.host.look(line.now);
   line.host.bytes();
   line.host.take(line.now, "* 2200\r\n* 0\r\n");
-  EXPECT_EQ(line.host.fault()->detail, "garbage: it cannot be at 2200");
+  EXPECT_EQ(line.host.fault()->detail, "garbage: impossible position 2200");
   EXPECT_FALSE(line.host.gaze());
 }
 

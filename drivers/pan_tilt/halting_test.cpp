@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is commanded too late is not sent, and what moves is halted.
+// Late commands are not sent, and moving axes are halted.
 #include <drivers/pan_tilt/line_test.h>
 
 namespace hc::pan_tilt {
@@ -24,7 +24,7 @@ TEST_F(Holding, a_motion_is_halted_when_commands_end) {
   line.run(milliseconds(1000));
   EXPECT_EQ(line.commands(), "");
   EXPECT_NEAR(line.gazes.back().pan, 0.2 * 1000 * kStep, 10 * kStep);
-  line.host.command(line.now, 2, 0);  // the same place: the command has to be sent again
+  line.host.command(line.now, 2, 0);  // same position: the command must be sent again
   line.run(milliseconds(20));
   EXPECT_EQ(line.commands(), "pp2228 tp0 ");
 }
@@ -69,7 +69,7 @@ TEST(Halting, a_command_that_has_waited_too_long_is_not_sent) {
   line.run(milliseconds(400));
   line.host.command(line.now, 50 * kStep, 0);
   line.host.command(line.now, 60 * kStep, 0);
-  line.now += milliseconds(1000);  // nobody has looked for so long: the process was stopped
+  line.now += milliseconds(1000);  // not polled for this time: the process was stopped
   line.host.take(line.now, "*\r\n*\r\n*\r\n*\r\n");
   EXPECT_EQ(line.host.bytes().find("pp60"), std::string::npos);
 }
@@ -84,7 +84,7 @@ TEST(Halting, a_motion_is_halted_though_nothing_can_be_heard) {
     line.is_silent = is_silent;
     line.garbage = 1;
     for (int i = 0; i < 1500; ++i) {
-      line.host.command(line.now, 2.5, 0);  // who commands does not know
+      line.host.command(line.now, 2.5, 0);  // the caller does not know
       line.step();
     }
     const double seconds = line.seconds();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// For tests: a conversation with a simulated unit over a line that can be late, cut or bad.
+// For tests: a conversation with a simulated unit over a faulty line.
 
 #include <drivers/pan_tilt/conversation.h>
 
@@ -35,10 +35,10 @@ struct Line {
   std::vector<Gaze> gazes;
   std::vector<std::string> faults, remarks;
   std::deque<std::pair<MonotonicTime, char>> going, coming;
-  MonotonicTime going_at{0}, coming_at{0};  // when the last of them is through
+  MonotonicTime going_at{0}, coming_at{0};  // arrival of the last byte
   std::mt19937 random{1};
 
-  /// When a byte that is queued now will be through.
+  /// The arrival time of a byte queued now.
   MonotonicTime after(MonotonicTime& last, MonotonicTime put) const {
     last = std::max(last, put);
     if (bytes_per_second > 0)
@@ -88,7 +88,7 @@ struct Line {
     begin(milliseconds(2000));
   }
   double seconds() const { return std::chrono::duration<double>(now).count(); }
-  /// What the host wrote since the last time, without questions.
+  /// The host's commands since the last call, without queries.
   std::string commands() {
     std::string all = std::exchange(asked, {}), left;
     for (std::size_t at = 0; at < all.size();) {
@@ -101,7 +101,7 @@ struct Line {
   }
 };
 
-/// Puts the line right again, and checks that what the host believes is true.
+/// Repairs the line and checks that the host's state is correct.
 inline void check_recovery(Line& line) {
   line.delay = milliseconds(2);
   line.garbage = 0;

@@ -29,7 +29,7 @@ Motion::State Motion::at(double time) const {
   return {end_position_, 0};
 }
 
-/// Forgets the plan and begins one from a state.
+/// Starts a new plan from a state.
 void Motion::start(double time, const State& state) {
   count_ = 0;
   end_time_ = time;
@@ -47,7 +47,7 @@ void Motion::add(double speed, double acceleration, double duration) {
   end_speed_ = state.speed;
 }
 
-/// Down to the speed from which the motor stops at once, and to none.
+/// Brakes to the base speed, from which the motor stops at once.
 void Motion::brake() {
   const double excess = std::abs(end_speed_) - std::min(pace_.base, pace_.speed);
   add(end_speed_, std::copysign(pace_.acceleration, -end_speed_), excess / pace_.acceleration);
@@ -66,20 +66,19 @@ void Motion::plan() {
   if (way > 0) {
     const double sign = target_ > end_position_ ? 1 : -1;
     const double first = std::max(std::abs(end_speed_), base);
-    // The speed at which speeding up must give way to braking, were there no greatest one:
-    // way = (top² - first²) / 2a + (top² - base²) / 2a.
+    // Peak speed without a speed limit: way = (top² - first²) / 2a + (top² - base²) / 2a.
     const double top =
         std::min(std::max(first, pace_.speed),
                  std::sqrt(std::max(0.0, (2 * a * way + first * first + base * base) / 2)));
     const double cruise = std::min(top, pace_.speed);
-    // Either speeds up to `cruise`, or, where the greatest speed was lowered, slows down to it.
+    // Accelerates to `cruise`, or slows down to it if the speed limit was lowered.
     const double change = std::abs(cruise - first) / a;
     add(sign * first, cruise > first ? sign * a : -sign * a, change);
     const double left = std::abs(target_ - end_position_) - way_to_brake(cruise);
     add(sign * cruise, 0, cruise > 0 ? left / cruise : 0);
     add(sign * cruise, -sign * a, (cruise - base) / a);
   }
-  end_position_ = target_;  // but for rounding it is there
+  end_position_ = target_;  // removes rounding errors
   end_speed_ = 0;
 }
 
@@ -93,7 +92,7 @@ void Motion::set_pace(double time, const Pace& pace) {
   HC_CHECK(pace.speed > 0 && pace.acceleration > 0, pace.speed, pace.acceleration);
   const State state = at(time);
   pace_ = pace;
-  if (time >= end_time_) return;  // it is at rest
+  if (time >= end_time_) return;  // at rest
   start(time, state);
   plan();
 }

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How an axis with a stepper motor moves: a trapezoid of speed over time, as a function of time.
-// Pure. Times are seconds since any one moment and do not fall from call to call; what is true of
-// positions is true of any unit.
+// The motion of an axis with a stepper motor: a trapezoidal speed profile. Pure. Times are seconds
+// of any one clock and must not decrease; positions may have any unit.
 
 #include <array>
 #include <cstddef>
 
 namespace hc::pan_tilt {
 
-/// How fast an axis goes.
+/// Limits of an axis' speed and acceleration.
 struct Pace {
-  double speed = 1000;         ///< greatest [position/s], above 0
-  double acceleration = 2000;  ///< of speeding up and of braking [position/s²], above 0
-  /// The motor starts and stops with this speed at once, and only above it accelerates; a greater
-  /// one than `speed` means `speed` [position/s].
+  double speed = 1000;         ///< maximum, > 0 [position/s]
+  double acceleration = 2000;  ///< also of braking, > 0 [position/s²]
+  /// Speed up to which the motor starts and stops at once; limited to `speed` [position/s].
   double base = 0;
 };
 
@@ -31,22 +29,21 @@ class Motion {
     double position, speed;  ///< [position], [position/s] with its sign
   };
   [[nodiscard]] State at(double time) const;
-  /// Where it is heading, or rests.
+  /// Where it moves to, or rests.
   [[nodiscard]] double target() const { return target_; }
-  /// When it comes, or came, to rest.
+  /// When it comes or came to rest.
   [[nodiscard]] double end() const { return end_time_; }
   [[nodiscard]] const Pace& pace() const { return pace_; }
 
-  /// Heads for another place from now on; what is too fast to be stopped there goes beyond and
-  /// comes back.
+  /// Moves to another position; overshoots and returns if it is too fast to stop there.
   void go(double time, double target);
   /// Continues at another pace.
   void set_pace(double time, const Pace& pace);
-  /// Brakes, and stays where that ends.
+  /// Brakes, and stays where it comes to rest.
   void halt(double time);
 
  private:
-  /// A stretch of even acceleration.
+  /// A phase of constant acceleration.
   struct Leg {
     double begin, duration, position, speed, acceleration;
     [[nodiscard]] State after(double seconds) const;

@@ -53,7 +53,7 @@ TEST(Motion, below_the_base_speed_there_is_no_acceleration) {
   EXPECT_EQ(axis.at(0.2).speed, 0);
 }
 
-// From base to speed: (v² - b²) / 2a on the way up, and as much down.
+// From base to speed: (v² - b²) / 2a up, and the same down.
 TEST(Motion, above_the_base_speed_it_accelerates_from_there) {
   Motion axis(0, {.speed = 2000, .acceleration = 2000, .base = 1000});
   axis.go(0, 2500);
@@ -65,7 +65,7 @@ TEST(Motion, above_the_base_speed_it_accelerates_from_there) {
 TEST(Motion, a_new_target_on_the_way_is_taken_up_smoothly) {
   Motion axis(0, {.speed = 1000, .acceleration = 2000});
   axis.go(0, 2000);
-  axis.go(1, 3000);  // cruises on: as if it had been so from the start
+  axis.go(1, 3000);  // keeps cruising, as if commanded so from the start
   EXPECT_NEAR(axis.end(), 3.5, kNear);
   axis.go(1.5, 0);  // at 1250 with 1000: 0.5 s and 250 to stop, and 1500 back
   EXPECT_NEAR(axis.at(1.5).speed, 1000, kNear);

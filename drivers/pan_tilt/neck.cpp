@@ -11,7 +11,7 @@
 namespace hc::pan_tilt {
 namespace {
 
-constexpr std::size_t kMostRemarks = 10;  // logged since all was well: garbage may look like many
+constexpr std::size_t kMostRemarks = 10;  // logged per fault, since garbage may look like remarks
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void Neck::open(MonotonicTime now) {
     return backoff_.fail(now);
   }
   serial_ = std::move(*opened);
-  constexpr double kBits = 10;  // of a byte on the line
+  constexpr double kBits = 10;  // per byte on the line
   conversation_.set_line(baud_ / kBits);
   conversation_.begin(now);
   work(now);
@@ -85,7 +85,7 @@ void Neck::read(MonotonicTime now) {
   if (const auto gaze = conversation_.gaze()) seen_(*gaze);
 }
 
-/// Does what the conversation asks for.
+/// Executes the conversation's results.
 void Neck::work(MonotonicTime now) {
   if (auto fault = conversation_.fault()) log_fault(*fault);
   if (auto remark = conversation_.remark();
@@ -101,7 +101,7 @@ void Neck::work(MonotonicTime now) {
 void Neck::pass(MonotonicTime now, const NeckSettings& settings) {
   set(now, settings);
   if (!serial_ && !device_.empty() && backoff_.is_due(now)) open(now);
-  read(now);  // an answer that has come is not overdue, however late it is read
+  read(now);  // first, since an answer that has arrived is not overdue
   conversation_.pass(now);
   work(now);
   if (conversation_.phase() != Phase::Ready) return;
@@ -119,15 +119,16 @@ void Neck::look(MonotonicTime now) {
 }
 
 void Neck::command(MonotonicTime now, std::int64_t wall, const NeckCommand& command) {
-  if (command.time == 0) return problem_("without a time", "command dropped: it has no time");
+  if (command.time == 0) return problem_("without a time", "command dropped: no time");
   const double old = seconds(wall - command.time);
   if (std::abs(old) > settings_.age)
     return problem_("stale", hc::format("command dropped: {:.3f} s {}", std::abs(old),
                                         old > 0 ? "old" : "in the future"));
   if (std::exchange(mode_, command.mode) != command.mode) turn_ = Turn<std::int32_t>(kTurn);
   if (!turn_.take(command.source, now))
-    return problem_("second source", hc::format("command of source {} dropped: source {} commands",
-                                                command.source, *turn_.holder(now)));
+    return problem_("second source",
+                    hc::format("command of source {} dropped: source {} is in control",
+                               command.source, *turn_.holder(now)));
   const bool is_taken = conversation_.command(now, command.pan, command.tilt,
                                               duration(settings_.age - std::max(old, 0.0)));
   work(now);

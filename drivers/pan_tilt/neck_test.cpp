@@ -12,7 +12,7 @@ namespace {
 using std::chrono::milliseconds;
 using Phase = Conversation::Phase;
 
-/// A neck whose clock is turned by hand, and a unit at the other end of a pseudo-terminal.
+/// A neck with a manual clock, and a unit on a pseudo-terminal.
 class NeckTest : public ::testing::Test {
  protected:
   void run(milliseconds duration) {
@@ -81,7 +81,7 @@ TEST_F(NeckTest, a_name_that_does_not_stay_is_to_be_set_again) {
   terminal_.reset();
   run(milliseconds(100));
   EXPECT_EQ(neck_.descriptor(), -1);
-  plug();  // it may well get the same number
+  plug();  // it may get the same number
   run(milliseconds(5000));
   EXPECT_EQ(neck_.descriptor(), -1);
   neck_.set_device(now_, path());
@@ -120,7 +120,7 @@ TEST_F(NeckTest, drops_commands_that_are_too_old_or_cannot_be_obeyed) {
   neck_.leave();
   command(0, 0);
   EXPECT_EQ(problems_,
-            (std::vector<std::string>{"without a time: command dropped: it has no time",
+            (std::vector<std::string>{"without a time: command dropped: no time",
                                       "stale: command dropped: 0.201 s old",
                                       "stale: command dropped: 0.300 s in the future",
                                       "no unit: command dropped: pan-tilt unit not connected"}));
@@ -132,12 +132,13 @@ TEST_F(NeckTest, obeys_one_source_of_a_mode_at_a_time_and_another_mode_at_once) 
     neck_.command(now_, kWall, {pan, 0, kWall, mode, source});
     run(milliseconds(20));
   };
-  for (int i = 0; i < 50; ++i) {  // two that contradict each other
+  for (int i = 0; i < 50; ++i) {  // two contradicting sources
     say(1, 5, 0.5);
     say(1, 6, -0.5);
   }
   EXPECT_NEAR(unit_.pan(9), 557, 0.5);
-  EXPECT_EQ(problems_.front(), "second source: command of source 6 dropped: source 5 commands");
+  EXPECT_EQ(problems_.front(),
+            "second source: command of source 6 dropped: source 5 is in control");
   say(2, 6, -0.25);
   EXPECT_NEAR(unit_.pan(9), -278, 1);
   run(Neck::kTurn + milliseconds(1));
@@ -194,7 +195,7 @@ TEST_F(NeckTest, an_answer_that_came_while_nothing_was_read_is_no_silence) {
   log_.clear();
   neck_.look(now_);
   terminal_->write(unit_.take(2.6, terminal_->read()));
-  now_ += milliseconds(1000);  // as long as the process was stopped
+  now_ += milliseconds(1000);  // the process was stopped meanwhile
   neck_.pass(now_, settings_);
   run(milliseconds(1000));
   EXPECT_TRUE(log_.empty()) << log_[0];

@@ -15,7 +15,7 @@ bool is_printable(char byte) {
   return byte >= ' ' && byte <= '~';
 }
 
-/// What follows the mark and its spaces.
+/// The text after the mark and its spaces.
 std::string text_of(std::string_view line) {
   const auto first = line.find_first_not_of(' ', 1);
   if (first == std::string_view::npos) return {};
@@ -58,9 +58,10 @@ std::optional<Result<Reply>> ReplyReader::next() {
     }
     if (skips_ || (line_.empty() && byte == ' ')) continue;
     if (!is_printable(byte) || (line_.empty() && byte != '*' && byte != '!'))
-      return refuse({Code::Malformed, "garbage: 0x" + hexadecimal_byte(byte) +
-                                          (line_.empty() ? " begins no reply" : " in a reply")});
-    // A limit's word has no end of its own: "!T!T!P!P*".
+      return refuse(
+          {Code::Malformed, "garbage: 0x" + hexadecimal_byte(byte) +
+                                (line_.empty() ? " does not start a reply" : " in a reply")});
+    // Limit reports have no line end: "!T!T!P!P*".
     if (line_ == "!" && (byte == 'P' || byte == 'T')) {
       line_.clear();
       return Reply{byte == 'P' ? Reply::Kind::PanLimit : Reply::Kind::TiltLimit, {}};
@@ -76,7 +77,7 @@ std::optional<Result<Reply>> ReplyReader::next() {
 Result<double> number(std::string_view text) {
   double value = 0;
   if (!read_number(text, value) || !std::isfinite(value))
-    return Error{Code::Malformed, "garbage: \"" + std::string(text) + "\" is no number"};
+    return Error{Code::Malformed, "garbage: \"" + std::string(text) + "\" is not a number"};
   return value;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What is said on the line to a FLIR (Directed Perception) pan-tilt unit, such as the PTU-D46, in
-// its ASCII protocol. Pure.
+// The ASCII protocol of FLIR (Directed Perception) pan-tilt units, such as the PTU-D46. Pure.
 // Source: PTU-D46 Command Reference, version 2.14.
 
 #include <cstdint>
@@ -13,53 +12,52 @@
 
 namespace hc::pan_tilt {
 
-/// "pp-200 ": a command with its value, or a query, and what ends it.
+/// A command with its value, or a query, and its delimiter: "pp-200 ".
 std::string command(std::string_view name, std::optional<std::int32_t> value = std::nullopt);
 
-/// What a unit says.
+/// A reply of the unit.
 struct Reply {
   enum class Kind {
-    Done,       ///< `*`: a command was carried out
-    Result,     ///< `* 22`: what was asked for, in `text`
-    Refused,    ///< `! Maximum allowable Pan position is 3090`: why not, in `text`
-    PanLimit,   ///< `!P`: the axis ran into its limit; answers no command
+    Done,       ///< `*`: command executed
+    Result,     ///< `* 22`: the queried value, in `text`
+    Refused,    ///< `! Maximum allowable Pan position is 3090`: the reason, in `text`
+    PanLimit,   ///< `!P`: the axis ran into its limit; not an answer
     TiltLimit,  ///< `!T`
   };
   Kind kind = Kind::Done;
   std::string text;  ///< at most kMaxReplyBytes
 };
 
-inline constexpr std::size_t kMaxReplyBytes = 128;  ///< of a line; the longest are below 80
+inline constexpr std::size_t kMaxReplyBytes = 128;  ///< of a line; units send less than 80
 
-/// Takes a unit's bytes as they come, and gives its replies.
+/// Parses a stream of a unit's bytes into replies.
 ///
 ///     reader.feed(bytes);
 ///     while (auto reply = reader.next()) {
-///       if (!*reply) … (*reply).error();  // garbage; the reader has found its place again
+///       if (!*reply) … (*reply).error();  // garbage; the reader resynchronises
 ///     }
 ///
-/// Memory: what was fed and not yet taken, and a line of kMaxReplyBytes.
+/// Memory: the bytes fed but not yet taken, and a line of kMaxReplyBytes.
 class ReplyReader {
  public:
   void feed(std::string_view bytes);
 
-  /// The next reply, if it is whole. What is no reply is skipped up to the end of its line, and
-  /// gives one error, however long it is.
+  /// The next complete reply. An invalid reply is skipped to the end of its line, with one error.
   ///
-  /// Errors: Malformed (a byte that begins no reply, or is not printable), TooLarge (a line of more
-  /// than kMaxReplyBytes).
+  /// Errors: Malformed (a byte that does not start a reply, or is not printable), TooLarge (a line
+  /// of more than kMaxReplyBytes).
   std::optional<Result<Reply>> next();
 
  private:
   std::optional<Result<Reply>> refuse(Error error);
 
-  std::string bytes_;         // not looked at yet
-  std::size_t position_ = 0;  // in them
-  std::string line_;          // as much of a reply as has come
-  bool skips_ = false;        // garbage, until its line ends
+  std::string bytes_;         // fed
+  std::size_t position_ = 0;  // of the next byte to parse
+  std::string line_;          // incomplete reply
+  bool skips_ = false;        // skipping garbage to the end of the line
 };
 
-/// A number as a unit writes it, all of the text: "22", "-907", "185.1428".
+/// A number that is the whole text: "22", "-907", "185.1428".
 ///
 /// Errors: Malformed.
 Result<double> number(std::string_view text);

@@ -55,8 +55,9 @@ TEST(Protocol, replies_come_in_pieces_of_any_size) {
 }
 
 TEST(Protocol, garbage_is_one_error_and_ends_with_its_line) {
-  EXPECT_EQ(read({"pp * 22\r\n* 23\r\n"}),
-            (std::vector<std::string>{"Malformed: garbage: 0x70 begins no reply", "Result 23"}));
+  EXPECT_EQ(
+      read({"pp * 22\r\n* 23\r\n"}),
+      (std::vector<std::string>{"Malformed: garbage: 0x70 does not start a reply", "Result 23"}));
   EXPECT_EQ(read({"* 2\xff\xfe\xfd\r\n*\r\n"}),
             (std::vector<std::string>{"Malformed: garbage: 0xff in a reply", "Done"}));
   EXPECT_EQ(read(single_bytes("* 2\xff\xfe\xfd\r\n*\r\n")).size(), 2U);

@@ -33,8 +33,8 @@ class PseudoTerminal {
     if (own_ >= 0) ::close(own_);
     own_ = -1;
   }
-  /// All that was written: one read() may return what the kernel has passed on so far, and only a
-  /// read() that finds nothing has waited for the rest.
+  /// Everything written: read() may return only part of it; a read() that finds nothing has waited
+  /// for the rest.
   std::string read() {
     std::string all;
     std::array<char, 4096> room = {};

@@ -25,8 +25,7 @@ Error failure(std::string_view call) {
   return {code, std::string(call) + ": " + std::strerror(number)};
 }
 
-/// Has the kernel deliver bytes as they come; some adapters gather them for 16 ms otherwise. Where
-/// that is not supported nothing changes.
+/// Sets low latency if supported; otherwise some adapters collect bytes for 16 ms.
 void hurry(int number) {
   serial_struct settings = {};
   if (ioctl(number, TIOCGSERIAL, &settings) != 0) return;
@@ -38,7 +37,7 @@ void hurry(int number) {
 
 Result<Serial> Serial::open(const std::string& device, int baud) {
   termios settings = {};
-  // The C library takes a rate for its code; what is a code itself is no rate.
+  // cfsetspeed() takes a rate, but would also accept its code, which is not a rate.
   const auto rate = static_cast<speed_t>(baud);
   if ((rate & ~speed_t{CBAUD}) == 0 || cfsetspeed(&settings, rate) != 0)
     return Error{Code::Unsupported, "no such baud rate: " + std::to_string(baud)};
@@ -55,7 +54,7 @@ Result<Serial> Serial::open(const std::string& device, int baud) {
   cfmakeraw(&settings);
   settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
   settings.c_cflag |= CLOCAL | CREAD;
-  settings.c_cc[VMIN] = 1;  // so that no byte is EAGAIN, and 0 a disconnected device
+  settings.c_cc[VMIN] = 1;  // read() fails with EAGAIN if there is no byte; 0 means disconnected
   settings.c_cc[VTIME] = 0;
   if (cfsetspeed(&settings, rate) != 0 || tcsetattr(number, TCSANOW, &settings) != 0)
     return failure("tcsetattr");

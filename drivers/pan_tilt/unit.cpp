@@ -28,7 +28,7 @@ int rounded(double value) {
   return static_cast<int>(std::lround(value));
 }
 
-/// The value behind a command's letters: none, or up to six digits.
+/// The value after a command's letters: none, or up to six digits.
 bool read_value(std::string_view text, std::optional<int>& value) {
   if (text.empty()) return true;
   if (text[0] == '+') text.remove_prefix(1);
@@ -89,7 +89,7 @@ std::string Unit::pass(double time) {
   return std::exchange(said_, {});
 }
 
-/// Carries out the commands that are whole.
+/// Executes the complete commands.
 void Unit::obey(double time) {
   while (busy_ == Busy::No) {
     const auto end = std::find_if(waiting_.begin(), waiting_.end(), is_delimiter);
@@ -229,7 +229,7 @@ std::string Unit::go(double time, Axis& axis, int position) {
     return refusal(std::string(is_above ? "Maximum" : "Minimum") + " allowable " + axis.name +
                    " position is " + std::to_string(is_above ? axis.most : axis.least));
   }
-  // Without limits the axis runs into its end, and says so.
+  // With limits disabled the axis runs into its end stop, and reports it.
   const int reached = std::clamp(position, axis.least, axis.most);
   axis.motion.go(time, reached);
   axis.runs_into_limit = reached != position;
@@ -253,7 +253,7 @@ std::string Unit::set_speed(double time, Axis& axis, int speed) {
   Pace pace = axis.motion.pace();
   pace.speed = std::abs(speed);
   axis.motion.set_pace(time, pace);
-  if (controls_speed_) {  // on until its end
+  if (controls_speed_) {  // moves to the end stop
     axis.motion.go(time, speed > 0 ? axis.most : axis.least);
     axis.runs_into_limit = true;
   }

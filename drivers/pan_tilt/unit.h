@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A pan-tilt unit that is simulated: a PTU-D46 as its manual describes it, as far as a client that
-// turns a head is asked for. Bytes in, bytes out, at a time that is given. Pure. Source: PTU-D46
-// Command Reference, version 2.14.
+// Simulates a pan-tilt unit: the part of a PTU-D46 that is needed to turn a head. Pure: bytes in,
+// bytes out, at times that come from the caller. Source: PTU-D46 Command Reference, version 2.14.
 
 #include <array>
 #include <cstdint>
@@ -16,27 +15,26 @@ namespace hc::pan_tilt {
 
 inline constexpr double kArcsecondsPerPosition = 185.1428;  ///< of both axes
 
-/// Knows PP TP PO TO PS TS PD TD PA TA PB TB PU TU PL TL PR TR PN TN PX TX, I A H HP HT C CI CV
-/// L LE LD E EE ED F FT FV R V O, with and without a value where they have one, in any case. Begins
-/// as after being switched on: echo, verbose, limits. It differs from a real one in that R goes to
-/// 0, 0 at the pace that is set, without looking for the limits first.
+/// Implements PP TP PO TO PS TS PD TD PA TA PB TB PU TU PL TL PR TR PN TN PX TX, I A H HP HT C CI
+/// CV L LE LD E EE ED F FT FV R V O, with and without a value where they have one, in any case.
+/// Starts as after power-on: echo, verbose, limits. Unlike a real unit, R moves to 0, 0 at the
+/// current pace without searching for the limits first.
 ///
-/// Positions are the unit's own: pan > 0 to the left, tilt > 0 up. Times [s] do not fall.
+/// Positions are the unit's: pan > 0 left, tilt > 0 up. Times [s] must not decrease.
 class Unit {
  public:
-  /// @param pan, tilt  its position, brought within its limits [position].
+  /// @param pan, tilt  initial position, clamped to the limits [position].
   explicit Unit(double pan = 0, double tilt = 0);
 
-  /// Takes bytes that came at a time; gives what it answers at once, to all up to an `A` or `R`,
-  /// which keeps the rest waiting: up to 256 bytes of it. A word for which there is no room is lost
-  /// as a whole.
+  /// Takes bytes; returns the answers up to an `A` or `R`, which delays the rest, up to 256 bytes.
+  /// A word that does not fit is lost as a whole.
   std::string take(double time, std::string_view bytes);
-  /// What it says by itself up to a time: a motion has ended that was waited for, or at a limit.
+  /// Returns delayed output up to a time: the end of an awaited motion, or of one at a limit.
   std::string pass(double time);
-  /// When pass() has something next, if nothing comes before.
+  /// When pass() has output next, if no bytes arrive before.
   [[nodiscard]] std::optional<double> next() const;
 
-  /// Where it is [position].
+  /// Current position [position].
   [[nodiscard]] double pan(double time) const { return axes_[0].motion.at(time).position; }
   [[nodiscard]] double tilt(double time) const { return axes_[1].motion.at(time).position; }
 
@@ -46,9 +44,9 @@ class Unit {
     char letter;       // 'P'
     int least, most;   // [position]
     Motion motion;
-    int speed = 1000;              // asked for; with a sign under control of speed
+    int speed = 1000;              // commanded; signed in velocity control
     int upper = 2902, lower = 31;  // [position/s]
-    bool runs_into_limit = false;  // says so when the motion ends
+    bool runs_into_limit = false;  // reported when the motion ends
   };
   enum class Busy { No, Awaits, Resets };
 
@@ -64,8 +62,8 @@ class Unit {
   [[nodiscard]] double still() const;
 
   std::array<Axis, 2> axes_;
-  std::string waiting_;  // not obeyed yet
-  bool skips_ = false;   // a word for which there was no room, until it ends
+  std::string waiting_;  // not yet executed
+  bool skips_ = false;   // skipping a word that did not fit
   std::string said_;
   Busy busy_ = Busy::No;
   bool echoes_ = true, verbose_ = true, limits_ = true, controls_speed_ = false;

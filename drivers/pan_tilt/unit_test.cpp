@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dialogues as the manual has them (PTU-D46 Command Reference 2.14).
+// Dialogues from the manual (PTU-D46 Command Reference 2.14).
 #include <drivers/pan_tilt/unit.h>
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 namespace hc::pan_tilt {
 namespace {
 
-/// A unit that does not echo and is terse, as drivers like it.
+/// A unit in terse mode without echo, as drivers use it.
 Unit quiet_unit(double pan = 0, double tilt = 0) {
   Unit unit(pan, tilt);
   unit.take(0, "ft ed ci ");
@@ -86,7 +86,7 @@ TEST(Unit, of_what_waits_only_whole_words_are_lost) {
   Unit unit = quiet_unit();
   std::string words = "pp500 a ";
   for (int i = 0; i < 100; ++i) words += "tp-100 ";
-  EXPECT_EQ(unit.take(0, words), "*\r\n");  // 7 bytes each: the room ends within one
+  EXPECT_EQ(unit.take(0, words), "*\r\n");  // 7 bytes each: the buffer ends within one
   std::string said;
   for (int i = 0; i < 1 + 256 / 7; ++i) said += "*\r\n";
   EXPECT_EQ(unit.pass(0.5), said);

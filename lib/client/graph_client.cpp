@@ -14,8 +14,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using internal::Intake;
 
-constexpr std::size_t kMaxWaiting = 256;
-constexpr std::chrono::seconds kCheck{10};      // a graph speaks twice a second
+constexpr std::size_t kMaxWaiting = 256;        // commands
+constexpr std::chrono::seconds kCheck{10};      // a graph publishes twice a second
 constexpr std::chrono::minutes kAnswerTime{2};  // it may have to wait for a slow program
 
 }  // namespace
@@ -38,7 +38,7 @@ Status GraphClient::watch(Callbacks callbacks) {
 
 void GraphClient::take(const Message& message) {
   is_alive_ = true;
-  const auto text = message.characters();
+  const auto text = message.text();
   if (message.header.src == static_cast<std::int32_t>(GraphReport::Log)) {
     if (const auto line = parse_log_line(text)) callbacks_->log(*line, text);
   } else if (message.header.src == static_cast<std::int32_t>(GraphReport::State)) {
@@ -51,14 +51,13 @@ void GraphClient::end() {
   callbacks_->end();
 }
 
-/// Opens the links for commands and their answers.
 Status GraphClient::open() {
   static std::atomic<unsigned> clients{0};
   reply_ = hc::format("unix:@hypercolumn-answer.{}.{}", ::getpid(), clients++);
   auto answers = HC_TRY(Intake::make(loop_, "unix-listen" + reply_.substr(reply_.find(':')),
                                      [this](const Message& message) { take_answer(message); }));
   auto uri = HC_TRY(parse_uri(graph_.command_uri()));
-  uri.options = {{"keep", std::to_string(kMaxWaiting)}};  // so that nothing is waited for
+  uri.options = {{"keep", std::to_string(kMaxWaiting)}};  // so that sending never blocks
   auto commands = HC_TRY(open_sink(uri));
   answers_ = std::move(answers);
   commands_ = std::move(commands);
@@ -88,7 +87,7 @@ void GraphClient::take_answer(const Message& message) {
   if (found) found.mapped().answered(read_answer(message));
 }
 
-/// Gives up a graph that does not answer: one that says nothing at all, or is slow beyond measure.
+/// Fails all commands if the graph has been silent since the last check, or is late with an answer.
 void GraphClient::check() {
   if (waiting_.empty()) return check_.reset();
   const bool is_late = Clock::now() >= waiting_.begin()->second.until;

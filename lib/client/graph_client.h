@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A running graph from outside: its states, its log, and commands to it (spec/graph.md, G45 … G47).
+// Client of a running graph: its state, its log, and commands to it (spec/graph.md, G45 … G47).
 
 #include <chrono>
 #include <cstdint>
@@ -22,19 +22,19 @@
 
 namespace hc {
 
-/// Talks to a graph on the thread of a loop, and never waits.
+/// Communicates with a graph on a loop's thread; never blocks.
 class GraphClient {
  public:
-  /// Called on the loop's thread. None may destroy the client.
+  /// Called on the loop's thread. They must not destroy the client.
   struct Callbacks {
-    /// @param json  what it was read from.
+    /// @param json  the state as received.
     std::function<void(const GraphState& state, std::string_view json)> state;
-    /// @param json  what it was read from.
+    /// @param json  the line as received.
     std::function<void(const LogLine& line, std::string_view json)> log = [](const auto&, auto) {};
-    /// The graph has ended, or cannot be read: the last call.
+    /// The graph has ended or cannot be read. No further calls follow.
     std::function<void()> end = [] {};
   };
-  /// What the graph has answered. Errors: Closed (it has ended, or does not answer), TooLarge
+  /// Takes the graph's answer. Errors: Closed (the graph has ended or does not answer), TooLarge
   /// (256 commands are waiting), System.
   using Answered = std::function<void(const Result<GraphAnswer>& answer)>;
 
@@ -43,12 +43,12 @@ class GraphClient {
   GraphClient(const GraphClient&) = delete;
   GraphClient& operator=(const GraphClient&) = delete;
 
-  /// Reads states and log from now on: a state at once, twice a second, and after each change.
-  /// Errors: Closed (it has ended), System.
+  /// Subscribes to states and log: a state at once, twice a second, and after each change.
+  /// Errors: Closed (the graph has ended), System.
   Status watch(Callbacks callbacks);
 
-  /// Has the graph do what commands say, all of them or none. `answered` is called once, or not at
-  /// all where the client is destroyed before.
+  /// Sends commands, all or none of which the graph executes. `answered` is called once, unless the
+  /// client is destroyed first.
   void command(std::vector<std::string> lines, Answered answered);
 
   [[nodiscard]] const RunningGraph& graph() const { return graph_; }
@@ -68,20 +68,20 @@ class GraphClient {
 
   Loop& loop_;
   const RunningGraph graph_;
-  std::optional<Callbacks> callbacks_;  // of watch()
+  std::optional<Callbacks> callbacks_;  // set by watch()
   std::unique_ptr<internal::Intake> states_, answers_;
   std::unique_ptr<Sink> commands_;
-  std::string reply_;                        // where answers go
-  std::map<std::int64_t, Waiting> waiting_;  // by number
+  std::string reply_;                        // URI for answers
+  std::map<std::int64_t, Waiting> waiting_;  // by sequence number
   std::int64_t sent_ = 0;
-  bool is_alive_ = true;  // it has said something since the last check()
+  bool is_alive_ = true;  // the graph has sent something since the last check()
   Loop::Handle check_;
 };
 
-/// As GraphClient::command(), and waits for the answer.
+/// Like GraphClient::command(), but waits for the answer.
 ///
-/// @param stop  descriptor that is readable when waiting is to end; -1: none.
-/// Errors: as there, and Stopped.
+/// @param stop  descriptor that ends the wait when it is readable; -1: none.
+/// Errors: those of Answered, and Stopped.
 Result<GraphAnswer> ask(const RunningGraph& graph, std::vector<std::string> commands,
                         int stop = -1);
 

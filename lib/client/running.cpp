@@ -17,10 +17,10 @@
 namespace hc {
 namespace {
 
-/// Whether a graph's name is bound by a process of this user: anybody may bind it.
+/// Whether a process of this user has bound a graph's name, which any user may do.
 bool is_own(const RunningGraph& graph) {
   const auto socket = connect_to(graph);
-  if (!socket) return errno == EAGAIN;  // whose a full queue is, is known when it answers
+  if (!socket) return errno == EAGAIN;  // a full queue; the user is checked when it answers
   const auto user = unix_peer_user(socket->get());
   return user && *user == ::geteuid();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The graphs that run on this host.
+// Finds the graphs that run on this host.
 
 #include <optional>
 #include <string_view>
@@ -11,16 +11,15 @@
 
 namespace hc {
 
-/// The graph that this program is a module of, from HC_GRAPH, which `hc run` sets; nothing outside
-/// a graph.
+/// The graph that this program is a module of (HC_GRAPH, set by `hc run`), if any.
 std::optional<RunningGraph> own_graph();
 
-/// Those of all users, by name and process number, from a table as /proc/net/unix is.
+/// The graphs of all users, by name and process, from a table in the format of /proc/net/unix.
 std::vector<RunningGraph> find_running(std::string_view sockets);
-/// Those of this user, as the kernel knows the processes that listen there.
+/// The graphs of this user, according to the kernel's owners of the listening sockets.
 std::vector<RunningGraph> find_running();
 
-/// A connection to a graph's socket for commands, which breaks when the graph ends.
+/// A connection to a graph's command socket, which closes when the graph ends.
 /// Errors: Closed (no graph has that name, or its queue of connections is full).
 Result<Descriptor> connect_to(const RunningGraph& graph);
 

@@ -17,7 +17,7 @@
 namespace hc {
 namespace {
 
-/// A source that is at its end when the graph is: modules restart, so that a broken link is none.
+/// A source that ends with the graph, not with the link, since modules restart.
 class TapSource final : public Source {
  public:
   static Result<std::unique_ptr<Source>> make(std::unique_ptr<Source> source, Descriptor graph) {
@@ -54,12 +54,12 @@ class TapSource final : public Source {
   }
 
   std::unique_ptr<Source> source_;
-  Descriptor graph_;  // a connection
+  Descriptor graph_;  // a connection that closes with the graph
   Descriptor both_;
 };
 
-/// Has this thread yield the processor to the robot's modules. Where that is refused, it is only
-/// slower for them.
+/// Lowers the priority of this thread below the robot's modules; if that fails, it merely competes
+/// with them.
 void yield_to_robot() {
   constexpr int kNice = 10;
   static_cast<void>(::setpriority(PRIO_PROCESS, 0, kNice));
@@ -105,14 +105,14 @@ Tap::~Tap() {
 }
 
 void Tap::wake() {
-  if (is_open_) wake_.raise();  // before, it would end the wait for the output
+  if (is_open_) wake_.raise();  // earlier, it would abort opening the output
 }
 
 void Tap::run() {
   yield_to_robot();
   try {
     read();
-  } catch (const std::exception& error) {  // of this client's: the others are served on
+  } catch (const std::exception& error) {  // affects only this tap
     if (!is_stopped_) callbacks_.end(error.what(), true);
   }
 }
@@ -134,7 +134,7 @@ void Tap::read() {
     if (*got == Got::End) return end("the graph has ended", false);
     if (*got == Got::Message) {
       callbacks_.message(message);
-      continue;  // a newer one may be there
+      continue;  // more may have arrived
     }
     message = {};
     const auto next = callbacks_.idle();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// An output of a running graph, read without making any module wait: as a source, or on a thread of
-// its own.
+// Reads an output of a running graph without ever blocking a module: as a source, or on a thread.
 
 #include <atomic>
 #include <chrono>
@@ -16,48 +15,47 @@
 
 namespace hc {
 
-/// Opens an output of a running graph. The source outlives restarts of the module, and is at its
-/// end when the graph is. A reader that is slow misses messages. The graph closes its end 5 s after
-/// the last reader has left.
+/// Opens an output of a running graph. The source survives restarts of the module, and ends with
+/// the graph. A slow reader misses messages. The graph closes the output 5 s after its last reader
+/// has disconnected.
 ///
-/// @param port  MODULE.PORT; of an input, what feeds it.
-/// Errors: Invalid (there is no such port), as ask() and open_source().
+/// @param port  MODULE.PORT; for an input, the output linked to it.
+/// Errors: Invalid (no such port), those of ask() and open_source().
 Result<std::unique_ptr<Source>> open_tap(const RunningGraph& graph, const std::string& port,
                                          const LinkOptions& options = {});
 
-/// Where such an output is read, for a program that opens it itself. Its reader is at its end as
-/// its `reconnect` says, and not when the graph is.
+/// The URI of such an output, for programs that open it themselves. That source does not end with
+/// the graph, but as its `reconnect` says.
 Result<Uri> tap_uri(const RunningGraph& graph, const std::string& port, int stop = -1);
 
-/// Reads an output on a thread of its own until it is destroyed, which waits for the callback that
-/// runs. The thread yields the processor to the modules of the graph.
+/// Reads an output on a thread until it is destroyed, which waits for a running callback. The
+/// thread yields the processor to the graph's modules.
 class Tap {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Called on the thread of the tap.
+  /// Called on the tap's thread.
   struct Callbacks {
-    /// The output is open.
+    /// The output has been opened.
     std::function<void()> open = [] {};
-    /// A message; it is valid within the call, keep() holds it.
+    /// Takes a message, valid during the call; keep() makes it storable.
     std::function<void(const Message&)> message;
-    /// No further message has arrived. @returns  when this is to be called again at the latest.
+    /// No further message is waiting. @returns  when to call this again at the latest.
     std::function<Clock::time_point()> idle = [] { return Clock::time_point::max(); };
-    /// The last call, unless it is destroyed before.
-    /// @param is_error  there is no such output, or it failed; else the graph has ended.
+    /// The tap has ended; called once, unless it is destroyed first.
+    /// @param is_error  the output does not exist or failed; otherwise the graph has ended.
     std::function<void(const std::string& why, bool is_error)> end;
   };
 
-  /// Throws std::runtime_error, as the constructor of a thread does, where there is no descriptor
-  /// or thread to be had.
+  /// Throws std::runtime_error if no descriptor, and std::system_error if no thread is available.
   ///
-  /// @param port  as of open_tap().
+  /// @param port  as for open_tap().
   Tap(RunningGraph graph, std::string port, Callbacks callbacks);
   ~Tap();
   Tap(const Tap&) = delete;
   Tap& operator=(const Tap&) = delete;
 
-  /// Has `idle` called soon. From any thread.
+  /// Makes the thread call `idle` soon. May be called on any thread.
   void wake();
 
  private:

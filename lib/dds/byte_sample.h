@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Samples whose bytes Cyclone DDS carries without understanding them, and their topics' types,
-// which have no key and no type information. Internal.
+// Samples that are opaque bytes to Cyclone DDS, and types for their topics, without key and type
+// information. Internal.
 
 #include <algorithm>
 #include <cstddef>
@@ -18,16 +18,16 @@
 
 namespace hc::dds {
 
-/// What Cyclone DDS calls for samples of class S, which has a base ddsi_serdata and
+/// Cyclone DDS's operations for samples of class S, which derives from ddsi_serdata and has
 ///
 ///     S(const ddsi_sertype& type, ddsi_serdata_kind kind);
 ///     std::byte* allocate(std::size_t size, std::span<const std::byte> first);
 ///     void copy(std::size_t at, std::span<std::byte> to) const;
 ///     std::size_t size;
 ///
-/// allocate() makes room for a sample that is received, given its first bytes; null drops its
-/// bytes. copy() gives a part of it, which may reach up to 3 bytes beyond the end, as DDS sends
-/// words. The caller adds `to_ser_ref` and `to_ser_unref`.
+/// allocate() provides memory for a received sample, given its first bytes; null discards it.
+/// copy() copies a part, which may reach up to 3 bytes beyond the end since DDS sends words. The
+/// caller sets `to_ser_ref` and `to_ser_unref`.
 template <class S>
 ddsi_serdata_ops byte_sample_ops() {
   static constexpr auto kWithoutBytes = [](const ddsi_sertype* type) -> ddsi_serdata* {
@@ -77,7 +77,7 @@ ddsi_serdata_ops byte_sample_ops() {
     return kWithoutBytes(type);
   };
   ops.from_sample = [](const ddsi_sertype* type, ddsi_serdata_kind, const void*) {
-    return kWithoutBytes(type);  // samples are not made of structures
+    return kWithoutBytes(type);  // samples are not made from structures
   };
   ops.to_ser = [](const ddsi_serdata* data, std::size_t at, std::size_t size, void* to) {
     static_cast<const S*>(data)->copy(at, {static_cast<std::byte*>(to), size});
@@ -100,8 +100,7 @@ ddsi_serdata_ops byte_sample_ops() {
   return ops;
 }
 
-/// What Cyclone DDS calls for a type of class T, derived from ddsi_sertype, any two of which are
-/// equal.
+/// Cyclone DDS's operations for types of class T, derived from ddsi_sertype, which are all equal.
 template <class T>
 ddsi_sertype_ops byte_type_ops() {
   ddsi_sertype_ops ops{};
@@ -117,12 +116,12 @@ ddsi_sertype_ops byte_type_ops() {
   ops.hash = [](const ddsi_sertype*) { return std::uint32_t{0}; };
   ops.derive_sertype = [](const ddsi_sertype* type, dds_data_representation_id_t,
                           dds_type_consistency_enforcement_qospolicy_t) {
-    return const_cast<ddsi_sertype*>(type);  // bytes are bytes
+    return const_cast<ddsi_sertype*>(type);  // bytes have one representation
   };
   return ops;
 }
 
-/// A type with these operations, which outlive it.
+/// A type with these operations, which must outlive it.
 template <class T>
 std::unique_ptr<T> make_byte_type(const char* name, const ddsi_sertype_ops& type_ops,
                                   const ddsi_serdata_ops& sample_ops) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The two ends of a link by DDS. Internal.
+// Opens the ends of a DDS link. Internal.
 
 #include <memory>
 
@@ -8,14 +8,13 @@
 
 namespace hc::dds {
 
-/// Puts each message to all readers of the topic, at the pace of the slowest.
+/// Sends each message to all readers of the topic, at the pace of the slowest.
 ///
 /// Errors: Invalid, NotFound (no such interface), System.
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options);
 
-/// Takes what any writer of the topic sends. A sample that is no message is logged and dropped.
-/// It ends when all writers that it had have closed or vanished, or with `reconnect` so many
-/// seconds later.
+/// Receives from all writers of the topic. A sample that is not a message is logged and dropped.
+/// Ends `reconnect` seconds after all writers have closed or vanished.
 ///
 /// Errors: Invalid, NotFound (no such interface), System.
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Owners of what Cyclone DDS makes. Internal.
+// Owners of objects of Cyclone DDS. Internal.
 
 #include <memory>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace hc::dds {
 
-/// An entity of DDS, deleted with it.
+/// Owns a DDS entity.
 class Entity {
  public:
   Entity() = default;

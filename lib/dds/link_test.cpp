@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// DDS links do what all links do; how they do it differs where several meet.
+// DDS links: the conformance suite, and links with several readers and writers.
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace hc::testing {
 namespace {
 
-/// A topic that no other test has, nor another run beside this one.
+/// A topic that is unique among tests and concurrent runs.
 std::string fresh_topic() {
   static int number = 0;
   return "dds:test/t" + std::to_string(::getpid()) + "_" + std::to_string(number++) + "?domain=97";
@@ -26,7 +26,7 @@ INSTANTIATE_TEST_SUITE_P(Dds, LinkConformance,
                                                        return std::pair{uri, uri + "&readers=1"};
                                                      }}));
 
-/// This program as another process that reads a link, or writes it, for as long as it can.
+/// Runs this program as another process that reads or writes a link until it ends.
 class Child {
  public:
   Child(const char* what, const std::string& uri) : process_(::fork()) {
@@ -68,13 +68,13 @@ TEST(Dds, AllReadersGetEachMessage) {
   auto sender = send_all(*sink, kCount, size);
   for (int i = 0; i < kCount; ++i)
     for (const auto& source : sources)
-      EXPECT_EQ(next(*source).characters(), numbered(i, size(i)).characters());
+      EXPECT_EQ(next(*source).text(), numbered(i, size(i)).text());
   Message message;
   for (const auto& source : sources) EXPECT_FALSE(*receive(*source, message));
   sender.join();
 }
 
-/// Sends messages so close to one another that some share samples.
+/// Sends messages so fast that some share samples.
 void send_together(Sink& sink, int count, const std::function<std::int32_t(int)>& size,
                    int src = 0) {
   std::vector<Message> messages;
@@ -142,7 +142,7 @@ TEST(Dds, WhatIsDeliveredIsNotCountedAsCut) {
   constexpr std::size_t kSinks = 50;
   const auto uri = fresh_topic();
   const auto source = source_of(uri);
-  const auto keeper = sink_of(uri + "&readers=1");  // until all others have left
+  const auto keeper = sink_of(uri + "&readers=1");  // keeps the source from ending
   std::array<std::uint64_t, kSinks> received{};
   std::jthread receiver([&] {
     Message message;
@@ -164,8 +164,8 @@ TEST(Dds, WhatIsDeliveredIsNotCountedAsCut) {
     EXPECT_LE(received.at(i), sent.at(i).messages - sent.at(i).dropped_disconnect) << i;
     cut += sent.at(i).dropped_disconnect;
   }
-  EXPECT_EQ(received.at(0), 900U);  // it waited for its reader
-  // Some of the others were abandoned while samples were on their way.
+  EXPECT_EQ(received.at(0), 900U);  // it was closed, not abandoned
+  // Some of the others were abandoned with samples in transit.
   EXPECT_GT(cut, 0U);
 }
 
@@ -290,7 +290,7 @@ TEST(Dds, OfASlowReaderThatLosesNothingLittleWaits) {
   const auto sink = sink_of(uri + "&readers=1&keep=latest");
   int count = 0;
   while (sink->traffic().dropped_newer < 10) ASSERT_TRUE(sink->send(numbered(count++, 100'000)));
-  EXPECT_LT(count, 200);  // 2 MiB with the reader, 4 MB on the way
+  EXPECT_LT(count, 200);  // 2 MiB in the reader's queue, 4 MB in transit
 }
 
 TEST(Dds, ARateIsKeptByEitherEnd) {
@@ -302,7 +302,7 @@ TEST(Dds, ARateIsKeptByEitherEnd) {
   Message message;
   std::uint64_t received = 0;
   while (*receive(*source, message)) ++received;
-  EXPECT_EQ(message.header.seq, 0);  // none
+  EXPECT_EQ(message.header.seq, 0);  // empty after the end
   EXPECT_EQ(received + source->traffic().lost(), 10U);
   EXPECT_GE(source->traffic().delayed, 1U);
 }
@@ -321,14 +321,14 @@ TEST(Dds, WhatIsNoMessageIsDroppedAndDisturbsNobody) {
   }
   ASSERT_EQ(log.lines.size(), 2U);
   std::ranges::sort(log.lines);
-  const std::string end = "; further ones of this writer are dropped in silence";
+  const std::string end = "; further ones of this writer are not logged";
   EXPECT_EQ(log.lines[0], uri +
                               ": dropped a sample: Malformed: R5 version: \"GET\" is not an "
                               "integer, at byte 0" +
                               end);
   EXPECT_EQ(log.lines[1], uri +
-                              ": dropped a sample: Malformed: it is no sequence of octets: it says "
-                              "4294967295 and has 4" +
+                              ": dropped a sample: Malformed: not a sequence of octets: length "
+                              "4294967295, but 4 bytes" +
                               end);
 }
 
@@ -344,8 +344,8 @@ TEST(Dds, OfASampleWhatIsBeforeAFaultIsTaken) {
   EXPECT_EQ(log.lines,
             std::vector<std::string>{
                 uri + ": dropped the rest of a sample: Malformed: R5 version: \"GET\" is not "
-                      "an integer, at byte 60; further ones of this writer are dropped in "
-                      "silence"});
+                      "an integer, at byte 60; further ones of this writer are not "
+                      "logged"});
 }
 
 TEST(Dds, AnOversizedSampleIsDroppedAndDisturbsNobody) {
@@ -362,12 +362,12 @@ TEST(Dds, AnOversizedSampleIsDroppedAndDisturbsNobody) {
     ASSERT_TRUE(sink->send(numbered(i, 1000)));
     EXPECT_EQ(next(*source).elements.size(), 1000U);
   }
-  // What is far too large is not even put together.
+  // A sample far over the limit is not even reassembled.
   EXPECT_EQ(
       log.lines,
       std::vector<std::string>{
-          uri + ": dropped a sample: TooLarge: R24 width: 1001 x 1 x 1 bytes are over the limit "
-                "of 1000, at byte 22; further ones of this writer are dropped in silence"});
+          uri + ": dropped a sample: TooLarge: R24 width: 1001 x 1 x 1 bytes exceed the limit "
+                "of 1000, at byte 22; further ones of this writer are not logged"});
 }
 
 TEST(Dds, WaitingEndsWhenAskedToStop) {
@@ -429,13 +429,13 @@ TEST(Dds, APlaceIsChecked) {
     return source ? "" : source.error().text();
   };
   EXPECT_EQ(wrong("dds:1a"),
-            "Invalid: \"1a\" is no topic of DDS: it takes letters, digits, _ and "
-            "/, and begins with no digit");
+            "Invalid: \"1a\" is not a DDS topic: use letters, digits, _ and /, not "
+            "starting with a digit");
   EXPECT_EQ(wrong("dds:a?domain=233"),
             "Invalid: option domain is a whole number from 0 to 232, not \"233\"");
   EXPECT_EQ(wrong("dds:a?interface=robot"),
-            "Invalid: option interface is an IPv4 address of this host, or several with commas "
-            "between, not \"robot\"");
+            "Invalid: option interface takes IPv4 addresses of this host, separated by commas, "
+            "not \"robot\"");
   EXPECT_EQ(wrong("dds:a?interface=192.0.2.77"),
             "NotFound: no network interface of this host has the address 192.0.2.77; `ip address` "
             "lists them");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// In place of all else here where Cyclone DDS was not found.
+// Compiled instead of the other files if Cyclone DDS was not found.
 #include <dds/transport.h>
 
 namespace hc::dds {

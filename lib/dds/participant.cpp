@@ -20,11 +20,11 @@
 namespace hc::dds {
 namespace {
 
-/// Who gets the warnings of which domain; Cyclone DDS has one log for the process.
+/// Distributes the warnings of Cyclone DDS, which has one log per process, by domain.
 class Log {
  public:
   void add(std::uint32_t domain, std::shared_ptr<internal::Remarks> remarks) {
-    dds_set_log_sink(  // whose lock Cyclone DDS has when it calls take()
+    dds_set_log_sink(  // Cyclone DDS holds its lock while it calls take()
         [](void* log, const dds_log_data_t* line) { static_cast<Log*>(log)->take(*line); }, this);
     const std::lock_guard lock(mutex_);
     readers_[domain] = {std::move(remarks), {}};
@@ -38,7 +38,7 @@ class Log {
   void take(const dds_log_data_t& line) {
     const std::lock_guard lock(mutex_);
     const auto found = readers_.find(line.domid);
-    // Whatever strangers send, each kind of complaint is made once.
+    // Each warning is logged once, whatever other participants send.
     if (found == readers_.end() || !found->second.said.insert({line.file, line.line}).second)
       return;
     std::string_view text(line.message, line.size);
@@ -48,7 +48,7 @@ class Log {
 
   struct Reader {
     std::shared_ptr<internal::Remarks> remarks;
-    std::set<std::pair<std::string, std::uint32_t>> said;  // by line of its source
+    std::set<std::pair<std::string, std::uint32_t>> said;  // by line of the source code
   };
 
   std::mutex mutex_;
@@ -56,20 +56,20 @@ class Log {
 };
 
 Log& log_of_all() {
-  static auto* log = new Log;  // Cyclone's threads may outlive what is destroyed at the end
+  static auto* log = new Log;  // never destroyed: Cyclone's threads may outlive main()
   return *log;
 }
 
-/// The domains of a process have numbers of their own, whatever theirs is in the network: above all
-/// that another user of Cyclone DDS in the process may have.
+/// The number of a domain within this process, independent of its number in the network, so that it
+/// differs from those of other users of Cyclone DDS in the process.
 std::uint32_t next_number() {
   constexpr std::uint32_t kFirst = 1'000'000;
   static std::atomic<std::uint32_t> next{kFirst};
   return next++;
 }
 
-/// Has a socket take packets from these interfaces alone: Cyclone DDS listens at all of them.
-Status take_from(int socket, const std::vector<unsigned>& interfaces) {
+/// Makes a socket drop packets from other interfaces; Cyclone DDS listens on all of them.
+Status accept_only(int socket, const std::vector<unsigned>& interfaces) {
   constexpr auto kInterface = static_cast<std::uint32_t>(SKF_AD_OFF + SKF_AD_IFINDEX);
   std::vector<sock_filter> program = {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kInterface)};
   for (std::size_t i = 0; i < interfaces.size(); ++i)
@@ -87,7 +87,7 @@ Status take_from(int socket, const std::vector<unsigned>& interfaces) {
 
 QosOwner make_qos() {
   QosOwner qos(dds_create_qos());
-  constexpr dds_duration_t kNever = 0;  // waits a writer for room
+  constexpr dds_duration_t kNever = 0;  // do not block the writer
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kNever);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);
   dds_qset_writer_data_lifecycle(qos.get(), false);
@@ -105,16 +105,16 @@ Result<std::unique_ptr<Participant>> Participant::open(const Place& place, const
   std::unique_ptr<Participant> made(new Participant(next_number()));
   log_of_all().add(made->number_, made->remarks_);
   const auto most = std::min(
-      std::max<std::uint64_t>(limits.element_bytes + kMaxHeaderBytes + 64 + kFrame, kMostJoined),
+      std::max<std::uint64_t>(limits.element_bytes + kMaxHeaderBytes + 64 + kFrame, kMaxJoined),
       kMostBytes);
   const auto domain = dds_create_domain(made->number_, configuration(place, most).c_str());
   if (domain < 0) return failed("domain " + std::to_string(place.domain), domain);
   made->domain_ = Entity(domain);
   const auto participant = dds_create_participant(made->number_, nullptr, nullptr);
   if (participant < 0)
-    return failed(
-        "no participant of domain " + std::to_string(place.domain) + ", which has 120 on a machine",
-        participant);
+    return failed("cannot join domain " + std::to_string(place.domain) +
+                      ", which allows 120 participants per host",
+                  participant);
   made->participant_ = Entity(participant);
   auto* type = make_type();
   const auto topic =
@@ -125,14 +125,14 @@ Result<std::unique_ptr<Participant>> Participant::open(const Place& place, const
   }
   made->topic_ = Entity(topic);
   made->type_ = type;
-  HC_TRY(made->bar_others(interfaces));
+  HC_TRY(made->drop_other_interfaces(interfaces));
   return made;
 }
 
-Status Participant::bar_others(const std::vector<unsigned>& interfaces) const {
+Status Participant::drop_other_interfaces(const std::vector<unsigned>& interfaces) const {
   std::array<int, HC_DDS_MOST_SOCKETS> sockets{};
   const auto count = static_cast<std::size_t>(hc_dds_sockets(type_, sockets.data()));
-  for (const int socket : std::span(sockets).first(count)) HC_TRY(take_from(socket, interfaces));
+  for (const int socket : std::span(sockets).first(count)) HC_TRY(accept_only(socket, interfaces));
   return {};
 }
 

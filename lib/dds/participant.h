@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// One end of a DDS link in the network: a participant of its own with one topic. Internal.
-// Cyclone DDS has threads and sockets for each, so that a reader who takes nothing stalls no other.
+// The participant of one end of a DDS link, with one topic. Internal.
+// Each has its own threads and sockets of Cyclone DDS, so that a slow reader stalls no other.
 
 #include <memory>
 #include <vector>
@@ -16,8 +16,7 @@
 
 namespace hc::dds {
 
-/// Reliable, and nothing is kept for who comes later; no message gives way to another but where a
-/// link's policy says so.
+/// Reliable, without history for late readers; messages are dropped only by a link's policy.
 QosOwner make_qos();
 
 class Participant {
@@ -32,15 +31,14 @@ class Participant {
   [[nodiscard]] dds_entity_t topic() const { return topic_.handle(); }
   [[nodiscard]] const ddsi_sertype& type() const { return *type_; }
 
-  /// Has flush_log() log a line; from any thread.
+  /// Queues a line for flush_log(). May be called on any thread.
   void warn(std::string line) { remarks_->add(std::move(line)); }
-  /// Logs what there is to warn of.
   void flush_log(const LogSink& log) { remarks_->flush(log); }
 
  private:
   explicit Participant(std::uint32_t number);
-  /// Has what comes in by any other interface thrown away.
-  [[nodiscard]] Status bar_others(const std::vector<unsigned>& interfaces) const;
+  /// Drops packets that arrive on other interfaces.
+  [[nodiscard]] Status drop_other_interfaces(const std::vector<unsigned>& interfaces) const;
 
   std::uint32_t number_;  // of the domain, in this process
   std::shared_ptr<internal::Remarks> remarks_;

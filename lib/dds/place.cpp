@@ -16,9 +16,9 @@
 namespace hc::dds {
 namespace {
 
-constexpr std::int64_t kLastDomain = 232;  // whose ports there are
+constexpr std::int64_t kLastDomain = 232;  // the last with valid port numbers
 constexpr const char* kLoopback = "127.0.0.1";
-constexpr std::size_t kLongestTopic = 255;  // as discovery carries it [byte]
+constexpr std::size_t kLongestTopic = 255;  // limit of discovery [byte]
 
 bool is_topic(std::string_view text) {
   const auto may_be = [](char c) {
@@ -41,8 +41,8 @@ Result<Place> parse_place(const Uri& uri) {
   Place place{uri.rest, 0, {}};
   if (!is_topic(place.topic))
     return Error{Code::Invalid, "\"" + uri.rest +
-                                    "\" is no topic of DDS: it takes letters, digits, _ and /, and "
-                                    "begins with no digit"};
+                                    "\" is not a DDS topic: use letters, digits, _ and /, not "
+                                    "starting with a digit"};
   const auto domain = HC_TRY(number_option(uri, "domain", 0, {0, kLastDomain}));
   place.domain = static_cast<std::uint32_t>(domain);
   for (auto list = uri.option("interface", ""); !list.empty();) {
@@ -50,8 +50,8 @@ Result<Place> parse_place(const Uri& uri) {
     in_addr read{};
     if (::inet_pton(AF_INET, address.c_str(), &read) != 1)
       return Error{Code::Invalid,
-                   "option interface is an IPv4 address of this host, or several "
-                   "with commas between, not \"" +
+                   "option interface takes IPv4 addresses of this host, separated by "
+                   "commas, not \"" +
                        address + "\""};
     if (address != kLoopback) place.addresses.push_back(address);
   }
@@ -88,13 +88,13 @@ std::string configuration(const Place& place, std::uint64_t max_bytes) {
   for (const auto& address : is_loopback ? std::vector<std::string>{kLoopback} : place.addresses)
     interfaces += "<NetworkInterface address=\"" + address + "\"/>";
   std::string general = element("Interfaces", interfaces);
-  // Unless it is asked for, who dies without a word is noticed as late as that.
+  // The lease is the time after which a participant that died is noticed, unless asked earlier.
   std::string discovery =
       element("ExternalDomainId", std::to_string(place.domain)) + element("LeaseDuration", "3 s");
   if (is_loopback) {
-    // There are no cables where a large packet could be lost in parts. Loopback carries no
-    // multicast, so that all ports a participant can have are asked.
-    constexpr int kLastIndex = 119;  // whose ports are of the domain, and not the next
+    // Loopback loses no fragments of large packets. It has no multicast, so all ports that a
+    // participant may have are probed.
+    constexpr int kLastIndex = 119;  // the last whose ports belong to this domain
     general += element("AllowMulticast", "false") + element("MaxMessageSize", "65500 B") +
                element("FragmentSize", "65000 B");
     discovery += element("ParticipantIndex", "auto") +
@@ -103,14 +103,15 @@ std::string configuration(const Place& place, std::uint64_t max_bytes) {
   }
   std::string text =
       element("General", general) + element("Discovery", discovery) +
-      // What is acknowledged is with the reader's link; what waits there is bounded by it.
+      // The watermarks bound unacknowledged data; acknowledged data is bounded by the reader's
+      // link.
       element("Internal", element("MaxSampleSize", std::to_string(max_bytes) + " B") +
                               element("NackDelay", "10 ms") +
                               R"(<SocketReceiveBufferSize min="default" max="8 MB"/>)" +
                               element("Watermarks", element("WhcHigh", "4 MB") +
                                                         element("WhcHighInit", "4 MB") +
                                                         element("WhcAdaptive", "false")));
-  // What the user says of Cyclone DDS counts over that: tuning, security.
+  // The user's settings for Cyclone DDS take precedence: tuning, security.
   if (const char* own = std::getenv("CYCLONEDDS_URI"); own != nullptr && *own != '\0')
     text.append(",").append(own);
   return text;

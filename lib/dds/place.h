@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Where in the network a DDS link is. Internal.
+// The address of a DDS link. Internal.
 
 #include <cstdint>
 #include <string>
@@ -11,24 +11,24 @@
 
 namespace hc::dds {
 
-/// What a URI `dds:TOPIC?domain=N&interface=ADDRESS,…` names.
+/// A parsed URI `dds:TOPIC?domain=N&interface=ADDRESS,…`.
 struct Place {
   std::string topic;
   std::uint32_t domain = 0;
-  std::vector<std::string> addresses;  ///< IPv4, of this host; none: loopback alone
+  std::vector<std::string> addresses;  ///< IPv4, of this host; empty: only loopback
 };
 
-/// Errors: Invalid (a topic is letters, digits, `_` and `/`, of which a digit is not the first; an
-/// interface is the IPv4 address of one).
+/// Errors: Invalid (the topic has characters other than letters, digits, `_` and `/`, or starts
+/// with a digit; an interface is not an IPv4 address).
 Result<Place> parse_place(const Uri& uri);
 
-/// The numbers of the network interfaces of a place, loopback first.
+/// The indices of the network interfaces of a place, loopback first.
 ///
-/// Errors: NotFound (none of this host has the address), System.
+/// Errors: NotFound (no interface of this host has the address), System.
 Result<std::vector<unsigned>> find_interfaces(const Place& place);
 
-/// How Cyclone DDS is to go about it, in XML.
-/// @param max_bytes  longer samples are dropped before they are put together.
+/// The configuration of Cyclone DDS, in XML.
+/// @param max_bytes  longer samples are dropped before they are reassembled.
 std::string configuration(const Place& place, std::uint64_t max_bytes);
 
 }  // namespace hc::dds

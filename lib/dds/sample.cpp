@@ -17,16 +17,16 @@
 namespace hc::dds {
 namespace {
 
-constexpr std::size_t kPrelude = 8;  // encapsulation, and the number of bytes
+constexpr std::size_t kPrelude = 8;  // encapsulation header and sequence length [byte]
 
-/// A sample to send has its frame and header line in `begin`, and its elements in `elements`, or
-/// all of it in `begin` where they are copied; a received one has all in `elements`.
+/// A sample to be sent has the prelude and the header line in `begin` and the elements in
+/// `elements`, or everything in `begin` if they are copied; a received one has all in `elements`.
 struct MessageSample : ddsi_serdata {
   MessageSample(const ddsi_sertype& of, ddsi_serdata_kind what) : ddsi_serdata{} {
     ddsi_serdata_init(this, &of, what);
   }
 
-  /// Room in which what follows the first line feed is aligned.
+  /// Allocates memory in which the bytes after the first line feed are aligned.
   std::byte* allocate(std::size_t wanted, std::span<const std::byte> first) {
     constexpr std::size_t kAlignment = 64;
     size = wanted;
@@ -41,7 +41,7 @@ struct MessageSample : ddsi_serdata {
     return room.get() + offset;
   }
 
-  /// Copies what is in a part of it; behind its end there are zeros.
+  /// Copies a part of the sample; zeros beyond its end.
   void copy(std::size_t at, std::span<std::byte> to) const {
     for (const auto piece : {std::span<const std::byte>(begin), elements, end}) {
       const std::size_t skipped = std::min(at, piece.size());
@@ -53,7 +53,7 @@ struct MessageSample : ddsi_serdata {
     std::ranges::fill(to, std::byte{0});
   }
 
-  /// Writes the encapsulation and the number of bytes, of which `size` is one.
+  /// Writes the encapsulation header and the sequence length, according to `size`.
   void write_prelude() {
     const auto count = static_cast<std::uint32_t>(size - kPrelude);
     const auto padding = static_cast<unsigned char>(-size % 4);
@@ -65,15 +65,15 @@ struct MessageSample : ddsi_serdata {
   std::size_t size = 0;
   std::vector<std::byte> begin;
   std::span<const std::byte> elements, end;
-  std::shared_ptr<const void> owner;  // of `elements`, if it is sent
-  SharedBytes bytes;                  // of `elements`, if it was received
+  std::shared_ptr<const void> owner;  // of `elements` of a sample to be sent
+  SharedBytes bytes;                  // of `elements` of a received sample
 };
 
 const MessageSample& own(const ddsi_serdata* sample) {
   return *static_cast<const MessageSample*>(sample);
 }
 
-/// A part of a sample where it is, if it is of one piece; else a copy, until refer_no_more().
+/// A part of a sample in place if it is contiguous, else a copy, until release_part().
 ddsi_serdata* refer(const ddsi_serdata* data, std::size_t at, std::size_t size, ddsrt_iovec_t* to) {
   const auto& sample = own(data);
   const std::size_t begin = sample.begin.size();
@@ -88,7 +88,7 @@ ddsi_serdata* refer(const ddsi_serdata* data, std::size_t at, std::size_t size, 
   return ddsi_serdata_ref(data);
 }
 
-void refer_no_more(ddsi_serdata* data, const ddsrt_iovec_t* reference) {
+void release_part(ddsi_serdata* data, const ddsrt_iovec_t* reference) {
   const auto elements = own(data).elements;
   const auto* base = static_cast<const std::byte*>(reference->iov_base);
   const bool is_inside = !elements.empty() && std::less_equal<>()(elements.data(), base) &&
@@ -100,38 +100,37 @@ void refer_no_more(ddsi_serdata* data, const ddsrt_iovec_t* reference) {
 ddsi_serdata_ops make_sample_ops() {
   auto ops = byte_sample_ops<MessageSample>();
   ops.to_ser_ref = refer;
-  ops.to_ser_unref = refer_no_more;
+  ops.to_ser_unref = release_part;
   return ops;
 }
 
 const ddsi_serdata_ops kSampleOps = make_sample_ops();
 const ddsi_sertype_ops kTypeOps = byte_type_ops<ddsi_sertype>();
 
-Error no_message(const std::string& why) {
-  return {Code::Malformed, "it is no sequence of octets: " + why};
+Error not_octets(const std::string& why) {
+  return {Code::Malformed, "not a sequence of octets: " + why};
 }
 
-/// The octets of a sample's sequence.
 Result<std::span<const std::byte>> sequence_of(const MessageSample& sample) {
-  // CDR, of one byte order or the other; its options are how much padding there is.
+  // CDR in either byte order; the options hold the number of padding bytes.
   constexpr unsigned char kCdrBig = 0, kCdrLittle = 1;
-  if (sample.kind != SDK_DATA || sample.size < kPrelude) return no_message("it has no bytes");
+  if (sample.kind != SDK_DATA || sample.size < kPrelude) return not_octets("too short");
   std::array<unsigned char, kPrelude> prelude{};
   std::memcpy(prelude.data(), sample.bytes.get(), kPrelude);
   if (prelude[0] != 0 || (prelude[1] != kCdrBig && prelude[1] != kCdrLittle))
-    return no_message("it is not in CDR");
+    return not_octets("not in CDR");
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     const std::size_t shift = prelude[1] == kCdrLittle ? 8 * i : 8 * (3 - i);
     count |= static_cast<std::uint32_t>(prelude[4 + i]) << shift;
   }
   if (count > sample.size - kPrelude || sample.size - kPrelude - count > 3)
-    return no_message("it says " + std::to_string(count) + " and has " +
-                      std::to_string(sample.size - kPrelude));
+    return not_octets("length " + std::to_string(count) + ", but " +
+                      std::to_string(sample.size - kPrelude) + " bytes");
   return std::span<const std::byte>(sample.bytes.get() + kPrelude, count);
 }
 
-/// The message that octets are, if they are one whose elements can be used where they are.
+/// The message in the octets, if there is exactly one, whose elements can be used in place.
 std::optional<Message> view_one(std::span<const std::byte> octets, const Limits& limits,
                                 internal::HeaderMemo& memo) {
   const std::string_view text(reinterpret_cast<const char*>(octets.data()), octets.size());
@@ -166,7 +165,7 @@ Sample make_sample(const ddsi_sertype& type, const Pieces& pieces, const Message
   auto sample = std::make_unique<MessageSample>(type, SDK_DATA);
   const auto& [head, elements, end] = pieces;
   sample->size = kPrelude + head.size() + elements.size() + end.size();
-  const bool is_copied = elements.size() <= kMostCopied;
+  const bool is_copied = elements.size() <= kMaxCopied;
   auto& begin = sample->begin;
   begin.reserve(kPrelude + head.size() + (is_copied ? elements.size() + end.size() : 0));
   begin.resize(kPrelude);
@@ -187,9 +186,9 @@ Sample make_sample(const ddsi_sertype& type, const Pieces& pieces, const Message
 bool join(ddsi_serdata& sample, const Pieces& pieces) {
   auto& joined = static_cast<MessageSample&>(sample);
   const auto size = pieces[0].size() + pieces[1].size() + pieces[2].size();
-  const bool are_copied = joined.elements.empty() && pieces[1].size() <= kMostCopied;
-  if (!are_copied || joined.size + size > kMostJoined) return false;
-  joined.begin.reserve(kMostJoined);
+  const bool are_copied = joined.elements.empty() && pieces[1].size() <= kMaxCopied;
+  if (!are_copied || joined.size + size > kMaxJoined) return false;
+  joined.begin.reserve(kMaxJoined);
   for (const auto piece : pieces)
     joined.begin.insert(joined.begin.end(), piece.begin(), piece.end());
   joined.size = joined.begin.size();
@@ -219,7 +218,7 @@ Status read_messages(const ddsi_serdata& data, const Limits& limits, internal::H
     take(alone->keep(), octets.size());
     return {};
   }
-  constexpr std::size_t kMost = 10'000;  // messages, that a sample of small ones fills no memory
+  constexpr std::size_t kMost = 10'000;  // limits the memory used by a sample of small messages
   StreamReader reader(limits);
   Message message;
   std::size_t at = 0, count = 0;
@@ -228,8 +227,10 @@ Status read_messages(const ddsi_serdata& data, const Limits& limits, internal::H
     auto got = HC_TRY(reader.next(message));
     if (got) {
       if (count++ == kMost)
-        return Error{Code::TooLarge, "it has more than " + std::to_string(kMost) + " messages"};
-      if (message.elements.size() <= kMostCopied) message.owner.reset();  // which all others share
+        return Error{Code::TooLarge,
+                     "more than " + std::to_string(kMost) + " messages in a sample"};
+      // A small message gets a copy, so that it does not keep the memory of all others.
+      if (message.elements.size() <= kMaxCopied) message.owner.reset();
       take(message.keep(), reader.bytes() - std::exchange(taken, reader.bytes()));
     } else if (at < octets.size()) {
       const auto space = reader.space();
@@ -239,7 +240,7 @@ Status read_messages(const ddsi_serdata& data, const Limits& limits, internal::H
       at += part.size();
     } else {
       if (reader.finish()) return {};
-      return Error{Code::Truncated, "it ends inside its message"};
+      return Error{Code::Truncated, "the sample ends inside a message"};
     }
   }
 }

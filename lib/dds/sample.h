@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Samples of Cyclone DDS that are messages: struct Message { sequence<octet> bytes; }, one or more
-// whole messages each, header line and elements. Internal.
+// Samples of type struct Message { sequence<octet> bytes; }, which hold one or more complete
+// messages, header lines and elements. Internal.
 
 #include <cstdint>
 #include <functional>
@@ -20,44 +20,44 @@ namespace hc::dds {
 
 inline constexpr const char* kTypeName = "hypercolumn::Message";
 
-/// What a sample has beside its messages: encapsulation, number of bytes, padding. [byte]
+/// Overhead of a sample: encapsulation header, sequence length, padding. [byte]
 inline constexpr std::uint64_t kFrame = 12;
 
-struct LetGo {
+struct Unref {
   void operator()(ddsi_serdata* sample) const { ddsi_serdata_unref(sample); }
 };
-using Sample = std::unique_ptr<ddsi_serdata, LetGo>;
+using Sample = std::unique_ptr<ddsi_serdata, Unref>;
 
-/// The type of our topics.
+/// The type of the topics.
 ddsi_sertype* make_type();
 
-/// Elements up to this size are copied into their sample: a piece more costs as much. [byte]
-inline constexpr std::size_t kMostCopied = 4096;
+/// Elements up to this size are copied into the sample, which costs no more than another fragment.
+/// [byte]
+inline constexpr std::size_t kMaxCopied = 4096;
 
-/// A sample of a message, whose elements stay where they are, with an owner, or are copied.
+/// A sample of one message. Its elements are shared, or copied if they are small or have no owner.
 /// @param pieces  of `message`.
 Sample make_sample(const ddsi_sertype& type, const Pieces& pieces, const Message& message);
 
-/// A sample of several messages has at most so many bytes, whatever the largest message is. [byte]
-inline constexpr std::size_t kMostJoined = 16 << 10;
+/// Maximum size of a sample of several messages. [byte]
+inline constexpr std::size_t kMaxJoined = 16 << 10;
 
-/// Adds a message to a sample that is not sent yet; false if elements of either are not copied, or
-/// the sample would be larger than kMostJoined.
+/// Adds a message to a sample that has not been sent; false if the elements of either are not
+/// copied, or the sample would exceed kMaxJoined.
 bool join(ddsi_serdata& sample, const Pieces& pieces);
 
-/// A sample without octets: its writer has closed, and nothing more will come of it.
+/// A sample without octets, which marks the end of a writer's messages.
 Sample make_end(const ddsi_sertype& type);
 
-/// How many octets a sample has that has come, and perhaps some of padding; 0: its writer has
-/// closed.
+/// The number of octets of a received sample, possibly with padding; 0: its writer has closed.
 std::uint64_t octets_of(const ddsi_serdata& sample);
 
-/// Reads the messages out of a sample that has come, and calls `take` with each and its size [byte]
-/// until one is wrong. A message that is alone and not rows of numbers is not copied again; what is
-/// held of several does not keep the others.
+/// Parses a received sample and calls `take` with each message and its size [byte], up to the first
+/// invalid one. A single message is not copied, unless it is rows of numbers; of several small
+/// messages, each can be stored without the others' memory.
 ///
-/// Errors: Malformed (no sequence of octets, or no message), Truncated, Unsupported, TooLarge (a
-/// message, or more than 10,000 of them).
+/// Errors: Malformed (not a sequence of octets, or not a message), Truncated, Unsupported, TooLarge
+/// (a message, or more than 10,000 messages).
 Status read_messages(const ddsi_serdata& sample, const Limits& limits, internal::HeaderMemo& memo,
                      const std::function<void(Message, std::uint64_t)>& take);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples, without a network: to bytes in pieces of any size, and back.
+// Samples without a network: to bytes in fragments of any size, and back.
 #include <dds/sample.h>
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ class DdsSample : public ::testing::Test {
     return join(sample, encoder_.encode(message));
   }
 
-  /// All bytes of a sample, in words, as they go over the network in pieces.
+  /// The bytes of a sample, padded to words, as sent in fragments.
   static std::string in_pieces(const ddsi_serdata& sample, std::size_t piece) {
     const std::size_t size = (ddsi_serdata_size(&sample) + 3) / 4 * 4;
     std::string bytes;
@@ -48,7 +48,7 @@ class DdsSample : public ::testing::Test {
         ddsi_serdata_from_ser_iov(type_, SDK_DATA, pieces.size(), pieces.data(), bytes.size()));
   }
 
-  /// The messages of a sample, and what is wrong with it behind them.
+  /// The messages of a sample, and the error after them.
   std::vector<Message> read_all(const ddsi_serdata& sample, Error* error = nullptr,
                                 const Limits& limits = {}) {
     std::vector<Message> messages;
@@ -69,7 +69,7 @@ class DdsSample : public ::testing::Test {
     return std::move(messages[0]);
   }
 
-  /// What is wrong with a sample of these octets. @param count  of messages that are read of it.
+  /// The error for a sample of these octets. @param count  of messages before it.
   std::string refusal(const std::string& octets, std::size_t count = 0) {
     const Pieces pieces = {std::as_bytes(std::span(octets)), {}, {}};
     return refusal_of(in_pieces(*make_sample(*type_, pieces, {}), octets.size() + 20), count);
@@ -108,7 +108,7 @@ TEST_F(DdsSample, GoesAndComesInPiecesOfAnySize) {
       for (const auto& each : {bytes, whole}) {
         auto got = must(read(*come(each, piece)));
         EXPECT_EQ(got.header, message.header);
-        EXPECT_EQ(got.characters(), message.characters());
+        EXPECT_EQ(got.text(), message.text());
       }
     }
   }
@@ -124,7 +124,7 @@ TEST_F(DdsSample, MayHaveRowsOfNumbers) {
     draft.elements()[i] = static_cast<std::byte>(i * 7);
   const Message message = std::move(draft).finish();
   auto got = must(read(*come(in_pieces(*make(message), 1000), 1000)));
-  EXPECT_EQ(got.characters(), message.characters());
+  EXPECT_EQ(got.text(), message.text());
 }
 
 TEST_F(DdsSample, HasElementsThatAreAlignedAndStayWhereTheyAre) {
@@ -136,7 +136,8 @@ TEST_F(DdsSample, HasElementsThatAreAlignedAndStayWhereTheyAre) {
     header.seq = seq;
     const Message message = Draft::make(header).finish();
     const std::string bytes = in_pieces(*make(message), 65'000);
-    for (const std::size_t piece : {4U, 65'000U}) {  // of 4 bytes the header's line is not known
+    for (const std::size_t piece :
+         {4U, 65'000U}) {  // 4 bytes do not show the end of the header line
       const auto sample = come(bytes, piece);
       auto got = must(read(*sample));
       EXPECT_TRUE(got.view<double>());
@@ -188,7 +189,7 @@ TEST_F(DdsSample, GrowsByWhatIsSmall) {
   EXPECT_FALSE(add(*large, testing::numbered(0, 4000)));
   int count = 0;
   while (add(*small, testing::numbered(count, 4000))) ++count;
-  EXPECT_EQ(count, 3);  // 16 KiB
+  EXPECT_EQ(count, 3);  // kMaxJoined
   EXPECT_EQ(read_all(*come(in_pieces(*small, 1000))).size(), 4U);
 }
 
@@ -197,7 +198,7 @@ TEST_F(DdsSample, HasMessagesOfABoundedNumber) {
   std::string octets;
   for (int i = 0; i < 10'001; ++i) octets += message;
   EXPECT_EQ(refusal(octets.substr(message.size()), 10'000), "");
-  EXPECT_EQ(refusal(octets, 10'000), "TooLarge: it has more than 10000 messages");
+  EXPECT_EQ(refusal(octets, 10'000), "TooLarge: more than 10000 messages in a sample");
 }
 
 TEST_F(DdsSample, ThatIsNoMessageIsRefused) {
@@ -211,32 +212,32 @@ TEST_F(DdsSample, ThatIsNoMessageIsRefused) {
   for (std::size_t size = 1; size < message.size(); ++size)
     for (const std::size_t count : {0U, 1U})
       EXPECT_EQ(refusal(message.substr(0, count * message.size()) + message.substr(0, size), count),
-                "Truncated: it ends inside its message")
+                "Truncated: the sample ends inside a message")
           << size;
   const std::string rows = "1 1 0 0 8 0 40100 0 0 2 2\n1 2\n3 4\n";
   EXPECT_EQ(refusal(rows, 1), "");
   EXPECT_EQ(refusal(rows + rows, 2), "");
   EXPECT_EQ(refusal(rows + "5 6\n", 1),
-            "Unsupported: R6 version: this reader knows version 1, not 5, at byte 34");
-  EXPECT_EQ(refusal(rows.substr(0, rows.size() - 4)), "Truncated: it ends inside its message");
+            "Unsupported: R6 version: this reader supports version 1, not 5, at byte 34");
+  EXPECT_EQ(refusal(rows.substr(0, rows.size() - 4)),
+            "Truncated: the sample ends inside a message");
   EXPECT_EQ(refusal(rows + rows.substr(0, rows.size() - 2) + "x\n", 1),
             "Malformed: R27 elements: \"x\" is not a number of u8, at byte 66");
   EXPECT_EQ(refusal_of(in_pieces(*make(testing::numbered(7, 30)), 100), 0, {20}),
-            "TooLarge: R24 width: 30 x 1 x 1 bytes are over the limit of 20, at byte 22");
+            "TooLarge: R24 width: 30 x 1 x 1 bytes exceed the limit of 20, at byte 22");
 }
 
 TEST_F(DdsSample, ThatIsNoSequenceIsRefused) {
   const auto bytes = [](const auto& text) { return std::string(text, sizeof text - 1); };
-  EXPECT_EQ(refusal_of(bytes("\0\1\0\0")),
-            "Malformed: it is no sequence of octets: it has no bytes");
+  EXPECT_EQ(refusal_of(bytes("\0\1\0\0")), "Malformed: not a sequence of octets: too short");
   EXPECT_EQ(refusal_of(bytes("\0\3\0\0\0\0\0\0")),
-            "Malformed: it is no sequence of octets: it is not in CDR");
+            "Malformed: not a sequence of octets: not in CDR");
   EXPECT_EQ(refusal_of(bytes("\0\1\0\0\5\0\0\0abcd")),
-            "Malformed: it is no sequence of octets: it says 5 and has 4");
+            "Malformed: not a sequence of octets: length 5, but 4 bytes");
   EXPECT_EQ(refusal_of(bytes("\0\1\0\0\xff\xff\xff\xff")),
-            "Malformed: it is no sequence of octets: it says 4294967295 and has 0");
+            "Malformed: not a sequence of octets: length 4294967295, but 0 bytes");
   EXPECT_EQ(refusal_of(bytes("\0\1\0\0\1\0\0\0abcdefgh")),
-            "Malformed: it is no sequence of octets: it says 1 and has 8");
+            "Malformed: not a sequence of octets: length 1, but 8 bytes");
   // The other byte order.
   const std::string message = encode(testing::numbered(7, 3));
   EXPECT_EQ(refusal_of(bytes("\0\0\0\0\0\0\0\36") + message, 1), "");

@@ -22,20 +22,20 @@ using internal::SendQueue;
 using internal::TimePoint;
 using std::chrono::steady_clock;
 
-constexpr std::size_t kCapacity = 1000;  // messages that wait before a sender that loses none does
+constexpr std::size_t kCapacity = 1000;  // queued messages before a sender with `keep=all` blocks
 constexpr std::size_t kMostReaders = 1000;
 
-/// Messages follow one another when no more time has passed between them: sooner than any could be
-/// answered, or another be computed. From so many on they are gathered.
+/// Messages closer together than this count as a burst: no reply could arrive in between. From
+/// kFewest messages on, a burst is batched.
 constexpr std::chrono::microseconds kFollowTime{2};
 constexpr std::size_t kFewest = 8;
-/// Between two samples of what is gathered; some 60 µs more by the kernel's timer slack.
+/// Pause between batched samples; the kernel's timer slack adds about 60 µs.
 constexpr std::chrono::microseconds kGather{20};
 
-/// Writes at once where Cyclone DDS takes a message. Where it does not, since readers have not
-/// acknowledged what went before, or the pace says so, the message waits by the link's policy, and
-/// a thread writes it as soon as may be. So it is with small messages that follow one another: what
-/// comes while the thread pauses goes together in the next sample.
+/// Writes directly if Cyclone DDS accepts the message. If it does not, because readers have not
+/// acknowledged earlier ones, or if the rate delays it, the message is queued under the link's
+/// policy and written by a thread. Bursts of small messages are also written by the thread: those
+/// sent while it pauses are batched into the next sample.
 class DdsSink final : public Sink {
  public:
   DdsSink(const Policy& policy, Audience audience, LinkOptions options)
@@ -71,7 +71,7 @@ class DdsSink final : public Sink {
     const std::uint64_t size = pieces[0].size() + pieces[1].size() + pieces[2].size();
     if (size > UINT32_MAX - kFrame)
       return Error{Code::TooLarge, "a message of " + std::to_string(size) +
-                                       " bytes is larger than any sample of DDS"};
+                                       " bytes exceeds the limit of a DDS sample"};
     std::unique_lock lock(mutex_);
     while (true) {
       if (failed_) return *failed_;
@@ -99,7 +99,7 @@ class DdsSink final : public Sink {
       }
     }
     patience_.end();
-    const bool follows = waits_ && size <= kMostCopied && steady_clock::now() - sent_ < kFollowTime;
+    const bool follows = waits_ && size <= kMaxCopied && steady_clock::now() - sent_ < kFollowTime;
     following_ = follows ? following_ + 1 : 0;
     const bool is_direct = !is_paced_ && following_ < kFewest && queue_.empty();
     if (!is_direct || !write(*make_sample(participant_->type(), pieces, message))) {
@@ -119,11 +119,10 @@ class DdsSink final : public Sink {
     while (outcome && !queue_.empty() && readers_ > 0 && !failed_ && !has_ended_)
       outcome = wait(lock);
     lock.unlock();
-    // Cyclone DDS throws away what its receiving thread holds while a reader has no room, when the
-    // writer leaves; what comes after that has been answered for says that it holds nothing. So the
-    // end is said twice.
-    if (outcome) outcome = await_answers();
-    for (int i = 0; i < 2 && outcome; ++i) outcome = say_end();
+    // When a writer leaves, Cyclone DDS discards what its receiving thread holds while a reader has
+    // no room. Once a later sample is acknowledged, it holds nothing, so the end is sent twice.
+    if (outcome) outcome = await_acknowledgements();
+    for (int i = 0; i < 2 && outcome; ++i) outcome = send_end();
     participant_->flush_log(options_.log);
     end();
     return outcome;
@@ -140,15 +139,15 @@ class DdsSink final : public Sink {
   }
 
  private:
-  /// A topic without a key has one instance. Cyclone DDS would make it for each sample again, and
-  /// wake a thread to delete it.
+  /// A topic without a key has one instance. Keeps it, or Cyclone DDS would create it for each
+  /// sample and wake a thread to delete it.
   static Status keep_instance(dds_entity_t writer, const std::string& topic) {
     dds_instance_handle_t handle = 0;
-    const auto kept = dds_register_instance(writer, &handle, &handle);  // whatever the data
+    const auto kept = dds_register_instance(writer, &handle, &handle);  // the data is ignored
     return kept == DDS_RETCODE_OK ? Status() : failed("writer of " + topic, kept);
   }
 
-  /// Called on a thread of Cyclone's.
+  /// Called on a thread of Cyclone DDS.
   void count_readers(std::uint32_t count) {
     const std::lock_guard lock(mutex_);
     readers_ = count;
@@ -157,7 +156,7 @@ class DdsSink final : public Sink {
     changed_.notify_one();
   }
 
-  /// Sends no more. With the mutex.
+  /// Stops sending. Call it with the mutex locked.
   void give_up() {
     has_ended_ = true;
     traffic_.dropped_disconnect += queue_.clear(traffic_);
@@ -169,7 +168,7 @@ class DdsSink final : public Sink {
     return {Code::Closed, have_left ? "all readers disconnected" : "the link is closed"};
   }
 
-  /// Waits until something has changed, or for so long; the lock is free meanwhile.
+  /// Waits for a change, at most until `until`; unlocks the mutex meanwhile.
   Status wait(std::unique_lock<std::mutex>& lock, TimePoint until = TimePoint::max()) {
     if (event_.clear()) return {};
     lock.unlock();
@@ -190,7 +189,8 @@ class DdsSink final : public Sink {
     return awaited;
   }
 
-  /// Where nothing is dropped or paced a small message joins the last sample. With the mutex.
+  /// Queues a message; appends it to the last sample if it is small and the link neither drops nor
+  /// delays messages. Call it with the mutex locked.
   void put_in_queue(const Pieces& pieces, const Message& message, std::uint64_t size) {
     const bool may_join = waits_ && !is_paced_ && !queue_.empty();
     if (may_join && join(*queue_.back(), pieces))
@@ -201,17 +201,17 @@ class DdsSink final : public Sink {
     changed_.notify_one();
   }
 
-  /// Hands a sample to Cyclone DDS; false where there is no room, or it has failed. With the mutex.
+  /// Writes a sample; false if Cyclone DDS has no room or fails. Call it with the mutex locked.
   bool write(ddsi_serdata& sample) {
     const auto written = dds_writecdr(writer_.handle(), ddsi_serdata_ref(&sample));
     if (written != DDS_RETCODE_OK && written != DDS_RETCODE_TIMEOUT) {
-      failed_ = failed("written", written);
-      event_.raise();  // for a sender that waits
+      failed_ = failed("write", written);
+      event_.raise();  // wakes a blocked sender
     }
     return written == DDS_RETCODE_OK;
   }
 
-  /// What the thread does: writes what waits.
+  /// Writes the queue, on the thread.
   void write_all() {
     constexpr std::chrono::microseconds kShortest{100}, kLongest{10'000};
     auto pause = kShortest;
@@ -241,19 +241,19 @@ class DdsSink final : public Sink {
     }
   }
 
-  Status say_end() {
+  Status send_end() {
     const auto end = make_end(participant_->type());
     {
       const std::lock_guard lock(mutex_);
       if (readers_ == 0 || has_ended_ || failed_) return {};
       write(*end);
     }
-    return await_answers();
+    return await_acknowledgements();
   }
 
-  /// Waits until all readers have what was written, or have left.
-  Status await_answers() {
-    constexpr std::chrono::seconds kGrace{2};  // after it is to stop
+  /// Waits until all readers have acknowledged everything or have left.
+  Status await_acknowledgements() {
+    constexpr std::chrono::seconds kGrace{2};  // after a request to stop
     std::optional<TimePoint> give_up;
     while (true) {
       {
@@ -264,11 +264,10 @@ class DdsSink final : public Sink {
       const auto now = steady_clock::now();
       if (!give_up && !wait_for(-1, 0, options_.stop, now)) give_up = now + kGrace;
       if (give_up && now >= *give_up)
-        return Error{Code::Truncated, "a reader has not acknowledged what was sent to it"};
+        return Error{Code::Truncated, "a reader has not acknowledged all messages"};
     }
   }
 
-  /// Ends the thread, and the link.
   void end() {
     abandon();
     if (thread_.joinable()) thread_.join();
@@ -279,14 +278,14 @@ class DdsSink final : public Sink {
   LinkOptions options_;
   internal::Patience patience_;
   Encoder encoder_;
-  Event event_;  // readable when something has changed that is waited for
+  Event event_;  // raised when the state below changes
 
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards the members up to failed_
   Audience audience_;
   std::condition_variable changed_;
   SendQueue<Sample> queue_;
-  TimePoint sent_{};           // when the last message was
-  std::size_t following_ = 0;  // messages that have followed one another so far
+  TimePoint sent_{};           // of the last message
+  std::size_t following_ = 0;  // length of the current burst
   Traffic traffic_;
   std::uint32_t readers_ = 0;
   bool has_ended_ = false;

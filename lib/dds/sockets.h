@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #pragma once
-/* The sockets of a domain of Cyclone DDS. Internal. Its headers that say so are no C++. */
+/* The sockets of a Cyclone DDS domain. Internal. In C, as Cyclone's headers for it are not C++. */
 
 #include <dds/ddsi/ddsi_sertype.h>
 
@@ -10,7 +10,7 @@ extern "C" {
 
 #define HC_DDS_MOST_SOCKETS 4
 
-/* Those that take packets for the domain of a type that has been registered; gives their number. */
+/* The sockets that receive for the domain of a registered type; returns their number. */
 int hc_dds_sockets(const struct ddsi_sertype* type, int sockets[HC_DDS_MOST_SOCKETS]);
 
 #ifdef __cplusplus

@@ -27,30 +27,30 @@ using std::chrono::steady_clock;
 
 class DdsSource;
 
-/// What Cyclone DDS gives samples to. Its own cache has no end that a thread in it could be let out
-/// by: where it is full, the receiving thread tries again, and the reader is not deleted meanwhile.
+/// Receives samples from Cyclone DDS. Its own reader cache cannot be used: when that is full, the
+/// receiving thread retries forever, and the reader cannot be deleted.
 struct Cache : dds_rhc {
   explicit Cache(DdsSource& to);
   DdsSource& source;
 };
 
-/// A message that waits, and its size [byte].
-struct Arrived {
+/// A queued message and its size [byte].
+struct Received {
   Message message;
   std::uint64_t bytes = 0;
 };
 
 class DdsSource final : public Source {
  public:
-  /// What waits for a reader that loses nothing; then its writers wait. [byte]
+  /// With `keep=all`, writers are blocked when this much is queued. [byte]
   static constexpr std::uint64_t kWindow = std::uint64_t{2} << 20;
-  static constexpr std::uint64_t kBesides = 256;  // of a message [byte]
-  /// What a writer that vanishes has sent may be on its way for so long.
+  static constexpr std::uint64_t kOverhead = 256;  // memory of a message besides its bytes [byte]
+  /// How long data of a vanished writer may still arrive.
   static constexpr std::chrono::seconds kPatience{1};
 
   DdsSource(const Policy& policy, LinkOptions options, std::chrono::seconds wait,
             std::chrono::seconds reconnect)
-      : loses_nothing_(policy.writer_waits()),
+      : blocks_writers_(policy.writer_waits()),
         options_(std::move(options)),
         reconnect_(reconnect),
         queue_(policy) {
@@ -63,7 +63,7 @@ class DdsSource final : public Source {
       const std::lock_guard lock(mutex_);
       is_closing_ = true;
     }
-    reader_.reset();  // nothing is called back from then on
+    reader_.reset();  // no callbacks afterwards
     timer_.end();
   }
 
@@ -89,25 +89,25 @@ class DdsSource final : public Source {
     participant_->flush_log(options_.log);
     const std::lock_guard lock(mutex_);
     if (queue_.empty()) return nothing();
-    auto [next, bytes] = queue_.pop({});  // it has no pace
+    auto [next, bytes] = queue_.pop({});  // the queue has no rate
     message = std::move(next);
     ++traffic_.messages;
     traffic_.bytes += bytes;
     return Got::Message;
   }
 
-  /// Takes a sample, on any thread of Cyclone's; false where there is no room for it now.
+  /// Takes a sample on a thread of Cyclone DDS; false if there is no room.
   bool store(dds_instance_handle_t writer, ddsi_serdata& sample, ddsi_tkmap_instance& instance) {
     std::unique_lock lock(mutex_);
-    // The topic's only one. Cyclone DDS would make it for each sample again, and wake a thread to
-    // delete it.
+    // Keeps the topic's only instance, or Cyclone DDS would create it for each sample and wake a
+    // thread to delete it.
     if (!std::exchange(has_instance_, true)) ddsi_tkmap_instance_ref(&instance);
     if (is_closing_ || sample.kind != SDK_DATA) return true;
     if (octets_of(sample) == 0) {
-      if (closed_.insert(writer).second && alive() == 0) await_next(std::chrono::seconds(0));
+      if (closed_.insert(writer).second && alive() == 0) await_writer(std::chrono::seconds(0));
       return true;
     }
-    if (loses_nothing_ && queue_.bytes() >= kWindow) return false;
+    if (blocks_writers_ && queue_.bytes() >= kWindow) return false;
     lock.unlock();
     const std::lock_guard reading(reading_);
     const auto read =
@@ -118,7 +118,7 @@ class DdsSource final : public Source {
     lock.lock();
     const bool is_first = queue_.empty();
     for (auto& [message, bytes] : read_)
-      queue_.push({std::move(message), bytes}, bytes + kBesides, losses_);
+      queue_.push({std::move(message), bytes}, bytes + kOverhead, losses_);
     lock.unlock();
     read_.clear();
     if (is_first) event_.raise();
@@ -142,67 +142,67 @@ class DdsSource final : public Source {
   }
 
  private:
-  /// Called on a thread of Cyclone's.
+  /// Called on a thread of Cyclone DDS.
   void count_writers(const dds_subscription_matched_status_t& status) {
     const std::lock_guard lock(mutex_);
     matched_ = status.current_count;
     const bool has_come = status.current_count_change > 0;
     const bool had_closed = !has_come && closed_.erase(status.last_publication_handle) > 0;
     if (has_come) {
-      has_had_one_ = true;
+      had_writer_ = true;
       give_up_ = TimePoint::max();
     } else if (!had_closed && alive() == 0) {
-      await_next(kPatience);
+      await_writer(kPatience);
     }
   }
 
-  /// How many writers have not closed. With the mutex.
+  /// The number of writers that have not closed. Call it with the mutex locked.
   [[nodiscard]] std::size_t alive() const { return matched_ - std::min(matched_, closed_.size()); }
 
-  /// There is no writer any more. @param least  until what is on its way will have come.
-  void await_next(std::chrono::seconds least) {
+  /// Waits for the next writer, at least for `least` since data may still arrive.
+  void await_writer(std::chrono::seconds least) {
     give_up_ = steady_clock::now() + std::max(least, reconnect_);
     timer_.call_at(give_up_);
     event_.raise();
   }
 
-  /// What there is to say where no message is. With the mutex.
+  /// The result of take() with an empty queue. Call it with the mutex locked.
   Result<Got> nothing() {
     event_.clear();
     if (alive() > 0) return Got::Nothing;
     if (give_up_ > steady_clock::now() && !is_final_) return Got::Nothing;
-    event_.raise();  // it stays so
-    if (!has_had_one_ && !is_final_) return Error{Code::NotFound, "nobody writes to this topic"};
+    event_.raise();  // remains readable
+    if (!had_writer_ && !is_final_) return Error{Code::NotFound, "no writer on this topic"};
     return Got::End;
   }
 
-  /// One line for each writer, however much it sends. With the mutex `reading_`.
+  /// Logs once per writer. Call it with `reading_` locked.
   void drop(dds_instance_handle_t writer, const std::string& what, const Error& why) {
     constexpr std::size_t kMost = 1000;
-    if (strangers_.size() >= kMost || !strangers_.insert(writer).second) return;
+    if (warned_.size() >= kMost || !warned_.insert(writer).second) return;
     participant_->warn("dropped " + what + ": " + why.text() +
-                       "; further ones of this writer are dropped in silence");
+                       "; further ones of this writer are not logged");
   }
 
-  const bool loses_nothing_;
+  const bool blocks_writers_;
   const LinkOptions options_;
   const std::chrono::seconds reconnect_;
   Event event_;
 
-  std::mutex reading_;  // of what follows; before the other one
+  std::mutex reading_;  // guards the members up to warned_; locked before mutex_
   internal::HeaderMemo memo_;
-  std::vector<Arrived> read_;  // out of a sample
-  std::set<dds_instance_handle_t> strangers_;
+  std::vector<Received> read_;  // from the current sample
+  std::set<dds_instance_handle_t> warned_;
 
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards the members up to give_up_
   Traffic traffic_;
-  SendQueue<Arrived> queue_;
+  SendQueue<Received> queue_;
   Traffic losses_;
   std::size_t matched_ = 0;                 // writers
-  std::set<dds_instance_handle_t> closed_;  // those of them that have
-  bool has_had_one_ = false, is_final_ = false, is_closing_ = false;
-  bool has_instance_ = false;             // keeps the topic's until the domain ends
-  TimePoint give_up_ = TimePoint::max();  // while there is no writer
+  std::set<dds_instance_handle_t> closed_;  // matched writers that have closed
+  bool had_writer_ = false, is_final_ = false, is_closing_ = false;
+  bool has_instance_ = false;             // holds the topic's instance until the domain ends
+  TimePoint give_up_ = TimePoint::max();  // when to end; set while there is no writer
 
   Watch timer_;
   Cache cache_{*this};  // outlives the participant
@@ -219,8 +219,8 @@ dds_rhc_ops make_cache_ops() {
   ops.rhc_ops.unregister_wr = [](ddsi_rhc*, const ddsi_writer_info*) {};
   ops.rhc_ops.relinquish_ownership = [](ddsi_rhc*, std::uint64_t) {};
   ops.rhc_ops.set_qos = [](ddsi_rhc*, const dds_qos*) {};
-  ops.rhc_ops.free = [](ddsi_rhc*) {};  // the source has it
-  // Nobody else takes anything out.
+  ops.rhc_ops.free = [](ddsi_rhc*) {};  // the source owns it
+  // Samples are only taken by the source, through store().
   ops.read = ops.take = [](dds_rhc*, bool, void**, dds_sample_info_t*, std::uint32_t, std::uint32_t,
                            dds_instance_handle_t, dds_readcond*) { return std::int32_t{0}; };
   ops.readcdr = ops.takecdr = [](dds_rhc*, bool, ddsi_serdata**, dds_sample_info_t*, std::uint32_t,

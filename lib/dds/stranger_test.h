@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A writer of a topic that sends what it likes, and a reader that counts its samples, for tests.
+// For tests: a writer of arbitrary samples to a topic, and a reader that counts samples.
 
 #include <memory>
 #include <string>
@@ -62,7 +62,7 @@ class SampleCounter {
     EXPECT_GT(reader_.handle(), 0);
   }
 
-  /// How many samples of messages come until their writer closes.
+  /// The number of samples with messages before the writer closes.
   int count() {
     for (int count = 0;;) {
       ddsi_serdata* taken = nullptr;

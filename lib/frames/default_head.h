@@ -6,8 +6,8 @@
 
 namespace hc::frames {
 
-/// As the parameter `frames` (spec/graph.md, G31): a pan-tilt unit 1.2 m above the floor, two eyes
-/// 0.10 m apart and two ears. The same as graphs/simulated_head.toml declares.
+/// In the form of the parameter `frames` (spec/graph.md, G31): a pan-tilt unit 1.2 m above the
+/// floor, two eyes 0.10 m apart and two ears, as in graphs/simulated_head.toml.
 inline constexpr std::string_view kDefaultHead =
     "robot 2 world 0 0 1.2 0 0 0 1; head 3 robot neck.pose 0; "
     "left_eye 4 head 0.06 0.05 0.05 -0.5 0.5 -0.5 0.5; "

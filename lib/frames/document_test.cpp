@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The example of doc/frames.md is repeated here, letter for letter, and runs.
+// Runs the example of doc/frames.md, repeated here verbatim.
 #include <gtest/gtest.h>
 
 #include <fstream>

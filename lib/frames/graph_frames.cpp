@@ -32,7 +32,7 @@ std::int32_t standard_number(std::string_view name) {
 
 /// One frame of the text.
 struct Entry {
-  std::size_t place;  // from 1 on
+  std::size_t place;  // from 1
   std::string_view name, parent;
   std::int32_t number = 0;
   std::vector<std::string_view> joint;  // the words after the parent
@@ -41,7 +41,7 @@ struct Entry {
     return Error{code, "frames: frame " + std::to_string(place) + ", " +
                            std::string(name.substr(0, kMostShown)) + ": " + what};
   }
-  /// What the tree says, with the frame before it.
+  /// An error of the tree, with the frame's name prepended.
   [[nodiscard]] Error error(const Error& cause) const {
     constexpr std::string_view kBefore = "frames: ";
     std::string_view detail = cause.detail;
@@ -61,7 +61,7 @@ Result<Entry> read_entry(std::size_t place, std::string_view text) {
   const std::string which = "frames: frame " + std::to_string(place);
   for (auto word : words)
     if (!is_word(word))
-      return Error{Code::Malformed, which + ": " + quoted(word) + " is no word of it"};
+      return Error{Code::Malformed, which + ": " + quoted(word) + " is not a valid word"};
   if (words.size() != kMovedWords && words.size() != kFixedWords)
     return Error{Code::Malformed,
                  hc::format("{}: {} has {} words, not {} (moved) or {} (fixed)", which,
@@ -87,7 +87,7 @@ Result<Eigen::Isometry3d> fixed_joint(const Entry& entry) {
   std::array<double, 7> numbers{};
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (!read_number(entry.joint[i], numbers[i]) || !std::isfinite(numbers[i]))
-      return entry.error(Code::Malformed, quoted(entry.joint[i]) + " is no number");
+      return entry.error(Code::Malformed, quoted(entry.joint[i]) + " is not a number");
   Eigen::Quaterniond q(numbers[6], numbers[3], numbers[4], numbers[5]);
   if (!(std::abs(q.coeffs().stableNorm() - 1) <= kRotationTolerance))
     return entry.error(Code::Malformed, "its quaternion is not of length 1");
@@ -104,13 +104,13 @@ Result<Mover> moved_joint(const Entry& entry, std::int32_t parent_number) {
     return entry.error(Code::Malformed, quoted(output) + " is not MODULE.PORT");
   std::int32_t source = 0;
   if (!read_number(entry.joint[1], source) || source < 0)
-    return entry.error(Code::Malformed, quoted(entry.joint[1]) + " is no src of messages");
+    return entry.error(Code::Malformed, quoted(entry.joint[1]) + " is not a src");
   const bool numbered = entry.number != 0 && parent_number != 0;
   return Mover{std::string(entry.parent), std::string(entry.name), std::string(output), source,
                numbered ? kFrameNumbers * parent_number + entry.number : 0};
 }
 
-/// Two frames that the same messages move, neither of which they could name.
+/// Refuses two frames that are moved by the same messages, but have no numbers to distinguish them.
 Status check_movers(const std::vector<Mover>& movers) {
   std::map<std::int32_t, const Mover*> unnumbered;
   for (const auto& mover : movers) {
@@ -127,7 +127,7 @@ Status check_movers(const std::vector<Mover>& movers) {
 }  // namespace
 
 Result<const Mover*> GraphFrames::mover_of(std::int32_t source, std::int32_t coord) const {
-  bool is_known = false;  // whose the src is
+  bool is_known = false;  // a mover has this src
   const Mover *by_coord = nullptr, *by_source = nullptr;
   for (const auto& mover : movers) {
     is_known = is_known || (source != 0 && mover.source == source);
@@ -164,7 +164,7 @@ Result<GraphFrames> read_frames(std::string_view text, const Memory& memory) {
       std::vector<std::string> known(numbers.size());
       std::transform(numbers.begin(), numbers.end(), known.begin(),
                      [](const auto& each) { return std::string(each.first); });
-      return entry.error(Code::Malformed, "there is no frame " + quoted(entry.parent) +
+      return entry.error(Code::Malformed, "no frame " + quoted(entry.parent) +
                                               suggestion(entry.parent, known) + "; the root is " +
                                               std::string(root));
     }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The frames of a graph file, as `hc run` passes them to a module (spec/graph.md, G31), as a tree.
-// Pure.
+// Reads the frames of a graph file, which `hc run` passes to modules (spec/graph.md, G31). Pure.
 
 #include <cstdint>
 #include <string>
@@ -12,7 +11,7 @@
 
 namespace hc::frames {
 
-/// What reports the pose of a frame that moves.
+/// The source of a moving frame's pose.
 struct Mover {
   std::string parent, child;  ///< the joint
   std::string output;         ///< "MODULE.PORT"
@@ -20,34 +19,32 @@ struct Mover {
   std::int32_t coord = 0;     ///< 1000 · parent + child (R44); 0: one of them has no number
 };
 
-/// A graph's frames. `hc::feed()` (frames/messages.h) hands messages to them.
+/// A graph's frames. `hc::feed()` (frames/messages.h) feeds them with messages.
 struct GraphFrames {
   Tree tree;
   std::vector<Mover> movers;  ///< in the order of the text
 
-  /// Who is meant by the pose of a message: the one of its coord, unless its src is another
-  /// mover's; or else the one without a coord that has its src. What is passed on by others keeps
-  /// the src that it began with, so a src that nobody has says nothing.
+  /// The mover of a message: the one with its coord, unless its src belongs to another mover; else
+  /// the one without a coord that has its src. Forwarded messages keep their original src, so an
+  /// unknown src does not matter.
   ///
-  /// Errors: NotFound (none of them: "frames: no frame is moved by messages from 12 with coord
-  /// 2003").
+  /// Errors: NotFound ("frames: no frame is moved by messages from 12 with coord 2003").
   [[nodiscard]] Result<const Mover*> mover_of(std::int32_t source, std::int32_t coord) const;
 };
 
-/// Most frames of one text.
+/// Maximum number of frames.
 inline constexpr std::size_t kMostFrames = 1000;
 
-/// Reads the text of a module's parameter `frames`: frames joined by `;`, each a line of words.
+/// Reads the text of a module's parameter `frames`: frames separated by `;`, each a list of words.
 ///
 ///     head 3 robot neck.pose 11; left_eye 4 head 0 0.03 0 0 0 0 1
 ///
-/// An empty text is a tree without frames. A parent that has no entry is the root; it has a number
-/// if it is one of kStandardFrames.
+/// An empty text is an empty tree. A parent without an entry is the root; it has a number if it is
+/// one of kStandardFrames.
 ///
-/// @param memory  of each joint that moves.
+/// @param memory  of each moving joint.
 ///
-/// Errors: Malformed, TooLarge, Invalid (as Tree's): one line that names the frame, "frames: frame
-/// 2, left_eye: …".
+/// Errors: Malformed, TooLarge, Invalid (as Tree), with the frame: "frames: frame 2, left_eye: …".
 Result<GraphFrames> read_frames(std::string_view text, const Memory& memory = {});
 
 }  // namespace hc::frames

@@ -61,21 +61,21 @@ TEST(GraphFrames, ErrorsNameTheFrameAndWhatWouldBeRight) {
   const std::pair<const char*, const char*> malformed[] = {
       {"hello", "frame 1: \"hello\" has 1 words, not 5 (moved) or 10 (fixed)"},
       {"a 0 b c.d 1; ; e 0 a f.g 2", "frame 2: \"\" has 0 words, not 5 (moved) or 10 (fixed)"},
-      {"a 0 b\n 0 0 0 0 0 0 1", "frame 1: \"b\\n\" is no word of it"},
+      {"a 0 b\n 0 0 0 0 0 0 1", "frame 1: \"b\\n\" is not a valid word"},
       {"a x b c.d 1", "frame 1, a: a frame's number is from 0 (none) to 999, not \"x\""},
       {"a 1000 b c.d 1", "frame 1, a: a frame's number is from 0 (none) to 999, not \"1000\""},
       {"head 5 b c.d 1", "frame 1, head: its number is 3, not 5"},
       {"nose 3 b c.d 1", "frame 1, nose: the number 3 is that of head"},
-      {"a 0 b 1 2 3 0 0 0 x", "frame 1, a: \"x\" is no number"},
-      {"a 0 b 1 2 inf 0 0 0 1", "frame 1, a: \"inf\" is no number"},
+      {"a 0 b 1 2 3 0 0 0 x", "frame 1, a: \"x\" is not a number"},
+      {"a 0 b 1 2 inf 0 0 0 1", "frame 1, a: \"inf\" is not a number"},
       {"a 0 b 1 2 3 0 0 1 1", "frame 1, a: its quaternion is not of length 1"},
       {"a 0 b c 1", "frame 1, a: \"c\" is not MODULE.PORT"},
       {"a 0 b c. 1", "frame 1, a: \"c.\" is not MODULE.PORT"},
       {"a 0 b .d 1", "frame 1, a: \".d\" is not MODULE.PORT"},
       {"a 0 b c.d.e 1", "frame 1, a: \"c.d.e\" is not MODULE.PORT"},
-      {"a 0 b c.d -1", "frame 1, a: \"-1\" is no src of messages"},
+      {"a 0 b c.d -1", "frame 1, a: \"-1\" is not a src"},
       {"head 3 robot c.d 1; nose 0 haed c.e 2",
-       "frame 2, nose: there is no frame \"haed\", did you mean \"head\"?; the root is robot"},
+       "frame 2, nose: no frame \"haed\", did you mean \"head\"?; the root is robot"},
       {"a 0 b c.d 1; e 0 b c.d 1",
        "a and e are moved by messages of the src 1, so they and their parents need numbers"}};
   for (const auto& [text, wrong] : malformed)
@@ -93,7 +93,7 @@ TEST(GraphFrames, ErrorsNameTheFrameAndWhatWouldBeRight) {
   EXPECT_EQ(refusal(many), "TooLarge: frames: 1001 frames are more than 1000");
 }
 
-/// As lib/graph writes it (G31), which has no Eigen.
+/// The format of lib/graph (G31), which does not use Eigen.
 std::string text_of(const Eigen::Isometry3d& joint) {
   std::ostringstream text;
   text.precision(17);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Messages as Eigen matrices and poses, and back. Header only. Pure.
+// Converts messages to Eigen matrices and poses, and back. Header only. Pure.
 
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -11,13 +12,13 @@
 
 namespace hc {
 
-/// Rows and columns of scalars, row by row as the format has them.
+/// A matrix of scalars in row-major order, as in messages.
 template <typename T>
 using RowMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The elements as a matrix of `height` rows and `width × components` columns: a transformation as
-/// it is, a path of positions with a row for each when it has width 1. Views the message, which
-/// must live longer.
+/// it is, a list of positions of width 1 with one per row. A view of the message, which must
+/// outlive it.
 ///
 /// Errors: Unsupported (compressed; another scalar than T).
 template <ScalarType T>
@@ -28,7 +29,7 @@ Result<Eigen::Map<const RowMajor<T>>> as_eigen(const Message& message) {
                                        static_cast<Eigen::Index>(view.width() * view.components()));
 }
 
-/// The elements of a draft, to be written in place. Another scalar than the draft's is a bug.
+/// The elements of a draft, to write in place; T must be the draft's scalar.
 template <ScalarType T>
 Eigen::Map<RowMajor<T>> as_eigen(const Draft& draft) {
   auto view = draft.view<T>();
@@ -36,27 +37,21 @@ Eigen::Map<RowMajor<T>> as_eigen(const Draft& draft) {
                                  static_cast<Eigen::Index>(view.width() * view.components()));
 }
 
-/// A pose: (4, 4) f64, p_to = T_to_from · (x y z 1)ᵀ, lengths in metres.
-inline MessageOf<TransformationKind<double>> transformation(const Eigen::Isometry3d& T_to_from) {
-  const RowMajor<double> rows = T_to_from.matrix();
-  return transformation<double>(4, 4, {rows.data(), 16});
+/// A pose as the 16 numbers of a transformation, row by row: p_to = T_to_from · (x y z 1)ᵀ, lengths
+/// in metres.
+///
+///     pose.send(hc::numbers_of(T_world_head), time);
+inline std::array<double, 16> numbers_of(const Eigen::Isometry3d& T_to_from) {
+  std::array<double, 16> numbers{};
+  Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data()) = T_to_from.matrix();
+  return numbers;
 }
 
-/// One position: x y z.
-inline MessageOf<PositionKind<double>> position(const Eigen::Vector3d& p) {
-  return position(p.x(), p.y(), p.z());
-}
-
-/// One rotation by roll, pitch, yaw [rad].
-inline MessageOf<RotationKind<double>> rotation(const Eigen::Vector3d& angles) {
-  return rotation(angles.x(), angles.y(), angles.z());
-}
-
-/// A rigid transformation out of a message: a joint of frames::Tree takes all four.
+/// A rigid transformation from a message, for a joint of frames::Tree.
 struct TimedPose {
-  std::int32_t to = 0;    ///< frame into which it takes points, the parent of a joint; 1 … 999
-  std::int32_t from = 0;  ///< frame out of which it takes them, the child; 1 … 999
-  std::int64_t time = 0;  ///< when it was so [ns since the Unix epoch]; 0: unknown
+  std::int32_t to = 0;    ///< target frame, the parent of a joint; 1 … 999
+  std::int32_t from = 0;  ///< source frame, the child; 1 … 999
+  std::int64_t time = 0;  ///< [ns since the Unix epoch]; 0: unknown
   Eigen::Isometry3d T_to_from = Eigen::Isometry3d::Identity();  ///< translation [m]
 };
 
@@ -70,7 +65,7 @@ Result<Eigen::Isometry3d> rigid_of(const Message& message) {
 
 }  // namespace internal
 
-/// The transformation of 4 x 4 that a message carries, f32 or f64, whatever its coord.
+/// The 4 x 4 transformation in a message, f32 or f64, with any coord.
 ///
 /// Errors: Unsupported (another matrix type or shape; compressed); Malformed (frames::rigid()).
 inline Result<Eigen::Isometry3d> rigid_of(const Message& message) {
@@ -82,13 +77,13 @@ inline Result<Eigen::Isometry3d> rigid_of(const Message& message) {
                                            : internal::rigid_of<double>(message);
 }
 
-/// The pose that a `transformation` carries: 4 rows of 4 numbers of f32 or f64, for column vectors,
-/// p_to = T_to_from · (x y z 1)ᵀ, lengths in metres, frames in `coord` = 1000 · to + from
-/// (spec/mtp-1.md, R44). It is the one matrix type that holds a pose: a `position` is a point, and
-/// a `rotation` (see rotation_of) angles alone; neither says what it is that is there.
+/// The pose in a `transformation`: 4 rows of 4 numbers of f32 or f64, for column vectors, p_to =
+/// T_to_from · (x y z 1)ᵀ, lengths in metres, frames in `coord` = 1000 · to + from (spec/mtp-1.md,
+/// R44). The only matrix type for poses: a `position` is a point, and a `rotation` (see
+/// rotation_of) only angles, and neither names the frame that it describes.
 ///
 /// Errors: Unsupported (another matrix type or shape; compressed); Malformed (a coord that does not
-/// name two frames; what frames::rigid() refuses).
+/// name two frames; as frames::rigid()).
 /// Cost: no allocation unless it fails.
 inline Result<TimedPose> pose_of(const Message& message) {
   auto T_to_from = HC_TRY(rigid_of(message));
@@ -99,10 +94,10 @@ inline Result<TimedPose> pose_of(const Message& message) {
   return TimedPose{header.coord / 1000, header.coord % 1000, header.time, T_to_from};
 }
 
-/// Hands a pose to the frames of a graph: to the one that its src and coord mean.
+/// Feeds a pose to the frame of a graph that its src and coord identify.
 ///
-/// Errors: as GraphFrames::mover_of() (no frame is meant), pose_of() but for the coord of a frame
-/// without a number, and Tree::feed() (a time of 0). Nothing changes then.
+/// Errors: as GraphFrames::mover_of() (no such frame), rigid_of(), and Tree::feed() (a time of 0);
+/// then nothing changes.
 inline Result<frames::Fed> feed(frames::GraphFrames& frames, const Message& message) {
   auto mover = HC_TRY(frames.mover_of(message.header.src, message.header.coord));
   auto pose = HC_TRY(rigid_of(message));
@@ -111,16 +106,15 @@ inline Result<frames::Fed> feed(frames::GraphFrames& frames, const Message& mess
 }
 
 /// The rotation in a `rotation` of one element: roll φ, pitch θ, yaw ψ [rad], right-handed,
-/// R = Rz(ψ) Ry(θ) Rx(φ) (see frames::rotation); rates and accelerations are ignored. Of the gaze
-/// (coord 13), which is roll, tilt and pan, it turns vectors of the head into the pan-tilt unit's
-/// frame: pan > 0 looks to the left, tilt > 0 looks down.
+/// R = Rz(ψ) Ry(θ) Rx(φ) (see frames::rotation); ignores rates and accelerations. For the gaze
+/// (coord 13), which is roll, tilt and pan, it rotates vectors from the head's frame to the
+/// pan-tilt unit's: pan > 0 looks left, tilt > 0 looks down.
 ///
-/// Errors: Unsupported (another matrix type or more than one element; compressed); Malformed (not
-/// finite).
+/// Errors: Unsupported (another type; several elements; compressed); Malformed (not finite).
 inline Result<Eigen::Quaterniond> rotation_of(const Message& message) {
   const Header& header = message.header;
   if (header.info.type != MatrixType::Rotation || header.width != 1 || header.height != 1)
-    return Error{Code::Unsupported, "one rotation is asked for, not " +
+    return Error{Code::Unsupported, "expected one rotation, not " +
                                         matrix_text(header.info, header.width, header.height)};
   Eigen::Vector3d angles;
   if (header.info.scalar == Scalar::F32) {

@@ -20,7 +20,7 @@ Message message_of(std::string_view bytes) {
   return message.keep();
 }
 
-// A head turned to the left by a right angle, 0.3 m above its robot, as one would type it.
+// A head turned 90° to the left, 0.3 m above its robot, as typed by hand.
 constexpr std::string_view kHeadPose =
     "1 7 0 0 8 1763683200123456789 70190 1 2003 4 4\n"
     "0 -1 0 0\n1 0 0 0\n0 0 1 0.3\n0 0 0 1\n";
@@ -84,8 +84,9 @@ TEST(Pose, RefusesWhatIsNone) {
   EXPECT_EQ(refusal("0.3", "nan"),
             "Malformed: frames: the transformation has a number that is not finite");
   EXPECT_EQ(refusal("0 0 0 1", "0 0 0 2"),
-            "Malformed: frames: the transformation has no last row 0 0 0 1");
-  EXPECT_EQ(refusal("-1", "1"), "Malformed: frames: the transformation is not rigid: it mirrors");
+            "Malformed: frames: the transformation has another last row than 0 0 0 1");
+  EXPECT_EQ(refusal("-1", "1"),
+            "Malformed: frames: the transformation is not rigid: it is a reflection");
   Message packed = message_of(kHeadPose);
   packed.header.info.encoding = Encoding::Zstd;
   EXPECT_EQ(pose_of(packed).error().code, Code::Unsupported);
@@ -108,15 +109,15 @@ TEST(Rotation, RefusesWhatIsNone) {
     return rotation_of(message_of(bytes)).error().text();
   };
   EXPECT_EQ(refused("1 7 0 0 8 1 10390 1 13 1 1\n0 0 0\n"),
-            "Unsupported: one rotation is asked for, not position 1 x 1 of 3 x f64");
+            "Unsupported: expected one rotation, not position 1 x 1 of 3 x f64");
   EXPECT_EQ(refused("1 7 0 0 8 1 20390 1 13 1 0\n\n"),
-            "Unsupported: one rotation is asked for, not rotation 1 x 0 of 3 x f64");
+            "Unsupported: expected one rotation, not rotation 1 x 0 of 3 x f64");
   EXPECT_EQ(refused("1 7 0 0 8 1 20390 1 13 1 1\n0 inf 0\n"),
             "Malformed: a rotation's angle is not finite");
 }
 
 TEST(Eigen, SharesATransformation) {
-  Draft draft = Draft::make({MatrixType::Transformation, 1, Scalar::F64, Encoding::Text}, 4, 3);
+  Draft draft = Draft::make({MatrixType::Transformation, 1, Scalar::F64, Encoding::Text}, 3, 4);
   auto made = as_eigen<double>(draft);
   ASSERT_EQ(made.rows(), 3);
   ASSERT_EQ(made.cols(), 4);
@@ -131,18 +132,18 @@ TEST(Eigen, SharesATransformation) {
 }
 
 TEST(Eigen, APathHasARowForEachPosition) {
-  Draft draft = Draft::make(Info(), 1, 5);
+  Draft draft = Draft::make(Info(), 5, 1);
   EXPECT_EQ(as_eigen<double>(draft).rows(), 5);
   EXPECT_EQ(as_eigen<double>(draft).cols(), 3);
 }
 
-TEST(Eigen, PosesAreMadeInOneLine) {
+TEST(Eigen, APoseGivesItsNumbers) {
   Eigen::Isometry3d T_world_head(Eigen::Translation3d(1, 2, 3) * frames::rotation(0, 0, 1.5));
-  auto message = transformation(T_world_head).in(transform_coord(Coord::kWorld, Coord::kHead));
+  const auto kind = transformation().in(transform_coord(Coord::kWorld, Coord::kHead));
+  const auto message = kind.message(numbers_of(T_world_head));
   EXPECT_LT((pose_of(message)->T_to_from.matrix() - T_world_head.matrix()).norm(), 1e-15);
   EXPECT_EQ(message.matrix().at(1, 3), 2);
-  EXPECT_EQ(position(Eigen::Vector3d(1, 2, 3)).matrix().at(0, 0, 2), 3);
-  const auto q = *rotation_of(rotation(Eigen::Vector3d(0, 0, 1.5)));
+  const auto q = *rotation_of(rotation().message({0, 0, 1.5}));
   EXPECT_LT(q.angularDistance(frames::rotation(0, 0, 1.5)), 1e-12);
 }
 

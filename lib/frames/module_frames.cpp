@@ -19,12 +19,12 @@ ModuleFrames::ModuleFrames(Module& module, const Options& options)
     : module_(module),
       options_(options),
       text_(module.parameter("frames", std::string(frames::kDefaultHead), "",
-                             "frames of the graph: set by hc run, else those of the default head",
+                             "frames of the graph, set by hc run; default: the default head",
                              {.fixed = true})) {
   if (!options.input) return;
   auto poses =
-      module.input("frames", any_of(transformation<double>(4, 4), transformation<float>(4, 4)),
-                   "poses of the frames that move, T_parent_child [m]: linked by hc run");
+      module.input("frames", any_of(transformation(), transformation<float>()),
+                   "poses of moving frames, T_parent_child [m]; linked by hc run");
   module.on(poses, [this](const Message& message) {
     const auto& header = message.header;
     const auto* mover = value_or_drop(known().mover_of(header.src, header.coord));

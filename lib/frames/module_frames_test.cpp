@@ -29,7 +29,7 @@ class DefaultHead : public ::testing::Test {
   void pass(std::int64_t ms) { clock_.advance(std::chrono::milliseconds(ms)); }
 
   ManualClock clock_;
-  Module module_{"test", "A test.", clock_};
+  Module module_{"test", "A test.", {.clock = &clock_}};
   ModuleFrames frames_{module_, {.input = false}};
   std::vector<double> answers_;
 };

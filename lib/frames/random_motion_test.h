@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Random transformations for the tests here, and one interpolated in another way than the library.
+// Random transformations for tests, and an interpolation independent of the library.
 
 #include <cmath>
 #include <numbers>

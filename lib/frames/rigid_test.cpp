@@ -48,14 +48,14 @@ TEST(Rigid, RefusesWhatIsNot) {
       }
   Eigen::Matrix4d projective = one, scaled = one, sheared = one, mirrored = one, huge = one;
   projective(3, 3) = 2;
-  EXPECT_EQ(refusal(projective), "frames: the transformation has no last row 0 0 0 1");
+  EXPECT_EQ(refusal(projective), "frames: the transformation has another last row than 0 0 0 1");
   scaled.topLeftCorner<3, 3>() *= 1.001;
   sheared(0, 1) = 0.01;
   huge(2, 2) = 1e200;
   for (const auto& matrix : {scaled, sheared, huge, Eigen::Matrix4d(one.col(3).asDiagonal())})
     EXPECT_NE(refusal(matrix).find("not rigid: its axes"), std::string::npos) << matrix;
   mirrored(1, 1) = -1;
-  EXPECT_EQ(refusal(mirrored), "frames: the transformation is not rigid: it mirrors");
+  EXPECT_EQ(refusal(mirrored), "frames: the transformation is not rigid: it is a reflection");
 }
 
 TEST(Rigid, TakesAQuaternionOfAnyLengthAndEitherSign) {
@@ -103,7 +103,7 @@ TEST(Between, IsAsAxisAndAngleSay) {
   RandomMotion random(4);
   for (int i = 0; i < 2000; ++i) {
     Eigen::Isometry3d a = random.transformation(), b = random.transformation();
-    if (i % 2 == 0)  // near one another, as in a movement
+    if (i % 2 == 0)  // close to one another, as in a motion
       b = Eigen::AngleAxisd(random.number(0, 1e-3), random.vector(1).normalized()) * a;
     double share = random.number(0, 1);
     Pose pose_a(a), pose_b(b);
@@ -123,7 +123,7 @@ TEST(Between, ReachesBothEndsAndStaysOfLengthOne) {
     EXPECT_EQ(between(a, b, 1).q.coeffs(), b.q.coeffs());
     Pose middle = between(a, b, random.number(0, 1));
     EXPECT_NEAR(middle.q.norm(), 1, 4e-16);
-    // Symmetric, and the shorter way: no further from either end than they from one another.
+    // Symmetric, and the shorter way: no farther from either end than the ends are apart.
     EXPECT_LE(a.q.angularDistance(middle.q), a.q.angularDistance(b.q) + 1e-7);
   }
 }
@@ -133,7 +133,7 @@ TEST(Between, TakesTheShorterWayAcrossHalfATurn) {
   a.q = rotation(0, 0, kPi - 0.1);
   b.q = rotation(0, 0, -kPi + 0.1);
   EXPECT_NEAR(between(a, b, 0.5).q.angularDistance(rotation(0, 0, kPi)), 0, 1e-7);
-  b.q = rotation(0, 0, -0.1);  // just half a turn: either way, but a rotation
+  b.q = rotation(0, 0, -0.1);  // exactly half a turn: either way, but a rotation
   EXPECT_NEAR(between(a, b, 0.5).q.norm(), 1, 4e-16);
   EXPECT_NEAR(between(a, b, 0.5).q.angularDistance(a.q), kPi / 2, 1e-7);
 }

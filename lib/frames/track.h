@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How one frame moved in another, as far back as is remembered.
-// Not safe for several threads at once; const calls alone are.
+// The recent motion of one frame in another. Only const calls are thread-safe.
 
 #include <chrono>
 #include <cstddef>
@@ -14,17 +13,16 @@
 
 namespace hc::frames {
 
-/// How much of a movement is kept, and how far apart poses may be to interpolate between them.
-/// What passes `span` or `poses` is forgotten, the oldest first.
+/// Limits of a track, beyond which the oldest poses are forgotten.
 struct Memory {
-  std::chrono::nanoseconds span = std::chrono::seconds(10);  ///< before the latest time, over 0
+  std::chrono::nanoseconds span = std::chrono::seconds(10);  ///< before the latest time, > 0
   std::size_t poses = 4096;                                  ///< at least 1
-  /// Between neighbours that are further apart nothing is known, over 0. One second is longer than
-  /// any source of poses pauses that follows a movement, and a head turns away and back in it.
+  /// No interpolation over a longer gap, > 0. One second is longer than the pauses of a source
+  /// during a motion, and long enough for a head to turn away and back.
   std::chrono::nanoseconds gap = std::chrono::seconds(1);
 };
 
-/// From when to when something is known, both ends included [ns, as in a message's header].
+/// A closed time interval [ns, as in a message's header].
 struct TimeSpan {
   std::int64_t first = 0;
   std::int64_t last = std::numeric_limits<std::int64_t>::max();
@@ -32,11 +30,11 @@ struct TimeSpan {
   bool operator==(const TimeSpan&) const = default;
 };
 
-/// What became of a pose that was given.
+/// The result of adding a pose.
 enum class Fed {
-  Added,     ///< it is kept, in its place by time
-  Replaced,  ///< it is kept instead of another of the same time
-  TooOld,    ///< it is not: it lies further back than is remembered
+  Added,     ///< inserted by time
+  Replaced,  ///< replaced another of the same time
+  TooOld,    ///< dropped: older than the memory
 };
 
 /// Poses by time.
@@ -44,34 +42,31 @@ class Track {
  public:
   explicit Track(const Memory& memory) : memory_(memory) {}
 
-  /// Takes a pose in, in any order of time: the memory reaches back from the latest time of all.
+  /// Adds a pose, in any order of time; the memory reaches back from the latest time.
   ///
-  /// @param time  [ns], over 0.
+  /// @param time  > 0 [ns].
   /// @param pose  finite, its quaternion of length 1.
   /// Cost: constant for the latest time; linear in the poses after it for an earlier one.
   Fed add(std::int64_t time, const Pose& pose);
 
   [[nodiscard]] bool empty() const { return samples_.empty(); }
-  /// From the oldest to the latest pose, gaps included. Of an empty track: a bug.
+  /// From the oldest to the latest pose, including gaps. The track must not be empty.
   [[nodiscard]] TimeSpan known() const;
 
-  /// The two poses around a time within known(), if too much time lies between them.
+  /// The gap at a time within known(), if any.
   /// Cost: logarithmic in the poses; no allocation.
   [[nodiscard]] std::optional<TimeSpan> gap_at(std::int64_t time) const;
 
-  /// The latest times up to `time`, without a gap in them, of which something is known; nothing:
-  /// all that is known is later.
+  /// The latest known span up to `time` without a gap; nothing if all poses are later.
   /// Cost: linear in the poses of that span.
   [[nodiscard]] std::optional<TimeSpan> known_until(std::int64_t time) const;
 
-  /// The pose of that time, or what lies between its neighbours. A time outside known(), or in a
-  /// gap: a bug.
+  /// The pose at a time, interpolated. The time must be within known(), and not in a gap.
   /// Cost: logarithmic in the poses; no allocation.
   [[nodiscard]] Pose at(std::int64_t time) const;
 
-  /// The pose of any time, of what does not move unless a pose says so: before all that is known
-  /// its first pose, after it the last, in a gap the one before it. Of an empty track: a bug. Cost:
-  /// as at().
+  /// The pose at any time: before known() the first, after it the last, in a gap the previous one.
+  /// The track must not be empty. Cost: as at().
   [[nodiscard]] Pose nearest(std::int64_t time) const;
 
   void clear() { samples_.clear(); }
@@ -83,7 +78,7 @@ class Track {
   };
 
   [[nodiscard]] std::deque<Sample>::const_iterator first_from(std::int64_t time) const;
-  /// Times are over 0, so that no difference overflows.
+  /// Times are > 0, so that no difference overflows.
   [[nodiscard]] bool is_gap(const Sample& before, const Sample& next) const {
     return next.time - before.time > memory_.gap.count();
   }

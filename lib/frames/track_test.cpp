@@ -98,7 +98,7 @@ TEST(Track, IsWhatASortedListWouldBe) {
       std::int64_t asked =
           random.whole(static_cast<int>(all.begin()->first), static_cast<int>(all.rbegin()->first));
       auto next = all.lower_bound(asked), before = next == all.begin() ? next : std::prev(next);
-      // Known, from each time backwards, one by one.
+      // Known backwards from each time, one by one.
       auto is_known = [&](std::int64_t at) {
         auto right = all.lower_bound(at);
         if (right == all.end() || right->first == at) return right != all.end();

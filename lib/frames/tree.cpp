@@ -15,13 +15,13 @@ Error error(Code code, const std::string& what) {
   return Error{code, "frames: " + what};
 }
 
-/// "12.3 ms": a difference of times as people say it.
+/// A duration as text: "12.3 ms".
 std::string duration(std::uint64_t ns) {
   if (ns < 1000) return std::to_string(ns) + " ns";
   double value = static_cast<double>(ns) / 1e3;
   const char* unit = " µs";
   for (const char* next : {" ms", " s"}) {
-    if (value < 999.95) break;  // what is more would be shown as 1000.0
+    if (value < 999.95) break;  // more would be shown as 1000.0
     value /= 1e3;
     unit = next;
   }
@@ -30,7 +30,7 @@ std::string duration(std::uint64_t ns) {
 
 /// ", asked for 25 ns: 5 ns too late", of a time outside the span.
 std::string outside(std::int64_t time, TimeSpan span) {
-  if (time == 0) return ", asked for time 0, which is none";
+  if (time == 0) return ", asked for time 0, which means unknown";
   // Unsigned, so that no difference overflows.
   auto since = [](std::int64_t later, std::int64_t earlier) {
     return duration(static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier));
@@ -81,12 +81,12 @@ Result<std::size_t> Tree::find(const Frame& frame) const {
   if (const auto* number = std::get_if<std::int32_t>(&frame)) {
     auto found = by_number_.find(*number);
     if (found != by_number_.end()) return found->second;
-    return error(Code::NotFound, "there is no frame " + std::to_string(*number));
+    return error(Code::NotFound, "no frame " + std::to_string(*number));
   }
   std::string_view name = std::get<std::string_view>(frame);
   auto found = by_name_.find(name);
   if (found != by_name_.end()) return found->second;
-  std::string what = "there is no frame ";
+  std::string what = "no frame ";
   append_json_string(name, what);
   const auto known = names();
   const std::string meant = suggestion(name, known);
@@ -131,7 +131,7 @@ Status Tree::fix(const Frame& parent, const Frame& child, const Eigen::Isometry3
 
 Status Tree::join(const Frame& parent, const Frame& child, const Memory& memory) {
   if (memory.span.count() <= 0 || memory.poses == 0)
-    return error(Code::Invalid, hc::format("a memory of {} poses over {} ns keeps nothing",
+    return error(Code::Invalid, hc::format("a memory of {} poses over {} ns stores nothing",
                                            memory.poses, memory.span.count()));
   if (memory.gap.count() <= 0)
     return error(Code::Invalid,
@@ -144,8 +144,7 @@ Result<Fed> Tree::feed(const Frame& parent, const Frame& child, std::int64_t tim
   const auto p = HC_TRY(find(parent)), c = HC_TRY(find(child));
   Node& node = nodes_[c];
   if (node.parent != p)
-    return error(Code::Invalid,
-                 node.name + " in " + nodes_[p].name + " is fed, but these are not joined so");
+    return error(Code::Invalid, node.name + " in " + nodes_[p].name + " is fed, but not joined");
   auto* track = std::get_if<Track>(&node.joint);
   if (track == nullptr) return error(Code::Invalid, joint_name(c) + " is fed, but fixed");
   if (time <= 0) return error(Code::Malformed, joint_name(c) + " is fed without a time");
@@ -172,7 +171,7 @@ Result<Tree::Way> Tree::find_way(const Frame& target, const Frame& source) const
 Result<const Track*> Tree::track_of(std::size_t child) const {
   const auto* track = std::get_if<Track>(&nodes_[child].joint);
   if (track != nullptr && track->empty())
-    return error(Code::NotFound, joint_name(child) + " is not known yet: it was not fed");
+    return error(Code::NotFound, joint_name(child) + " has no pose yet");
   return track;
 }
 
@@ -254,7 +253,7 @@ Result<std::vector<std::string>> Tree::chain(const Frame& target, const Frame& s
 Result<TimeSpan> Tree::known(const Frame& target, const Frame& source) const {
   const auto [t, s, common] = HC_TRY(find_way(target, source));
   std::vector<const Track*> moving;
-  TimeSpan all;                                  // from first to last poses, whatever the gaps
+  TimeSpan all;                                  // common span, ignoring gaps
   std::size_t latest = kNone, earliest = kNone;  // the joints that bound `all`
   for (std::size_t end : {s, t}) {
     for (std::size_t at = end; at != common; at = nodes_[at].parent) {
@@ -274,9 +273,9 @@ Result<TimeSpan> Tree::known(const Frame& target, const Frame& source) const {
   }
   if (all.first > all.last)
     return error(Code::NotFound,
-                 hc::format("{} is known to {} ns and {} from {} ns: at no time both",
+                 hc::format("{} is known to {} ns and {} from {} ns: no common time",
                             joint_name(earliest), all.last, joint_name(latest), all.first));
-  // Back in time from the last of all, to before each gap that is met, until none is.
+  // Goes back from the end, to before each gap, until there is none.
   TimeSpan both = all;
   for (bool is_settled = false; !is_settled;) {
     is_settled = true;
@@ -284,9 +283,8 @@ Result<TimeSpan> Tree::known(const Frame& target, const Frame& source) const {
     for (const Track* track : moving) {
       auto span = track->known_until(both.last);
       if (!span || span->last < all.first)
-        return error(Code::NotFound,
-                     hc::format("between {} and {} ns always one joint or another has a gap",
-                                all.first, all.last));
+        return error(Code::NotFound, hc::format("between {} and {} ns some joint always has a gap",
+                                                all.first, all.last));
       is_settled = is_settled && span->last == both.last;
       both.last = span->last;
       both.first = std::max(both.first, span->first);

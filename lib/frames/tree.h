@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Where things are: coordinate systems joined to a tree, and the way from one to another at the
-// time of an image. No messages, no clock; frames/messages.h makes transformations of messages.
-// Not safe for several threads at once; const calls alone are.
+// A tree of coordinate systems, and transformations between them over time. No messages, no clock;
+// frames/messages.h converts messages. Only const calls are thread-safe.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +20,7 @@ namespace hc::frames {
 /// A coordinate system, by its number (`coord` in a header: spec/mtp-1.md, R44) or by its name.
 using Frame = std::variant<std::int32_t, std::string_view>;
 
-/// Numbers of frames are below this, so that a message can hold two of them (R44).
+/// Numbers of frames are below this, so that a coord can contain two of them (R44).
 inline constexpr std::int32_t kFrameNumbers = 1000;
 
 /// A frame of the specification.
@@ -30,16 +29,16 @@ struct StandardFrame {
   std::string_view name;
 };
 
-/// The metric frames that have a number everywhere. Source: the table in spec/mtp-1.md, R44.
+/// The standard metric frames. Source: the table in spec/mtp-1.md, R44.
 inline constexpr StandardFrame kStandardFrames[] = {
     {1, "world"},     {2, "robot"},         {3, "head"},       {4, "left_eye"},
     {5, "right_eye"}, {6, "cyclopean_eye"}, {14, "supervisor"}};
 
-/// A tree (or several) of frames, each joined to its parent by a transformation that is fixed, or
-/// that moves and is fed with poses as they are measured.
+/// One or several trees of frames, each joined to its parent by a fixed transformation, or by a
+/// moving one that is fed with measured poses.
 ///
 ///     Tree tree = Tree::standard();
-///     tree.fix("world", "robot", T_world_robot);            // each gives a Status to look at
+///     tree.fix("world", "robot", T_world_robot);            // returns a Status to check
 ///     tree.join("robot", "head");
 ///     tree.fix("head", "left_eye", T_head_left_eye);
 ///     …
@@ -49,91 +48,84 @@ inline constexpr StandardFrame kStandardFrames[] = {
 ///     if (!T_world_left_eye) return T_world_left_eye.error();
 ///     Eigen::Vector3d p_world = *T_world_left_eye * p_left_eye;
 ///
-/// Every T_parent_child, (4, 4) f64, takes points in the child's frame to points in the parent's,
-/// translations in metres; times are nanoseconds since the Unix epoch, as in a header.
-/// Error details begin with "frames: " and are one line.
+/// T_parent_child, (4, 4) f64, transforms points from the child's frame to the parent's,
+/// translations in metres; times are nanoseconds since the Unix epoch, as in a header. Error
+/// details start with "frames: " and are one line.
 class Tree {
  public:
-  /// A tree without frames.
   Tree() = default;
   /// kStandardFrames, not joined yet.
   static Tree standard();
 
-  /// Makes a frame known.
+  /// Adds a frame.
   ///
   /// @param number  1 … 999.
-  /// Errors: Invalid (a number out of range; a number or a name that is taken; a name that is
-  /// empty or has a blank or control byte).
+  /// Errors: Invalid (a number out of range; a number or name already taken; a name that is empty
+  /// or has a blank or control byte).
   Status add(std::int32_t number, std::string_view name);
-  /// The same of a frame without a number.
+  /// Adds a frame without a number.
   Status add(std::string_view name);
 
-  /// Joins `child` to `parent` for good.
+  /// Joins `child` to `parent` by a fixed transformation.
   ///
   /// Errors: NotFound (no such frame); Malformed (rigid() refuses it); Invalid (the child has a
   /// parent; a cycle).
   Status fix(const Frame& parent, const Frame& child, const Eigen::Isometry3d& T_parent_child);
 
-  /// Joins `child` to `parent` by a transformation that moves; it is known from the first feed()
-  /// on.
+  /// Joins `child` to `parent` by a moving transformation, known from the first feed() on.
   ///
-  /// Errors: NotFound (no such frame); Invalid (the child has a parent; a cycle; a memory for
-  /// nothing, or that joins nothing).
+  /// Errors: NotFound (no such frame); Invalid (the child has a parent; a cycle; a gap of 0, …).
   Status join(const Frame& parent, const Frame& child, const Memory& memory = {});
 
-  /// Adds the pose of `child`, which join() joined, at a time. Poses may come in any order; one of
-  /// a known time replaces the earlier one. One older than the joint's memory is dropped, which is
-  /// no error but is reported (Fed::TooOld): after a clock was set back, call forget().
+  /// Adds a pose of `child`, which was joined with join(). Poses may arrive in any order; one with
+  /// a known time replaces the earlier one. One older than the joint's memory is dropped, and
+  /// reported as Fed::TooOld, which is not an error: after a clock was set back, call forget().
   ///
-  /// @param time  [ns], over 0.
-  /// Errors: NotFound (no such frame); Malformed (rigid() refuses it; a time of 0 or below);
-  /// Invalid (these two are not joined so, or fixed). Nothing changes then. Cost: constant, for the
-  /// latest time; see Track::add().
+  /// @param time  > 0 [ns].
+  /// Errors: NotFound (no such frame); Malformed (as rigid(); time <= 0); Invalid (not joined, or
+  /// fixed). Then nothing changes. Cost: constant for the latest time; see Track::add().
   Result<Fed> feed(const Frame& parent, const Frame& child, std::int64_t time,
                    const Eigen::Isometry3d& T_parent_child);
 
-  /// T_target_source, which takes points in `source` to points in `target`, both at `time`. Between
-  /// two poses of a joint it is interpolated as between() does, in the parent's frame; outside
-  /// them, and between two that are further apart than its Memory::gap, nothing is known. What is
-  /// above the frames' nearest common one is not asked.
+  /// T_target_source, which transforms points from `source` to `target`, both at `time`. Poses of a
+  /// joint are interpolated with between(), in the parent's frame, but not extrapolated, nor over
+  /// more than Memory::gap. Joints above the nearest common ancestor are not used.
   ///
-  /// @param time  [ns]; of no importance where all that lies between is fixed.
-  /// Errors: NotFound (no such frame; frames that are not joined; a joint on the way that is not
-  /// known at that time: "frames: head in robot is known from 10 to 20 ns, asked for 25 ns: 5 ns
-  /// too late").
-  /// Cost: a product for each joint on the way; logarithmic in the poses of a moving one and in the
-  /// number of frames. No allocation unless it fails.
+  /// @param time  [ns]; irrelevant if all joints between are fixed.
+  /// Errors: NotFound (no such frame; frames not joined; a joint unknown at that time: "frames:
+  /// head in robot is known from 10 to 20 ns, asked for 25 ns: 5 ns too late"). Cost: a product per
+  /// joint between; logarithmic in the poses of a moving one and in the number of frames. No
+  /// allocation unless it fails.
   [[nodiscard]] Result<Eigen::Isometry3d> lookup(const Frame& target, const Frame& source,
                                                  std::int64_t time) const;
 
-  /// The same for what does not move unless a pose says so, such as a head whose unit is silent: a
-  /// joint without a pose at `time` keeps its last one before it (or takes the first after it);
-  /// without any pose it is the identity.
+  /// The same, but a joint without a pose at `time` keeps the last one before it, or the first
+  /// after it; the identity without any. For joints that rest while no poses arrive, such as a head
+  /// whose unit is silent.
   ///
-  /// Errors: NotFound (no such frame; frames that are not joined). Cost: as lookup().
+  /// Errors: NotFound (no such frame; frames not joined). Cost: as lookup().
   [[nodiscard]] Result<Eigen::Isometry3d> nearest(const Frame& target, const Frame& source,
                                                   std::int64_t time) const;
 
-  /// When lookup() of these two succeeds: the latest span without a gap in it, whose `last` is
-  /// their latest common time. A default TimeSpan, hence always, where all that lies between is
-  /// fixed.
+  /// When lookup() of these two succeeds: the latest span without a gap, whose `last` is their
+  /// latest common time. A default TimeSpan (always) if all joints between are fixed.
   ///
   /// Cost: linear in the poses of that span.
-  /// Errors: NotFound (no such frame; not joined; a joint that was not fed; no time in common).
+  /// Errors: NotFound (no such frame; not joined; a joint without poses; no common time).
   [[nodiscard]] Result<TimeSpan> known(const Frame& target, const Frame& source) const;
 
-  /// Whether a pose of a time may still come: a joint between the two has none at or after it.
-  /// False where there are no such frames, or all that lies between is fixed.
+  /// Whether a pose for a time may still arrive: a joint between the two has none at or after it.
+  /// False for unknown frames, or if all joints between are fixed.
   [[nodiscard]] bool is_ahead(const Frame& target, const Frame& source, std::int64_t time) const;
 
   /// The names of all frames, sorted.
   [[nodiscard]] std::vector<std::string> names() const;
-  /// The frames from `source` to `target`, both included.
-  /// Errors: NotFound (no such frame; frames that are not joined).
+  /// The frames from `source` to `target`, inclusive.
+  /// Errors: NotFound (no such frame; frames not joined).
   [[nodiscard]] Result<std::vector<std::string>> chain(const Frame& target,
                                                        const Frame& source) const;
 
-  /// Forgets every pose: for a simulation or a recording that starts over.
+  /// Forgets all poses, for a simulation or recording that restarts.
   void forget();
 
  private:
@@ -146,7 +138,7 @@ class Tree {
 
   Status add_node(const std::string& which, std::string_view name);
   [[nodiscard]] Result<std::size_t> find(const Frame& frame) const;
-  /// Two frames, and the nearest that is above both, or one of them.
+  /// Two frames and their nearest common ancestor.
   struct Way {
     std::size_t target, source, common;
   };
@@ -154,12 +146,12 @@ class Tree {
   [[nodiscard]] std::size_t depth(std::size_t node) const;
   [[nodiscard]] std::size_t root(std::size_t node) const;
   [[nodiscard]] std::string joint_name(std::size_t child) const;
-  /// The track of a joint that moves, fed once at least; null: it is fixed.
+  /// The track of a moving joint; null if fixed. Errors: NotFound (no poses yet).
   [[nodiscard]] Result<const Track*> track_of(std::size_t child) const;
-  /// T_parent_child at a time, or where it was last.
+  /// T_parent_child at a time.
   [[nodiscard]] Result<Eigen::Isometry3d> joint_at(std::size_t child, std::int64_t time) const;
   [[nodiscard]] Eigen::Isometry3d joint_nearest(std::size_t child, std::int64_t time) const;
-  /// T_target_source out of T_parent_child of every joint between, by one of the two.
+  /// T_target_source from T_parent_child of each joint between, given by `joint_of`.
   template <typename JointOf>
   Result<Eigen::Isometry3d> product(const Frame& target, const Frame& source,
                                     const JointOf& joint_of) const;

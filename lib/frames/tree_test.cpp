@@ -52,7 +52,7 @@ TEST(Tree, FollowsTheHeadAtTheTimeOfAnImage) {
 }
 
 TEST(Tree, AsksNothingThatIsNotOnTheWay) {
-  Tree tree = head_tree();  // whose head was never fed
+  Tree tree = head_tree();  // without a pose of the head
   auto T_right_left = tree.lookup("right_eye", "left_eye", 0);
   ASSERT_TRUE(T_right_left);
   EXPECT_TRUE(T_right_left->isApprox(shift(0, 0.2)));
@@ -63,7 +63,7 @@ TEST(Tree, AsksNothingThatIsNotOnTheWay) {
 TEST(Tree, ExtrapolatesNothing) {
   Tree tree = head_tree();
   EXPECT_EQ(refusal(tree.lookup("world", "left_eye", kTime)),
-            "NotFound: frames: head in robot is not known yet: it was not fed");
+            "NotFound: frames: head in robot has no pose yet");
   ASSERT_TRUE(tree.feed("robot", "head", kTime, shift(0)));
   EXPECT_TRUE(tree.lookup("world", "left_eye", kTime)) << "one pose is known at its own time";
   ASSERT_TRUE(tree.feed("robot", "head", kTime + 1'000'000, shift(0)));
@@ -73,7 +73,8 @@ TEST(Tree, ExtrapolatesNothing) {
             known + ", asked for 1763683200013300000 ns: 12.3 ms too late");
   EXPECT_EQ(refusal(tree.lookup("left_eye", "world", kTime - 999)),
             known + ", asked for 1763683199999999001 ns: 999 ns too early");
-  EXPECT_EQ(refusal(tree.lookup("world", "head", 0)), known + ", asked for time 0, which is none");
+  EXPECT_EQ(refusal(tree.lookup("world", "head", 0)),
+            known + ", asked for time 0, which means unknown");
   for (auto [away, text] : std::map<std::int64_t, std::string>{{1, "1 ns"},
                                                                {1000, "1.0 µs"},
                                                                {999'949, "999.9 µs"},
@@ -91,13 +92,12 @@ TEST(Tree, KnownIsWhenAllJointsAre) {
   Tree tree = head_tree();
   ASSERT_TRUE(tree.join("head", "supervisor"));
   EXPECT_EQ(refusal(tree.known("world", "supervisor")),
-            "NotFound: frames: supervisor in head is not known yet: it was not fed");
+            "NotFound: frames: supervisor in head has no pose yet");
   for (int time : {10, 20, 30}) ASSERT_TRUE(tree.feed("robot", "head", time, shift(0)));
   for (int time : {40, 50}) ASSERT_TRUE(tree.feed("head", "supervisor", time, shift(0)));
-  EXPECT_EQ(
-      refusal(tree.known("supervisor", "world")),
-      "NotFound: frames: head in robot is known to 30 ns and supervisor in head from 40 ns: at "
-      "no time both");
+  EXPECT_EQ(refusal(tree.known("supervisor", "world")),
+            "NotFound: frames: head in robot is known to 30 ns and supervisor in head from 40 ns: "
+            "no common time");
   ASSERT_TRUE(tree.feed("head", "supervisor", 15, shift(0)));
   EXPECT_EQ(*tree.known("supervisor", "world"), (TimeSpan{15, 30}));
   EXPECT_EQ(*tree.known("world", "left_eye"), (TimeSpan{10, 30}));
@@ -128,7 +128,7 @@ TEST(Tree, KnownIsTheLatestSpanWithoutAGapOfAnyJoint) {
   ASSERT_TRUE(tree.join("head", "supervisor", {.gap = std::chrono::nanoseconds(10)}));
   for (int time : {12, 40, 60}) ASSERT_TRUE(tree.feed("robot", "head", time, shift(0)));
   for (int time : {10, 20, 25, 70}) ASSERT_TRUE(tree.feed("head", "supervisor", time, shift(0)));
-  // Of the last 60 nothing is known of the supervisor, back to 25.
+  // No pose of the supervisor is known for the last 60, back to 25.
   EXPECT_EQ(*tree.known("world", "supervisor"), (TimeSpan{12, 25}));
   Tree apart = Tree::standard();
   ASSERT_TRUE(apart.join("robot", "head", {.gap = std::chrono::nanoseconds(10)}));
@@ -136,7 +136,7 @@ TEST(Tree, KnownIsTheLatestSpanWithoutAGapOfAnyJoint) {
   for (int time : {10, 30}) ASSERT_TRUE(apart.feed("robot", "head", time, shift(0)));
   for (int time : {20, 25}) ASSERT_TRUE(apart.feed("head", "supervisor", time, shift(0)));
   EXPECT_EQ(refusal(apart.known("robot", "supervisor")),
-            "NotFound: frames: between 20 and 25 ns always one joint or another has a gap");
+            "NotFound: frames: between 20 and 25 ns some joint always has a gap");
 }
 
 TEST(Tree, AFrameMayHaveANameAlone) {
@@ -152,15 +152,14 @@ TEST(Tree, AFrameMayHaveANameAlone) {
 TEST(Tree, NamesFramesThatThereAreNot) {
   Tree tree = head_tree();
   EXPECT_EQ(refusal(tree.lookup("world", "left_eey", kTime)),
-            "NotFound: frames: there is no frame \"left_eey\", did you mean \"left_eye\"?");
+            "NotFound: frames: no frame \"left_eey\", did you mean \"left_eye\"?");
   EXPECT_EQ(refusal(tree.known("a\nb", "world")),
-            "NotFound: frames: there is no frame \"a\\nb\"; known: cyclopean_eye, head, left_eye, "
+            "NotFound: frames: no frame \"a\\nb\"; known: cyclopean_eye, head, left_eye, "
             "right_eye, robot, supervisor, world");
-  EXPECT_EQ(refusal(tree.lookup(77, "world", kTime)), "NotFound: frames: there is no frame 77");
+  EXPECT_EQ(refusal(tree.lookup(77, "world", kTime)), "NotFound: frames: no frame 77");
   EXPECT_EQ(refusal(tree.fix("world", "hed", shift(0))),
-            "NotFound: frames: there is no frame \"hed\", did you mean \"head\"?");
-  EXPECT_EQ(refusal(tree.feed("robot", 0, kTime, shift(0))),
-            "NotFound: frames: there is no frame 0");
+            "NotFound: frames: no frame \"hed\", did you mean \"head\"?");
+  EXPECT_EQ(refusal(tree.feed("robot", 0, kTime, shift(0))), "NotFound: frames: no frame 0");
   EXPECT_EQ(refusal(tree.lookup("left_eye", "supervisor", kTime)),
             "NotFound: frames: left_eye and supervisor are not joined: above them are world and "
             "supervisor");
@@ -213,7 +212,7 @@ TEST(Tree, StaysATree) {
 TEST(Tree, RefusesWhatCannotBeFed) {
   Tree tree = head_tree();
   EXPECT_EQ(refusal(tree.feed("head", "robot", kTime, shift(0))),
-            "Invalid: frames: robot in head is fed, but these are not joined so");
+            "Invalid: frames: robot in head is fed, but not joined");
   EXPECT_EQ(refusal(tree.feed("world", "robot", kTime, shift(0))),
             "Invalid: frames: robot in world is fed, but fixed");
   for (std::int64_t time : {std::int64_t{0}, std::int64_t{-1}})
@@ -225,13 +224,13 @@ TEST(Tree, RefusesWhatCannotBeFed) {
   EXPECT_FALSE(tree.known("world", "head")) << "nothing changed";
   EXPECT_FALSE(tree.known("world", "supervisor"));
   EXPECT_EQ(refusal(tree.join("world", "supervisor", {.poses = 0})),
-            "Invalid: frames: a memory of 0 poses over 10000000000 ns keeps nothing");
+            "Invalid: frames: a memory of 0 poses over 10000000000 ns stores nothing");
   EXPECT_FALSE(tree.join("world", "supervisor", {.span = std::chrono::nanoseconds(0)}));
   EXPECT_TRUE(tree.join("world", "supervisor", {.poses = 1}));
 }
 
-/// What a tree ought to say, by matrices of 4 × 4, general inverses and a search through a graph
-/// without direction.
+/// The expected result of a tree, from 4 × 4 matrices, general inverses and a search through an
+/// undirected graph.
 struct Reference {
   struct Edge {
     int parent, child;
@@ -254,7 +253,7 @@ struct Reference {
   };
   std::vector<Edge> edges;
 
-  /// T_target_source, searched from `at`; `from` is where the search came from.
+  /// T_target_source, searched from `at`, which was reached from `from`.
   [[nodiscard]] std::optional<Eigen::Matrix4d> find(int target, int at, int from,
                                                     std::int64_t time) const {
     if (target == at) return Eigen::Matrix4d::Identity();
@@ -311,7 +310,7 @@ TEST(Tree, IsWhatBruteForceFinds) {
       (got ? found : missed)++;
       if (!got) continue;
       EXPECT_LT((got->matrix() - *expected).norm(), 1e-8);
-      // The way back is the inverse, and a stop on the way changes nothing.
+      // The reverse is the inverse, and an intermediate frame changes nothing.
       EXPECT_LT(((*tree.lookup(source, target, time) * *got).matrix() - Eigen::Matrix4d::Identity())
                     .norm(),
                 1e-12);

@@ -24,13 +24,13 @@ double between(const Angles& a, const Angles& b) {
 }
 
 Angles aim(const Vector3d& p_robot, const Sight& eye) {
-  // The place in the head: where the eye's ray is as far from the axes as the place is. A turn
-  // about the axes then takes it there.
+  // The point on the eye's ray that is as far from the axes as the target. A turn about the axes
+  // then moves it to the target.
   const double along = eye.place.dot(eye.direction);
   const double range =
       std::sqrt(std::max(along * along - eye.place.squaredNorm() + p_robot.squaredNorm(), 0.0));
   const Vector3d p_head = eye.place + (range - along) * eye.direction;
-  // Tilt brings it to the height, pan then to the side.
+  // Tilt adjusts the height, then pan the direction.
   const double radius = std::hypot(p_head.x(), p_head.z());
   const double height = radius > 0 ? std::clamp(p_robot.z() / radius, -1.0, 1.0) : 0;
   const double tilt = std::atan2(p_head.z(), p_head.x()) - std::asin(height);

@@ -8,9 +8,9 @@ namespace hc::gaze {
 
 std::optional<Eigen::Vector3d> Binocular::see(const Eyes& eyes, Side side, std::int64_t time,
                                               const Eigen::Vector2d& pixel, double distance) {
-  // How far the images of a pair may be apart.
+  // Maximum time between the images of a pair.
   constexpr std::int64_t kPair = 1'000'000;  // [ns]
-  // How far behind the other an eye may be.
+  // Maximum delay of one eye.
   constexpr std::int64_t kLate = 1'000'000'000;  // [ns]
   auto& own = side == Side::Left ? left_ : right_;
   const auto& other = side == Side::Left ? right_ : left_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The place of a target, from what each eye sees of it in turn. Pure.
+// Triangulates a target that the eyes see one after the other. Pure.
 
 #include <cstdint>
 #include <optional>
@@ -9,16 +9,16 @@
 
 namespace hc::gaze {
 
-/// Puts together what two eyes see of one target. Times are in nanoseconds, of any origin.
+/// Combines two eyes' sightings of one target. Times are in nanoseconds of any one clock.
 class Binocular {
  public:
-  /// Takes in where an eye saw the target.
+  /// Takes a sighting of the target by one eye.
   ///
-  /// The other eye's word is awaited, which may come later than this one's next; it is missed when
-  /// it has not come for three of this eye's images.
-  /// @param distance  of the target then, if both have never seen it [m].
-  /// @returns  the target's place in the head [m]. Nothing: the other eye's word is awaited, or
-  ///     both see what is not the same.
+  /// Waits for the other eye's sighting, which may be later than the next one of this eye, for up
+  /// to three images of this eye; then assumes the last distance.
+  /// @param distance  assumed if both eyes have never seen a target [m].
+  /// @returns  the target's position in the head's frame [m]. Nothing while waiting for the other
+  ///     eye, or if both see different things.
   std::optional<Eigen::Vector3d> see(const Eyes& eyes, Side side, std::int64_t time,
                                      const Eigen::Vector2d& pixel, double distance);
 
@@ -27,8 +27,8 @@ class Binocular {
     std::int64_t time;
     Eigen::Vector2d pixel;  // [px]
   };
-  std::optional<Sighting> left_, right_;  // the last of each
-  double range_ = 0;                      // of the last target that both eyes saw [m]
+  std::optional<Sighting> left_, right_;  // last
+  double range_ = 0;                      // distance of the last target seen by both eyes [m]
 };
 
 }  // namespace hc::gaze

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t kPeriod = 50'000'000;  // [ns]
 
-/// Where an eye as it was built sees a place in the head [px].
+/// The pixel at which an uncalibrated eye sees a point of the head frame [px].
 Eigen::Vector2d straight_pixel_of(const Eyes& eyes, Side side, const Eigen::Vector3d& p_head) {
   const Eigen::Vector3d from = p_head - eyes.place(side);
   return {eyes.cx - eyes.focal * from.y() / from.x(), eyes.cy - eyes.focal * from.z() / from.x()};
@@ -23,22 +23,22 @@ TEST(Binocular, both_eyes_give_the_place_and_its_range_holds_for_one) {
   const auto left = straight_pixel_of(eyes, Side::Left, p),
              right = straight_pixel_of(eyes, Side::Right, p);
   Binocular sight;
-  // The first word of one eye may be all that comes.
+  // A first detection of one eye gives a guess at the default range.
   const auto guess = must(sight.see(eyes, Side::Left, 1000, left, 2.5));
   EXPECT_NEAR((guess - eyes.place(Side::Left)).norm(), 2.5, 1e-9);
   const auto both = must(sight.see(eyes, Side::Right, 1000, right, 2.5));
   EXPECT_NEAR((both - p).norm(), 0, 1e-9);
-  // The next pair: nothing is said of its first half.
+  // The next pair: its first half alone gives no result.
   EXPECT_FALSE(sight.see(eyes, Side::Right, 1000 + kPeriod, right, 2.5));
   EXPECT_TRUE(sight.see(eyes, Side::Left, 1000 + kPeriod, left, 2.5));
-  // The left eye sees it no more: two images are lost by waiting for it, not more.
+  // The left eye loses it: waiting costs only two images.
   for (int i = 2; i < 4; ++i)
     EXPECT_FALSE(sight.see(eyes, Side::Right, 1000 + i * kPeriod, right, 2.5));
   for (int i = 4; i < 7; ++i) {
     const auto one = must(sight.see(eyes, Side::Right, 1000 + i * kPeriod, right, 2.5));
     EXPECT_NEAR((one - eyes.place(Side::Right)).norm(), p.norm(), 1e-9);
   }
-  // What the left one says late is too old.
+  // A late detection of the left eye is too old.
   EXPECT_FALSE(sight.see(eyes, Side::Left, 1000 + 4 * kPeriod, left, 2.5));
 }
 

@@ -33,15 +33,15 @@ std::array<double, 7> HeadCalibration::numbers() const {
 Result<HeadCalibration> HeadCalibration::of(std::span<const double> numbers) {
   constexpr double kMaxAngle = 0.8;  // [rad]
   const auto refused = [](const char* why) {
-    return Error{Code::Malformed, std::string("a head's calibration ") + why};
+    return Error{Code::Malformed, std::string("a head calibration ") + why};
   };
-  if (numbers.size() != 7) return refused("has 7 numbers");
+  if (numbers.size() != 7) return refused("must have 7 numbers");
   const double swapped = numbers[0], pan = numbers[1], tilt = numbers[2];
   const double roll = numbers[3], pitch = numbers[4], yaw = numbers[5], rms = numbers[6];
-  if (swapped != 0 && swapped != 1) return refused("begins with 0 or 1: whether eyes are swapped");
+  if (swapped != 0 && swapped != 1) return refused("must start with 0 or 1 (eyes swapped)");
   for (const double angle : {pan, tilt, roll, pitch, yaw})
-    if (!(std::abs(angle) <= kMaxAngle)) return refused("has no angle over 0.8 rad");
-  if (!std::isfinite(rms)) return refused("has a finite RMS");
+    if (!(std::abs(angle) <= kMaxAngle)) return refused("must not have angles above 0.8 rad");
+  if (!std::isfinite(rms)) return refused("must have a finite RMS");
   return HeadCalibration{swapped == 1, {pan, tilt}, {pitch, yaw, roll}, rms};
 }
 

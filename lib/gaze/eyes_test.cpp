@@ -12,7 +12,7 @@
 namespace hc::gaze {
 namespace {
 
-/// The pixel at which an eye sees a place in the head.
+/// The pixel at which an eye sees a point of the head frame.
 Eigen::Vector2d pixel_of(const Eyes& eyes, Side side, const Eigen::Vector3d& p_head) {
   const Eigen::Vector3d p = eyes.T_head_eye(side).inverse() * p_head;
   return {eyes.cx + eyes.focal * p.x() / p.z(), eyes.cy + eyes.focal * p.y() / p.z()};
@@ -28,7 +28,7 @@ TEST(Eyes, two_pixels_give_the_place) {
       const auto found = eyes.place_of(left, right);
       ASSERT_TRUE(found);
       EXPECT_NEAR((*found - p).norm(), 0, 1e-9);
-      EXPECT_FALSE(eyes.place_of(right, left));  // the rays part
+      EXPECT_FALSE(eyes.place_of(right, left));  // the rays diverge
       EXPECT_FALSE(eyes.place_of(left, right + Eigen::Vector2d(0, 200)));
     }
 }

@@ -12,10 +12,10 @@
 namespace hc::gaze {
 namespace {
 
-constexpr double kMostBehind = 0.5;  // either way [s]
-constexpr double kStep = 1e-3;       // in which it is sought [s]
+constexpr double kMostBehind = 0.5;  // search range, both ways [s]
+constexpr double kStep = 1e-3;       // of the search [s]
 
-/// Mean of the squared angle between both, with `wanted` later by `behind`.
+/// Mean squared angle between both, with `wanted` delayed by `behind`.
 double mean_square(const std::vector<TimedAngles>& wanted, const std::vector<TimedAngles>& follows,
                    double behind) {
   double sum = 0;
@@ -55,7 +55,7 @@ FollowScore score_follow(const std::vector<TimedAngles>& wanted,
   for (const auto& sample : compared)
     score.max = std::max(score.max, between(sample.angles, angles_at(wanted, sample.time)));
 
-  // The error has one hollow as long as the delay is short against the movement: coarse, then fine.
+  // The error has one minimum if the delay is short relative to the motion: search coarse to fine.
   double best = 0, least = mean_square(wanted, compared, 0);
   for (double step : {50 * kStep, 10 * kStep, kStep}) {
     const double middle = best, reach = step == 50 * kStep ? kMostBehind : 10 * step;

@@ -27,7 +27,7 @@ TEST(FollowScore, finds_what_is_behind_and_how_much_that_matters) {
 }
 
 TEST(FollowScore, an_offset_is_an_error_and_no_delay) {
-  // Over two whole periods, in which the offset pulls to neither side.
+  // Over two whole periods, so that the offset does not bias the result.
   const auto score = score_follow(turning(0, 100), turning(0, 200, 0.1), 1, 1 + 2 * M_PI);
   EXPECT_NEAR(score.rms, 0.1, 1e-3);
   EXPECT_NEAR(score.behind, 0, 2e-3);

@@ -12,7 +12,7 @@ namespace hc::gaze {
 
 void Follower::Filter::begin(double angle, const FollowerOptions& options) {
   state = {angle, 0};
-  // Of the rate nothing is known yet: anything up to some rad/s.
+  // The rate is unknown: up to some rad/s.
   covariance << options.noise * options.noise, 0, 0, 4;
 }
 
@@ -21,7 +21,7 @@ void Follower::Filter::step(double dt, const FollowerOptions& options) {
   move << 1, dt, 0, 1;
   state = move * state;
   const double q = options.acceleration * options.acceleration;
-  // An acceleration that is constant in a step, another in the next.
+  // Piecewise constant acceleration.
   Eigen::Matrix2d disturbance;
   disturbance << dt * dt * dt * dt / 4, dt * dt * dt / 2, dt * dt * dt / 2, dt * dt;
   covariance = move * covariance * move.transpose() + q * disturbance;
@@ -54,8 +54,8 @@ FollowerOptions slow(const FollowerOptions& options) {
 }  // namespace
 
 const Follower::Filter& Follower::Axis::better() const {
-  constexpr double kGood = 0.02;   // so well, the quick one needs no help [rad]
-  constexpr double kMargin = 0.6;  // of two that are nearly as good, the quick one
+  constexpr double kGood = 0.02;   // with a smaller error the quick one is used [rad]
+  constexpr double kMargin = 0.6;  // advantage of the quick one
   const bool is_slow = quick_error > kGood * kGood && slow_error < kMargin * quick_error;
   return is_slow ? slow : quick;
 }
@@ -77,7 +77,7 @@ void Follower::correct(double angle, Axis& axis) const {
 }
 
 void Follower::judge(double time, const Angles& angles) {
-  constexpr double kAhead = 0.1;   // as far as a head has to predict [s]
+  constexpr double kAhead = 0.1;   // prediction time that a head needs [s]
   constexpr double kMemory = 1.0;  // [s]
   while (known_.size() > 1 && known_[1].time <= time - kAhead) known_.pop_front();
   if (known_.empty() || known_.front().time > time - kAhead) return;
@@ -94,10 +94,10 @@ void Follower::judge(double time, const Angles& angles) {
 void Follower::see(double time, const Angles& angles) {
   if (last_ && time <= *last_ && *last_ - time <= options_.gap) return;
   bool is_same = last_ && std::abs(time - *last_) <= options_.gap;
-  // Half a turn to either side is the same place.
+  // Unwrap: −π and π are the same direction.
   const double here = pan_.quick.state(0);
   const double pan = is_same ? here + std::remainder(angles.pan - here, 2 * M_PI) : angles.pan;
-  // What the slow filters know may be of the same target though it has turned round at once.
+  // A target that reverses at once may still be the same for the slow filters.
   if (is_same) {
     for (auto* axis : {&pan_, &tilt_}) step(time - *last_, *axis);
     const auto slowly = slow(options_);

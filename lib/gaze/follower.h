@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What moves, as it is seen with noise and late: where it is now and will be. Pure.
+// Estimates and predicts a moving target from noisy, late measurements. Pure.
 
 #include <deque>
 #include <optional>
@@ -11,11 +11,11 @@
 
 namespace hc::gaze {
 
-/// What is known of how a target moves and is seen.
+/// The model of a target's motion and measurement.
 struct FollowerOptions {
-  double noise = 0.003;       ///< standard deviation of an angle as it is seen, over 0 [rad]
-  double acceleration = 2.0;  ///< standard deviation of its acceleration, over 0 [rad/s²]
-  double gap = 0.5;           ///< unseen for longer, it is another target [s]
+  double noise = 0.003;       ///< standard deviation of a measured angle, > 0 [rad]
+  double acceleration = 2.0;  ///< standard deviation of the acceleration, > 0 [rad/s²]
+  double gap = 0.5;           ///< after this time unseen, it is another target [s]
   double horizon = 0.2;       ///< how long its rates are extrapolated while unseen [s]
 };
 
@@ -25,25 +25,23 @@ struct Motion {
   double pan_rate = 0, tilt_rate = 0;  ///< [rad/s]
 };
 
-/// Follows one target: for each axis a Kalman filter of constant velocity, and a slow one, which is
-/// taken while its predictions of the last second were the better ones: of what goes to and fro
-/// faster than can be predicted, as a ball that bounces, the middle is nearer than the last
-/// velocity. Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking,
-/// 2001, 6.2.
+/// Follows one target with a constant-velocity Kalman filter for each axis, and a slow one, which
+/// is used while its predictions in the last second were better: if a target, such as a bouncing
+/// ball, oscillates too fast to predict, its mean is a better estimate. Source: Bar-Shalom, Li,
+/// Kirubarajan, Estimation with Applications to Tracking, 2001, 6.2.
 class Follower {
  public:
   explicit Follower(const FollowerOptions& options) : options_(options) {}
 
-  /// Takes in where the target was.
+  /// Takes a measurement.
   ///
-  /// @param time  [s], of any origin. A time not after the last is ignored; a time a whole gap
-  ///     before it, as when the clock was set back, restarts the filter, and so does a place that
-  ///     the target cannot have reached.
+  /// @param time  of any one clock [s]. Ignored if not after the last one. A time a whole gap
+  ///     before it, e.g. because the clock was set back, restarts the filter, and so do angles
+  ///     that the target cannot have reached.
   void see(double time, const Angles& angles);
-  /// When it was last seen [s].
+  /// When the target was last seen [s].
   [[nodiscard]] std::optional<double> last() const { return last_; }
-  /// Where it is taken to be at a time, its last rates going on up to the
-  /// horizon. Nothing: never seen.
+  /// The estimate at a time, extrapolated up to the horizon; nothing if never seen.
   [[nodiscard]] std::optional<Motion> at(double time) const;
   void forget() { last_.reset(); }
 
@@ -58,13 +56,13 @@ class Follower {
     void correct(double angle, const FollowerOptions& options);
     [[nodiscard]] double after(double dt) const { return state(0) + dt * state(1); }
   };
-  /// A quick filter and a slow one, and how well they predict.
+  /// A quick and a slow filter, and their prediction errors.
   struct Axis {
     Filter quick, slow;
     double quick_error = 0, slow_error = 0;  // mean squares [rad²]
     [[nodiscard]] const Filter& better() const;
   };
-  /// What was known at a time.
+  /// The estimates at a time.
   struct Known {
     double time;  // [s]
     Axis pan, tilt;
@@ -81,14 +79,14 @@ class Follower {
   std::deque<Known> known_;
 };
 
-/// How a unit stops: with `base` at once, and faster than that only with an even acceleration.
+/// Braking of a unit: at once up to the speed `base`, above with constant deceleration.
 struct Brakes {
   double acceleration = 1.795;  ///< over 0 [rad/s²]
   double base = 0;              ///< [rad/s]
 };
 
-/// By how much a command has to be ahead of a place that moves at `rate`, for a unit that brakes to
-/// stop where it is sent: its braking distance. [rad]
+/// By how much a command must lead a target that moves at `rate`, since the unit brakes to stop at
+/// the commanded position: its braking distance [rad].
 ///
 /// @param rate  [rad/s].
 /// Source: (v² - base²) / 2a.

@@ -25,7 +25,7 @@ void Stick::push(const Angles& rates, double now, const Angles& measured) {
 }
 
 std::optional<Motion> Stick::at(double now, const Angles& measured) {
-  // Also when the clock was set back: else it would count until that time comes again.
+  // abs(): also if the clock was set back.
   if (motion_ && std::abs(now - pushed_at_) > kHold) motion_.reset();
   if (!motion_) return std::nullopt;
   constexpr double kReach = 0.1;  // [rad]

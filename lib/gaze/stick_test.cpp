@@ -35,7 +35,7 @@ TEST(Stick, stops_where_it_is_let_go) {
   ASSERT_TRUE(stopped);
   EXPECT_NEAR(stopped->angles.pan, 0.04, 1e-12);
   EXPECT_EQ(stopped->pan_rate, 0);
-  // One in its middle does not hold the head.
+  // A centred stick does not hold the head.
   stick.push({0, 0}, 10.1, {0.04, 0});
   EXPECT_FALSE(stick.at(10.15, {0.04, 0}));
   EXPECT_EQ(stick.last(), 10);
@@ -48,7 +48,7 @@ TEST(Stick, a_push_that_is_not_told_again_ends) {
   EXPECT_FALSE(stick.at(10.11, {}));
   stick.push({0, 0}, 10.2, {});
   EXPECT_FALSE(stick.at(10.2, {}));
-  // A new one begins where the head is then.
+  // A new deflection starts from the head's current position.
   stick.push({1, 0}, 20, {-1, 0});
   EXPECT_NEAR(stick.at(20.01, {-1, 0})->angles.pan, -0.99, 1e-12);
 }

@@ -21,7 +21,7 @@ TrackScore score_track(const std::vector<TrackSample>& samples, double within) {
     if (!is_first) score.again.push_back(took);
     is_first = false;
   };
-  /// The ball has disappeared, or the run has ended: a miss if there was time to acquire it.
+  /// Counts a miss if there was time to acquire the ball before it disappeared or the run ended.
   auto give_up = [&] {
     if (ball == Ball::Sought && !is_first && now - since > kGrace) settle(-1);
   };

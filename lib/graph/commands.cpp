@@ -13,7 +13,7 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 
-/// The words "KEY=VALUE" behind the first two.
+/// Parses the words after the first two as KEY=VALUE.
 Pairs pairs_of(const GraphCommand& command, Problems& problems) {
   Pairs pairs;
   for (std::size_t i = 2; i < command.words.size(); ++i) {
@@ -68,7 +68,7 @@ void add_policy(GraphLink& link, const GraphCommand& command, Problems& problems
   if (auto valid = check_policy(policy); !valid) problems.add({}, valid.error().detail);
 }
 
-/// A link to where readers come and go by hand makes no module wait, unless that was asked for.
+/// Default policy of a link to a URI where readers come and go: never make the module wait.
 void add_observer_policy(GraphLink& link) {
   auto uri = parse_uri(link.to.uri);
   if (!uri || !(uri->scheme == "shm" || uri->scheme.ends_with("-listen"))) return;
@@ -89,7 +89,7 @@ void add_link(Graph& graph, const GraphCommand& command, Problems& problems) {
   link.to = *to;
   add_policy(link, command, problems);
   add_observer_policy(link);
-  // The same link with another policy takes the place of the one before.
+  // A link between the same ports gets the new policy.
   auto is_same = [&](const GraphLink& each) {
     return each.from.text() == from->text() && each.to.text() == to->text();
   };

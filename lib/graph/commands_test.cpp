@@ -19,7 +19,7 @@ class CommandsTest : public ::testing::Test {
     graph_.links[0].to = {"view", "image", ""};
   }
 
-  /// What is wrong with a command; empty: it has been applied.
+  /// Applies a command. Returns its problems; empty: none.
   std::string apply(const std::string& line) {
     auto command = parse_graph_command(line);
     if (!command) return command.error().detail;
@@ -83,8 +83,8 @@ TEST_F(CommandsTest, WhatIsWrongIsNamed) {
   for (const auto& [line, words] : std::vector<std::pair<std::string, std::string>>{
            {"", "there is no command"},
            {"ad x y", "no command \"ad\", did you mean \"add\"?"},
-           {"add x", "the command is: add MODULE[@HOST] PROGRAM [PARAMETER=VALUE ...]"},
-           {"stop now", "the command is: stop"},
+           {"add x", "usage: add MODULE[@HOST] PROGRAM [PARAMETER=VALUE ...]"},
+           {"stop now", "usage: stop"},
            {"add X y", "module name \"X\" is not snake_case"},
            {"add view y", "module \"view\" already exists"},
            {"add x y z", "\"z\" is not KEY=VALUE"},

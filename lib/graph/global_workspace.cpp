@@ -7,14 +7,14 @@
 namespace hc {
 namespace {
 
-/// Of each workspace, the mode in focus.
+/// The mode in focus, by workspace.
 using Focus = std::map<std::string, std::string>;
 
-/// A link between two modules that both work now.
+/// A link between two modules that work in the current modes.
 struct Edge {
   std::size_t link;
   std::string from, to;
-  bool is_exclusive;  // it ends at an exclusive input
+  bool is_exclusive;  // ends at an exclusive input
 };
 
 bool is_in_focus(const PlannedModule& module, const Focus& focus) {
@@ -39,7 +39,7 @@ std::vector<Edge> edges_in(const Plan& plan, const Focus& focus) {
     auto from_dot = link.from.find('.'), to_dot = link.to.find('.');
     auto from = modules.find(std::string_view(link.from).substr(0, from_dot));
     auto to = modules.find(std::string_view(link.to).substr(0, to_dot));
-    if (from == modules.end() || to == modules.end()) continue;  // the world outside
+    if (from == modules.end() || to == modules.end()) continue;  // outside the graph
     const bool carries_focus = plan.workspaces.contains(from->second->name) &&
                                link.to == std::string(to->first) + ".focus";
     if (carries_focus || !works(*from->second, focus) || !works(*to->second, focus)) continue;
@@ -54,8 +54,8 @@ std::vector<Edge> edges_in(const Plan& plan, const Focus& focus) {
 GlobalWorkspace global_workspace(const Plan& plan, const Focus& focus) {
   GlobalWorkspace workspace;
   const std::vector<Edge> edges = edges_in(plan, focus);
-  Ways forward, backward;
-  std::set<std::string> senders;  // of what exclusive inputs take
+  Edges forward, backward;
+  std::set<std::string> senders;  // to exclusive inputs
   for (const Edge& edge : edges) {
     forward[edge.from].insert(edge.to);
     backward[edge.to].insert(edge.from);

@@ -8,7 +8,7 @@ namespace {
 
 using Names = std::set<std::string>;
 
-/// A robot with two tasks: one follows what moves with its head, the other reads what is in front.
+/// A robot with two tasks: one follows moving objects with its head, the other reads text.
 Plan robot() {
   Plan plan;
   auto add = [&](const std::string& name, const std::string& mode = "",
@@ -66,7 +66,7 @@ TEST(GlobalWorkspace, IsEmptyWithoutATaskThatActs) {
   expect_workspace(robot(), "", {}, {});
   expect_workspace(robot(), "sleep", {}, {});
   Plan plan = robot();
-  plan.modules[5].exclusive.clear();  // nobody acts
+  plan.modules[5].exclusive.clear();  // no exclusive input
   expect_workspace(plan, "track", {}, {});
 }
 

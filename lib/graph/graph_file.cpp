@@ -17,10 +17,10 @@ namespace {
 
 using internal::Node;
 
-constexpr std::size_t kMaxIncludedDepth = 16;                  // of files that include files
-constexpr std::size_t kMaxIncludedBytes = 4 * kMaxGraphBytes;  // of all that is included
+constexpr std::size_t kMaxIncludedDepth = 16;
+constexpr std::size_t kMaxIncludedBytes = 4 * kMaxGraphBytes;  // of all included files
 
-/// Reads a file and those that it includes, and continues after what is wrong.
+/// Reads a file and the files it includes; continues after problems.
 class GraphReader {
  public:
   GraphReader(const Environment& environment, Problems& problems, const ReadFile& read_file)
@@ -49,7 +49,7 @@ class GraphReader {
     const bool has_modules = root->find("modules") != nullptr || root->find("graphs") != nullptr;
     if (!has_modules && problems_.size() == before)
       fields_.add(*root, "a graph needs a table [modules.NAME] for each of its modules");
-    for (auto& each : graph.modules) {  // of those that do not say it themselves
+    for (auto& each : graph.modules) {  // defaults
       if (root->find("modules")->find(each.name)->find("restart") == nullptr)
         each.restart = restart;
       if (each.hang.place.line == 0) each.hang = hang;
@@ -133,7 +133,7 @@ class GraphReader {
   void override_module(Graph& included, const std::string& prefix, const Node& node) {
     const std::string name = prefix + "_" + node.key;
     if (included.find(name) != nullptr) return internal::read_module(fields_, node, name, included);
-    if (included.modules.empty() && !problems_.empty()) return;  // nothing was read
+    if (included.modules.empty() && !problems_.empty()) return;  // unreadable file
     auto known = names_of(included.modules);
     for (auto& each : known) each.erase(0, prefix.size() + 1);
     fields_.add(node, "graph {} has no module \"{}\"{}", prefix, node.key,
@@ -144,7 +144,7 @@ class GraphReader {
     std::string path, text;
   };
 
-  /// Reads a file by its path from the one that names it, or a shipped one by its name.
+  /// Reads a file by its path relative to the including file, or a shipped one by its name.
   std::optional<Included> read_included(const std::string& from, const Lined<std::string>& file) {
     std::string path = (std::filesystem::path(from).parent_path() / file.value).lexically_normal();
     auto refuse = [&](const std::string& what) {
@@ -156,7 +156,7 @@ class GraphReader {
     if (including_.size() > kMaxIncludedDepth)
       return refuse("at most " + std::to_string(kMaxIncludedDepth) + " nested includes");
     if (++included_ > kMaxIncluded) {
-      if (included_ > kMaxIncluded + 1) return std::nullopt;  // it has been reported
+      if (included_ > kMaxIncluded + 1) return std::nullopt;  // already reported
       return refuse("at most " + std::to_string(kMaxIncluded) + " files are included");
     }
     Result<std::string> text = Error{Code::NotFound, path + ": cannot be read"};
@@ -182,7 +182,7 @@ class GraphReader {
   const Environment& environment_;
   Problems& problems_;
   const ReadFile& read_file_;
-  std::vector<std::string> including_;  // the files being read, each included by the one before
+  std::vector<std::string> including_;  // the stack of files being read
   int included_ = 0;
   std::size_t included_bytes_ = 0;
 };
@@ -205,7 +205,7 @@ Graph parse_graph(std::string_view text, const Environment& environment, Problem
                   const ReadFile& read_file) {
   Graph graph = GraphReader(environment, problems, read_file).read(text, 0);
   graph.files = problems.files();
-  // Any of the files may declare a host, so this is known when all have been read.
+  // Any file may declare a host, so check when all have been read.
   for (const auto& module : graph.modules)
     if (const auto& [host, place] = module.host;
         !host.empty() && find_named(graph.hosts, host) == nullptr)
@@ -215,7 +215,7 @@ Graph parse_graph(std::string_view text, const Environment& environment, Problem
 
 namespace {
 
-/// What is recorded of a graph, and where it is named first.
+/// The outputs to record, with the place where each is first named.
 std::map<std::pair<std::string, std::string>, Place> recorded_outputs(
     const Graph& graph, const std::vector<std::string>& traced) {
   std::map<std::pair<std::string, std::string>, Place> outputs;
@@ -239,11 +239,10 @@ std::map<std::pair<std::string, std::string>, Place> recorded_outputs(
 std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::string>& traced,
                                       const std::string& program,
                                       const std::map<std::string, std::string>& parameters) {
-  // A folder lacks no message; where the network might be slower than the module, none waits for
-  // it.
+  // A folder gets all messages; but modules on other hosts never wait for the network.
   const bool is_whole = parameters.contains("folder");
   constexpr const char* kKept = "1024";   // messages, while the recorder waits for the disk
-  constexpr const char* kPatience = "1";  // for a recorder that hangs or was killed [s]
+  constexpr const char* kPatience = "1";  // if the recorder hangs or was killed [s]
   GraphModule recorder;
   recorder.name = "recorder";
   while (graph.find(recorder.name) != nullptr) recorder.name += "_added";
@@ -272,7 +271,7 @@ std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::strin
 void set_parameter(Graph& graph, const Assignment& assignment, Problems& problems,
                    const Place& place) {
   GraphModule* module = graph.find(assignment.module);
-  if (module == nullptr && graph.modules.empty() && !problems.empty()) return;  // nothing was read
+  if (module == nullptr && graph.modules.empty() && !problems.empty()) return;  // unreadable file
   if (module == nullptr)
     return problems.add(place, "no module \"{}\" in {}{}", assignment.module, graph.file,
                         suggestion(assignment.module, names_of(graph.modules)));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The graph file: which modules run, with which parameters, how their ports are linked, and what
-// they share (spec/graph.md). Pure, except for the environment's variables and included files.
+// The graph file: modules, their parameters and links, and what they share (spec/graph.md).
+// Pure, except for environment variables and included files.
 
 #include <array>
 #include <cstdint>
@@ -19,7 +19,7 @@
 
 namespace hc {
 
-/// A value of a graph file, and its place there.
+/// A value of a graph file and its position.
 template <typename T>
 struct Lined {
   T value{};
@@ -28,23 +28,23 @@ struct Lined {
 
 /// When a module that has ended is restarted.
 enum class Restart {
-  Never,    ///< and one that has failed ends the graph
-  Failure,  ///< when it ended with a status that is neither 0 nor 2
+  Never,    ///< a failure ends the graph
+  Failure,  ///< if its exit status is neither 0 nor 2
   Always,
 };
 
-/// Whom messages are for: a number, or the name of an input, or `all`.
+/// The destination of messages.
 struct Addressee {
-  std::string name;         ///< empty: the number says it
+  std::string name;         ///< of an input, or `all`; empty: see `number`
   std::int64_t number = 0;  ///< an address
 };
 
-/// Another host, which modules run on.
+/// Another host that runs modules.
 struct GraphHost {
   std::string name;
-  std::vector<Lined<std::string>> ssh;  ///< arguments of ssh, its destination the last
-  Lined<std::string> program;           ///< `hc` there
-  Lined<std::string> address;           ///< at which other hosts reach it; empty: as ssh does
+  std::vector<Lined<std::string>> ssh;  ///< arguments of ssh; the destination comes last
+  Lined<std::string> program;           ///< `hc` on that host
+  Lined<std::string> address;           ///< for links from other hosts; empty: that of ssh
   Place place;
 };
 
@@ -52,39 +52,39 @@ struct GraphHost {
 struct GraphModule {
   std::string name;            ///< snake_case
   Lined<std::string> program;  ///< a module's name, or a path
-  Lined<std::string> host;     ///< that it runs on; empty: that of `hc run`
-  std::string group;           ///< the [graphs.NAME] that it is of
-  std::string prefix;          ///< what inclusion has put before its name, "head_"
+  Lined<std::string> host;     ///< empty: the host of `hc run`
+  std::string group;           ///< the NAME of its [graphs.NAME]
+  std::string prefix;          ///< added to its name by inclusion, such as "head_"
   std::map<std::string, Lined<std::string>> parameters;  ///< as text, as on a command line
   std::map<std::string, Lined<std::int64_t>> addresses;  ///< of ports
   std::map<std::string, Lined<Encoding>> encodings;      ///< of output ports
   std::map<std::string, Lined<Addressee>> to;            ///< of output ports
   Restart restart = Restart::Failure;
-  Lined<std::int64_t> hang;  ///< without a report for so long it is restarted [s]; 0: never
-  std::optional<Lined<std::string>> mode;     ///< a task's
-  std::vector<Lined<std::string>> modes;      ///< it works in; empty: all
-  std::vector<Lined<std::string>> exclusive;  ///< inputs that take the mode in focus alone
-  std::string workspace;    ///< the module that publishes the focus for it; empty: none
-  bool ends_graph = false;  ///< when it has ended with status 0
+  Lined<std::int64_t> hang;  ///< restarted after this time without a report [s]; 0: never
+  std::optional<Lined<std::string>> mode;     ///< of a task
+  std::vector<Lined<std::string>> modes;      ///< in which it works; empty: all
+  std::vector<Lined<std::string>> exclusive;  ///< its exclusive inputs
+  std::string workspace;                      ///< the module that publishes its focus; empty: none
+  bool ends_graph = false;                    ///< the graph ends when it ends with status 0
   Place place;
 };
 
-/// An end of a link: a port of a module, or the world outside.
+/// An end of a link: a port of a module, or a URI outside the graph.
 struct GraphPort {
   std::string module, port;
-  std::string uri;  ///< of the world outside; empty: it is a port
+  std::string uri;  ///< outside the graph; empty: a port
   [[nodiscard]] std::string text() const { return uri.empty() ? module + "." + port : uri; }
 };
 
 /// A link, from an output to an input.
 struct GraphLink {
   GraphPort from, to;
-  /// `keep`, `rate` and so on, as in a link's URI; an empty value is wrong, and has been reported.
+  /// `keep`, `rate` and so on, as in a link's URI; an empty value is an error already reported.
   std::map<std::string, Lined<std::string>> policy;
-  Lined<std::string> via;  ///< "tls", "tcp" or "dds", of one between hosts; empty: not given
-  /// Whom messages are for that pass this link; nothing: as computed.
+  Lined<std::string> via;  ///< "tls", "tcp" or "dds", between hosts only; empty: not given
+  /// Destination addresses that pass this link; nullopt: computed.
   std::optional<Lined<std::vector<std::int64_t>>> route;
-  bool routes_all = false;  ///< all of them do
+  bool routes_all = false;  ///< route = "all"
   Place place;
 };
 
@@ -95,88 +95,86 @@ struct GraphMode {
   Place place;
 };
 
-/// A coordinate system, and its pose in its parent.
+/// A coordinate system and its pose in its parent.
 struct GraphFrame {
   std::string name;
-  std::string prefix;  ///< what inclusion has put before it, "head_"
+  std::string prefix;  ///< added to its name by inclusion, such as "head_"
   Lined<std::string> parent;
   std::array<double, 3> translation{};            ///< [m]
   std::array<double, 4> rotation = {0, 0, 0, 1};  ///< unit quaternion (x, y, z, w)
-  std::optional<Lined<GraphPort>> moved_by;       ///< the output that sends its pose instead
+  std::optional<Lined<GraphPort>> moved_by;       ///< the output that sends its pose
   Lined<std::int64_t> coord;                      ///< its number in headers; 0: none
   Place place;
 };
 
 struct Graph {
-  std::string file;                ///< as it was given, for error lines
-  std::vector<std::string> files;  ///< that it is made of, the first is `file`; see Place::file
+  std::string file;                ///< as given, for error messages
+  std::vector<std::string> files;  ///< `file` and the files it includes; see Place::file
   std::vector<GraphHost> hosts;
   std::vector<GraphModule> modules;
   std::vector<GraphLink> links;
   std::vector<GraphMode> modes;
   std::vector<GraphFrame> frames;
-  bool is_whole = true;  ///< false: a file that it includes cannot be read, as is reported
-  /// Modules that publish which mode is in focus, the graph's own first, each for the modules of
-  /// its file and of what that includes; empty: it is wrong, and has been reported.
+  bool is_whole = true;  ///< false: an included file cannot be read (already reported)
+  /// Modules that publish the focus, the graph's own first; each serves the modules of its file and
+  /// of the files included there. Empty: an error already reported.
   std::vector<Lined<std::string>> workspaces;
 
-  /// The module of that name; null where there is none.
+  /// The module of that name; null if not found.
   [[nodiscard]] GraphModule* find(std::string_view name);
 };
 
-/// Looks a variable of the environment up; null where it is not set.
+/// Looks up an environment variable; null if not set.
 using Environment = std::function<const char*(const char* name)>;
 
-/// Gives the text of a file, at most a byte more than kMaxGraphBytes of it. Errors: NotFound
-/// (there is none), System.
+/// Reads at most kMaxGraphBytes + 1 bytes of a file. Errors: NotFound, System.
 using ReadFile = std::function<Result<std::string>(const std::string& file)>;
 
-/// Largest graph file that is read. [byte]
+/// Largest graph file. [byte]
 inline constexpr std::size_t kMaxGraphBytes = std::size_t{1} << 20;
 
-/// Most dots in a key, and most brackets within brackets, of a graph file; sensible ones have
-/// three.
+/// Most dots in a key, and most nested brackets, of a graph file; three are usual.
 inline constexpr int kMaxGraphDepth = 16;
 
-/// Most modules of a graph, with those of the graphs that it includes.
+/// Most modules of a graph, including those of included files.
 inline constexpr std::size_t kMaxModules = 1000;
 
-/// Most files that a graph includes, each as often as it does.
+/// Most inclusions in a graph.
 inline constexpr int kMaxIncluded = 256;
 
 /// Version of the graph file format.
 inline constexpr std::int64_t kGraphVersion = 1;
 
-/// Reads a graph file's text. `${NAME:-default}` in a string stands for a variable of the
-/// environment. Where there are problems, the graph holds what can be made of the rest.
+/// Parses a graph file. `${NAME:-default}` in a string stands for an environment variable. Parsing
+/// continues after a problem.
 ///
-/// @param read_file  reads what it includes; none: nothing can be included.
+/// @param read_file  reads included files; empty: includes are errors.
 Graph parse_graph(std::string_view text, const Environment& environment, Problems& problems,
                   const ReadFile& read_file = {});
 
-/// The keys of a link's policy, in the order in which they are read.
+/// The keys of a link's policy, in the order in which they are checked.
 inline constexpr std::array<std::string_view, 8> kPolicyKeys = {
     "keep", "rate", "burst", "memory", "timeout", "as", "quality", "scale"};
 
-/// Whether a policy makes sense as far as it is in a URI's options. Errors: Invalid.
+/// Checks the policy in a URI's options. Errors: Invalid.
 Status check_policy(Uri policy);
 
-/// Has a module `recorder`, on the host of `hc run`, record every linked output and the focus: into
-/// one file of MCAP, which makes no module wait, or into a folder, which lacks no message as long
-/// as the recorder runs.
+/// Adds a module `recorder` on the host of `hc run` that records every linked output and the focus:
+/// either to one MCAP file, without making modules wait, or to a folder, without losing messages
+/// while the recorder runs.
 /// @param traced  modules whose output `trace` is recorded too.
-/// @param parameters  of it: `file` or `folder`, and more.
-/// @returns  its inputs, one for each output, which `--describe` of its program does not say.
+/// @param parameters  of the recorder: `file` or `folder`, and others.
+/// @returns  its inputs, one for each output; its program's `--describe` does not list them.
 std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::string>& traced,
                                       const std::string& program,
                                       const std::map<std::string, std::string>& parameters);
 
-/// Sets a parameter. Problems: there is no such module.
-/// @param place  where that is from.
+/// Sets a parameter. Problems: no such module.
+/// @param place  of the assignment.
 void set_parameter(Graph& graph, const Assignment& assignment, Problems& problems,
                    const Place& place = {});
 
-/// Changes a graph as an edit says. Problems: what it names does not exist, or exists already.
+/// Applies an edit to a graph. Problems: a name that does not exist, or exists already.
 void apply_command(Graph& graph, const GraphCommand& command, Problems& problems);
 
 }  // namespace hc

@@ -14,7 +14,7 @@ const char* environment(const char* name) {
   return std::strcmp(name, "HOME") == 0 ? "/home/eve" : nullptr;
 }
 
-/// A graph behind the line of its version, or else all that is wrong, a line each.
+/// Parses a graph after the line of its version. Errors: all problems, a line each.
 Result<Graph> parse(std::string_view text) {
   Problems problems("g.toml");
   Graph graph = parse_graph("version = 1\n" + std::string(text), environment, problems);
@@ -58,7 +58,7 @@ TEST(GraphFile, HasAVersion) {
     parse_graph(text, environment, problems);
     return problems.empty() ? "" : problems.lines().front();
   };
-  for (const char* mark : {"", "\xef\xbb\xbf"})  // of the order of bytes, which is overlooked
+  for (const char* mark : {"", "\xef\xbb\xbf"})  // a byte order mark is ignored
     EXPECT_EQ(wrong(mark + std::string("version = 1\n[modules.a]\n")), "");
   EXPECT_EQ(wrong("\n[modules.a]\n"), "g.toml:1: a graph file begins with \"version = 1\"");
   EXPECT_EQ(wrong("\nversion = \"1\"\n"), "g.toml:2: a graph file has \"version = 1\"");
@@ -156,7 +156,6 @@ TEST(GraphFile, ErrorsNameTheLineAndWhatWouldBeRight) {
   EXPECT_FALSE(parse(std::string(kMaxGraphBytes + 1, '\n')));
 }
 
-/// `text` so many times.
 std::string repeated(std::string_view text, std::size_t times) {
   std::string all;
   while (times-- > 0) all += text;
@@ -259,7 +258,7 @@ inputs.in = "a.out"
 )"));
   add_recorder(graph, {"a"}, "/bin/recorder", {{"folder", "kept"}});
   const auto& recorder = graph.modules.back();
-  EXPECT_EQ(recorder.name, "recorder_added");  // the other name is taken
+  EXPECT_EQ(recorder.name, "recorder_added");  // "recorder" is taken
   EXPECT_EQ(recorder.parameters.at("folder").value, "kept");
   EXPECT_EQ(recorder.parameters.at("streams").value, "stream_0=a.out stream_1=a.trace");
   ASSERT_EQ(graph.links.size(), 3U);
@@ -288,7 +287,7 @@ g.toml:5: parameter "a" must be a string, a number, true or false
 g.toml:6: "left" must be a whole number from 0 to 2147483647
 g.toml:7: "left" must be "text", "binary", "zstd" or "jpeg"
 g.toml:9: "eye" is not MODULE.PORT
-g.toml:10: )" + std::string("option keep is all, latest, or how many messages"));
+g.toml:10: )" + std::string("option keep is all, latest, or a number of messages"));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Other hosts that modules of a graph run on, as the graph needs them. lib/hosts reaches them.
+// The interface to other hosts that run modules of a graph; lib/hosts implements it.
 
 #include <cstdint>
 #include <functional>
@@ -19,44 +19,43 @@ class Loop;
 class ModuleProcess;
 struct ModuleCallbacks;
 
-/// A host that is connected, or is being connected to again.
+/// A host that is connected or reconnecting.
 class Host {
  public:
   virtual ~Host() = default;
 
-  // For planning. To be called from threads other than the loop's; each call waits for the host
-  // until `stop` is readable. Errors: Closed (it is not connected), Stopped, and those of the
-  // functions of this host.
+  // For planning. Call these from threads other than the loop's; each call blocks until the host
+  // answers or `stop` is readable. Errors: Closed (not connected), Stopped, and those of the
+  // equivalent local functions.
 
   /// As find_program(), but a missing program is an error (NotFound).
   virtual Result<std::string> find_program(const std::string& name, int stop) = 0;
   /// As describe_program().
   virtual Result<std::string> describe_program(const std::string& program, int stop) = 0;
-  /// As hc::hold_port(): for as long as the result, also when it is connected to again.
+  /// As hc::hold_port(); the port survives a reconnection.
   virtual Result<std::shared_ptr<const HeldPort>> hold_port(bool of_all_addresses, int stop) = 0;
-  /// What the program that runs there says of its host (`hc doctor`); words of its own.
+  /// Asks the agent about its host (`hc doctor`); question and answer are the program's own format.
   virtual Result<std::string> examine(const std::string& question, int stop) = 0;
 
-  // For running the graph. To be called on the loop's thread; no call waits.
+  // For running the graph. Call these on the loop's thread; none blocks.
 
   [[nodiscard]] virtual HostPlace place() const = 0;
   [[nodiscard]] virtual HostState state() const = 0;
-  /// Runs the processes of a module there. When the connection is lost they end with status
-  /// kHostLost.
+  /// Runs a module's processes there. If the connection is lost, they end with status kHostLost.
   virtual std::unique_ptr<ModuleProcess> make_process(const PlannedModule& module,
                                                       ModuleCallbacks callbacks) = 0;
-  /// As read_in_place_here(), there.
+  /// As read_in_place_here(), on that host.
   virtual std::shared_ptr<void> read_in_place(const std::string& reader_uri) = 0;
-  /// A port of all addresses for observers, if one is held in reserve. Errors: Closed.
+  /// A reserved port of all addresses, for observers. Errors: Closed.
   virtual Result<std::shared_ptr<const HeldPort>> spare_port() = 0;
-  /// What added to its monotonic clock gives the wall clock here [ns].
+  /// Add this to its monotonic clock to get the wall clock of this host [ns].
   [[nodiscard]] virtual std::int64_t wall_offset() const = 0;
 
-  /// Greater than the status of any process.
+  /// Above the exit status of any process.
   static constexpr int kHostLost = 256;
 };
 
-/// All other hosts of a run, and the connections to them. Used on the thread of one loop.
+/// The other hosts of a run and the connections to them. Used on the thread of one loop.
 class Hosts {
  public:
   struct Connected {
@@ -66,28 +65,25 @@ class Hosts {
 
   virtual ~Hosts() = default;
 
-  /// The loop, which must turn while a host is connected: an agent that hears nothing for 3 s
-  /// ends.
+  /// The loop must turn while a host is connected: an agent ends after 3 s without a message.
   [[nodiscard]] virtual Loop& loop() = 0;
-  /// Calls `work`, which may wait for hosts, on another thread, and turns the loop until it
-  /// returns. Errors: System.
+  /// Calls `work`, which may block on hosts, on another thread and turns the loop until it returns.
+  /// Errors: System.
   virtual Status serve(const std::function<void()>& work) = 0;
 
-  /// The host of this declaration; a new one is connected to. To be called from threads other than
-  /// the loop's. Errors: Closed (it cannot be reached, or has no agent of ours; the detail says
-  /// why), Stopped.
+  /// Returns the declared host; connects to a new one. Call this from threads other than the
+  /// loop's. Errors: Closed (unreachable, or no compatible agent; the detail says why), Stopped.
   virtual Result<Connected> connect(const GraphHost& declared, int stop) = 0;
-  /// A host that has been connected to; null: none has that name.
+  /// A host returned by connect(); null if there is none of that name.
   [[nodiscard]] virtual std::shared_ptr<Host> find(const std::string& name) const = 0;
 
-  /// The fingerprint of the key of this host, and its file. Constant; for any thread.
+  /// The fingerprint of this host's key, and the descriptor of its file. Constant; any thread.
   [[nodiscard]] virtual std::string fingerprint() const = 0;
   [[nodiscard]] virtual int key() const = 0;
 
-  /// Readable when take_events() has something: a connection has been lost or made, or a clock has
-  /// been set.
+  /// Readable when there are events: a connection was lost or made, or a clock was set.
   [[nodiscard]] virtual int descriptor() const = 0;
-  /// Lines for the log.
+  /// Returns the events as lines for the log.
   virtual std::vector<std::string> take_events() = 0;
 };
 

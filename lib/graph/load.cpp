@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::seconds kMorePatience{1};  // with the others, when a host has failed
+constexpr std::chrono::seconds kMorePatience{1};  // with the others, once a host has failed
 
 Error cannot_read(const std::string& name, std::error_code why) {
   const bool is_missing = why == std::errc::no_such_file_or_directory;
@@ -43,7 +43,7 @@ Result<std::string> read_text(const std::string& name) {
   return text;
 }
 
-/// Only files, so that nothing is waited for, as a pipe would be. Errors have the whole path.
+/// Refuses pipes and devices, which could block. Errors have the absolute path.
 Result<std::string> read_file(const std::string& name) {
   std::error_code why;
   const std::string path = fs::absolute(name, why).lexically_normal().string();
@@ -54,7 +54,7 @@ Result<std::string> read_file(const std::string& name) {
   return read_text(path);
 }
 
-/// @param path  what `program` stands for, where it has a slash.
+/// @param path  of `program`, if it has a slash.
 std::string why_no_program(const std::string& program, const std::string& path) {
   std::error_code missing;
   if (path.find('/') == std::string::npos) return no_program(program);
@@ -63,8 +63,7 @@ std::string why_no_program(const std::string& program, const std::string& path) 
   return "no program \"" + program + "\"";
 }
 
-/// The path of a program; an error says why there is none.
-/// @param path  as above.
+/// Finds a program. @param path  as above. Errors: NotFound, Stopped.
 Result<std::string> path_of(const std::string& program, const std::string& path, int stop) {
   return unless_stopped(stop, [=]() -> Result<std::string> {
     auto found = find_program(path);
@@ -73,8 +72,8 @@ Result<std::string> path_of(const std::string& program, const std::string& path,
   });
 }
 
-/// Has a graph serve a page: by its module `web`, or by a new one, which can stop the robot and
-/// choose its task where the graph has a workspace.
+/// Makes the graph's module `web` open a browser, or adds one; if the graph has a workspace, the
+/// added page can stop the robot and choose its task.
 void add_page(Graph& graph, const std::string& listen, Problems& problems) {
   auto obey = [&](const std::string& line) {
     apply_command(graph, parse_graph_command(line).value(), problems);
@@ -102,7 +101,7 @@ void add_page(Graph& graph, const std::string& listen, Problems& problems) {
   if (!listen.empty()) obey("set " + page + ".listen=" + listen);
 }
 
-/// The modules that have an output `trace` of their messages.
+/// The modules with an output `trace`.
 std::vector<std::string> traced_modules(const Graph& graph, const Describe& describe) {
   std::vector<std::string> traced;
   for (const auto& module : graph.modules) {
@@ -115,7 +114,7 @@ std::vector<std::string> traced_modules(const Graph& graph, const Describe& desc
   return traced;
 }
 
-/// A description with inputs of anything.
+/// Adds inputs of any type to a description.
 Result<std::string> with_inputs(const std::string& text, const std::vector<std::string>& inputs) {
   auto description = parse_description(text);
   if (!description) return text;
@@ -142,16 +141,16 @@ class FileLoader : public GraphLoader {
  private:
   using Answers = std::map<std::string, Result<std::string>>;  // by program
 
-  /// What is known of another host.
-  struct Elsewhere {
+  /// The answers of another host.
+  struct HostAnswer {
     Result<Hosts::Connected> connected;
-    Answers found;      // where its programs are,
-    Answers described;  // and what these say of themselves, by their paths
+    Answers found;      // paths, by program
+    Answers described;  // descriptions, by path
   };
-  using HostAnswers = std::map<std::string, Elsewhere>;
+  using HostAnswers = std::map<std::string, HostAnswer>;
 
   Result<LoadedGraph> read_and_plan(const Plan* running, int stop) {
-    // A graph that runs is read from files again: nobody writes into a pipe once more.
+    // A reload reads regular files only: a pipe cannot be read twice.
     const auto text = HC_TRY(unless_stopped(
         stop, [file = options_.file, read = running == nullptr ? read_text : read_file] {
           return read(file);
@@ -172,14 +171,14 @@ class FileLoader : public GraphLoader {
   }
 
   LoadedGraph planned(Graph graph, Problems& problems, const Plan* running, int stop) {
-    HostAnswers elsewhere;
-    if (auto asked = ask_hosts(graph, problems, stop, elsewhere); !asked)
+    HostAnswers remote;
+    if (auto asked = ask_hosts(graph, problems, stop, remote); !asked)
       problems.add({}, asked.error().text());
     HostPlaces places;
     if (options_.hosts != nullptr) places[""].fingerprint = options_.hosts->fingerprint();
-    for (const auto& [name, there] : elsewhere) places[name] = there.connected->place;
-    find_programs(graph, elsewhere, problems, stop);
-    Answers described;  // here; a failure is not tried twice
+    for (const auto& [name, there] : remote) places[name] = there.connected->place;
+    find_programs(graph, remote, problems, stop);
+    Answers described;  // on this host; failures are not retried
     LoadedGraph loaded{graph, {}, {}, {}};
     std::string recorder;
     if (!options_.recorder.empty()) {
@@ -190,7 +189,7 @@ class FileLoader : public GraphLoader {
     std::vector<std::string> recorded;
     auto describe = [&](const std::string& program,
                         const std::string& host) -> Result<std::string> {
-      if (!host.empty()) return elsewhere.at(host).described.at(program);
+      if (!host.empty()) return remote.at(host).described.at(program);
       auto known = described.find(program);
       if (known == described.end())
         known = described.emplace(program, describe_once(program, stop)).first;
@@ -203,7 +202,7 @@ class FileLoader : public GraphLoader {
     }
     auto hold_port = [&](const std::string& host, bool is_for_others) {
       return host.empty() ? hc::hold_port(is_for_others)
-                          : elsewhere.at(host).connected->host->hold_port(is_for_others, stop);
+                          : remote.at(host).connected->host->hold_port(is_for_others, stop);
     };
     Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running,
                           options_.holds_ports ? hold_port : HoldPort(), places);
@@ -212,15 +211,14 @@ class FileLoader : public GraphLoader {
     return loaded;
   }
 
-  /// Replaces names of programs by paths; one with a slash is relative to the file that names it.
-  /// Modules on a host that cannot be reached cause no further problems.
-  static void find_programs(Graph& graph, const HostAnswers& elsewhere, Problems& problems,
-                            int stop) {
+  /// Replaces names of programs by paths; a name with a slash is relative to its graph file.
+  /// Modules on an unreachable host cause no further problems.
+  static void find_programs(Graph& graph, const HostAnswers& remote, Problems& problems, int stop) {
     for (auto& module : graph.modules) {
       auto& [program, place] = module.program;
       const std::string given = std::exchange(program, {}), &host = module.host.value;
-      if (given.empty()) continue;  // what is wrong has been reported
-      if (const auto there = elsewhere.find(host); there != elsewhere.end()) {
+      if (given.empty()) continue;  // already reported
+      if (const auto there = remote.find(host); there != remote.end()) {
         const auto& path = there->second.found.at(given);
         if (!path) problems.add(place, "host {}: {}", host, path.error().detail);
         program = path.value_or("");
@@ -235,9 +233,9 @@ class FileLoader : public GraphLoader {
     }
   }
 
-  static Elsewhere ask_host(Hosts& hosts, const GraphHost& declared,
-                            const std::set<std::string>& programs, int stop) {
-    Elsewhere there{hosts.connect(declared, stop), {}, {}};
+  static HostAnswer ask_host(Hosts& hosts, const GraphHost& declared,
+                             const std::set<std::string>& programs, int stop) {
+    HostAnswer there{hosts.connect(declared, stop), {}, {}};
     for (const auto& program : programs) {
       if (!there.connected) break;
       auto& host = *there.connected->host;
@@ -248,12 +246,11 @@ class FileLoader : public GraphLoader {
     return there;
   }
 
-  /// Connects to the hosts that modules run on, and asks each where its programs are and for their
-  /// descriptions: all at the same time. Problems: a host that cannot be reached; the others then
-  /// have one more second to answer.
+  /// Connects to all hosts in parallel and asks for the paths and descriptions of their programs.
+  /// Problems: an unreachable host; the others then have kMorePatience to answer.
   ///
   /// Errors: Stopped, System.
-  Status ask_hosts(const Graph& graph, Problems& problems, int stop, HostAnswers& elsewhere) {
+  Status ask_hosts(const Graph& graph, Problems& problems, int stop, HostAnswers& remote) {
     const auto loop = HC_TRY(Loop::make());
     std::vector<Aside> asked;
     std::size_t answers = 0;
@@ -267,15 +264,15 @@ class FileLoader : public GraphLoader {
         if (module.host.value == declared.name) programs.insert(module.program.value);
       if (declared.ssh.empty() || programs.empty()) continue;
       if (options_.hosts == nullptr) {
-        problems.add(declared.place, "this program runs graphs on one host alone");
+        problems.add(declared.place, "this program runs graphs on one host only");
         break;
       }
-      programs.erase("");  // what is wrong has been reported
-      auto answered = [&, &declared = declared, number = asked.size()](Elsewhere there) {
+      programs.erase("");  // already reported
+      auto answered = [&, &declared = declared, number = asked.size()](HostAnswer there) {
         ++answers;
         if (asked[number].is_stopped()) return;
         if (there.connected) {
-          elsewhere.emplace(declared.name, std::move(there));
+          remote.emplace(declared.name, std::move(there));
           return;
         }
         problems.add(declared.place, "host {}: {}", declared.name, there.connected.error().detail);
@@ -311,7 +308,7 @@ class FileLoader : public GraphLoader {
     return description;
   }
 
-  using Stamp = std::pair<fs::file_time_type, std::uintmax_t>;  // when it was written, its size
+  using Stamp = std::pair<fs::file_time_type, std::uintmax_t>;  // time of last change, size
   struct Described {
     Stamp stamp;
     std::string description;
@@ -324,7 +321,7 @@ class FileLoader : public GraphLoader {
 }  // namespace
 
 std::string graph_token() {
-  // Two graphs of one process may run side by side, and process numbers come back.
+  // A process may run two graphs, and PIDs are reused.
   return "hc-" + std::to_string(::getpid()) + "-" +
          std::to_string(std::chrono::steady_clock::now().time_since_epoch().count());
 }

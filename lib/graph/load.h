@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// From the name of a graph file to a plan: reads the files, finds the programs, asks them for their
-// descriptions, and checks all of it.
+// From a graph file to a plan: reads the files, finds the programs, asks for their descriptions,
+// and checks everything.
 
 #include <map>
 #include <memory>
@@ -14,51 +14,51 @@
 
 namespace hc {
 
-/// Which graph, and what is set beside its file.
+/// A graph file and the options of `hc run` that affect its plan.
 struct LoadOptions {
   std::string file;
   std::vector<std::string> settings;  ///< MODULE.PARAMETER=VALUE
-  bool page = false;                  ///< has a module `web`, which opens a browser
-  std::string listen;                 ///< address that it listens on; empty: its own
-  /// Parameters of a module `recorder` that records all outputs; empty: there is none.
+  bool page = false;                  ///< adds a module `web`, which opens a browser
+  std::string listen;                 ///< address on which `web` listens; empty: its default
+  /// Parameters of an added module `recorder` that records all outputs; empty: none.
   std::map<std::string, std::string> recorder = {};
   std::string token;         ///< for make_plan()
-  bool holds_ports = false;  ///< that links over TCP need, where the plan is to run
-  /// Connects to other hosts; null: a graph that has such is refused. Must outlive the loader.
+  bool holds_ports = false;  ///< reserves ports for links over TCP; needed to run the plan
+  /// Connects to other hosts; null: graphs with hosts are refused. Must outlive the loader.
   Hosts* hosts = nullptr;
 };
 
 /// A graph that has been read and checked.
 struct LoadedGraph {
   Graph graph;                        ///< with the paths of its programs
-  std::optional<Plan> plan;           ///< nothing: it cannot run, and `problems` say why
-  std::vector<std::string> problems;  ///< lines
-  std::string recorder;               ///< module added for LoadOptions::recorder; empty: none
+  std::optional<Plan> plan;           ///< nullopt: see `problems`
+  std::vector<std::string> problems;  ///< one line each
+  std::string recorder;               ///< the module added for LoadOptions::recorder; empty: none
 };
 
-/// Loads one graph, again and again while it runs. Not for two threads at once.
+/// Loads one graph, repeatedly while it runs. Not thread-safe.
 class GraphLoader {
  public:
   virtual ~GraphLoader() = default;
 
-  /// Reads the files of the graph as they are now, and plans it.
+  /// Reads the graph's files and plans it.
   ///
-  /// @param running  the plan by which it runs, whose numbers stay; null: it does not run. Then
-  /// it is called on the thread of the hosts' loop and turns that; else on another one.
-  /// @param stop  descriptor that is readable when no program is to be waited for any more.
+  /// @param running  the plan that runs, whose numbers stay; null: none. Without it, call this on
+  /// the thread of the hosts' loop, which it turns; otherwise on another thread.
+  /// @param stop  readable when waiting for programs must end.
   ///
-  /// Errors: NotFound (the file), Stopped, System (it cannot be read; no descriptor or thread to be
-  /// had). All else that is wrong is in LoadedGraph::problems.
+  /// Errors: NotFound (the file), Stopped, System (unreadable file; no descriptor or thread left).
+  /// Everything else is in LoadedGraph::problems.
   virtual Result<LoadedGraph> load(const Plan* running, int stop) = 0;
 
-  /// Plans a graph that was loaded and has been changed.
+  /// Plans a loaded graph that has been edited.
   virtual LoadedGraph plan(Graph graph, const Plan& running, int stop) = 0;
 };
 
-/// A loader that asks each program once for its description, and again when its file changes.
+/// A loader that asks a program for its description once, and again when its file changes.
 std::unique_ptr<GraphLoader> make_loader(LoadOptions options);
 
-/// A word for LoadOptions::token that no other running graph has.
+/// A LoadOptions::token that is unique among running graphs.
 std::string graph_token();
 
 }  // namespace hc

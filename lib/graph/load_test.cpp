@@ -18,7 +18,7 @@
 namespace hc {
 namespace {
 
-/// Hosts one of which, "a", cannot be reached, and others that do not answer.
+/// Host "a" is unreachable, all others do not answer.
 class FakeHosts final : public Hosts {
  public:
   [[nodiscard]] Loop& loop() override { return *loop_; }
@@ -49,7 +49,7 @@ class Load : public ::testing::Test {
   ~Load() override { ::unlink(options_.file.c_str()); }
 
   Result<LoadedGraph> load() { return make_loader(options_)->load(nullptr, stop_.descriptor()); }
-  /// A graph of modules on hosts of these names.
+  /// Writes a graph with a module on each host.
   void write(const std::vector<std::string>& hosts) const {
     std::ofstream file(options_.file);
     file << "version = 1\n";
@@ -74,7 +74,7 @@ TEST_F(Load, AFileThatHangsIsNotWaitedForWhenStopped) {
   ASSERT_EQ(::mkfifo(options_.file.c_str(), S_IRUSR | S_IWUSR), 0);
   stop_.raise();
   EXPECT_EQ(refused(load()).code, Code::Stopped);
-  // Lets the thread that was left behind go on.
+  // Unblocks the abandoned thread.
   const Descriptor writer(::open(options_.file.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How much of what a process says is taken in a second. Pure: time is passed in.
+// Limits the log of a process per second. Pure: the time is a parameter.
 
 #include <chrono>
 #include <cmath>
@@ -12,15 +12,15 @@
 
 namespace hc {
 
-/// Counts by seconds, each of which begins with the first line in it.
+/// Counts over periods of a second, each starting with its first line.
 class LogLimit {
  public:
   static constexpr std::uint64_t kMostLines = 10'000, kMostBytes = std::uint64_t{256} << 10;
   static constexpr std::chrono::seconds kPeriod{1};
-  /// Between pieces that are read of one who says more: 64 KiB in this time are the most.
+  /// Between reads of 64 KiB from a process above the limit.
   static constexpr std::chrono::milliseconds kPause{10};
 
-  /// Whether a line may be taken; counts it as dropped otherwise.
+  /// Returns whether a line is within the limit; otherwise counts it as dropped.
   bool passes(std::uint64_t bytes, MonotonicTime now) {
     if (now - begun_ >= kPeriod && dropped_ == 0) {
       begun_ = now;
@@ -36,7 +36,7 @@ class LogLimit {
   /// Whether lines are being dropped.
   [[nodiscard]] bool is_over() const { return dropped_ > 0; }
 
-  /// What is to be said of lines that were dropped, once their second is over; empty: nothing.
+  /// Returns a log line about dropped lines once their second has passed; empty: none.
   std::string take_remark(MonotonicTime now) {
     if (dropped_ == 0 || now - begun_ < kPeriod) return "";
     const auto time = std::chrono::duration<double>(now - begun_).count();

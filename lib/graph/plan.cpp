@@ -8,9 +8,9 @@ namespace hc {
 namespace internal {
 namespace {
 
-constexpr std::size_t kMostSuggestions = 100;  // each is compared with all names that are known
+constexpr std::size_t kMostSuggestions = 100;  // each costs a comparison with all known names
 
-/// A type's elements, were they encoded so.
+/// A type's `info` with another encoding.
 Info info_with(const PortType& type, Encoding encoding) {
   Info info = type.info;
   info.encoding = encoding;
@@ -39,7 +39,7 @@ void add_encodings(Planning& planning, const GraphModule& module, PlannedModule&
   }
 }
 
-/// What a program that does not say "control" would ignore.
+/// Refuses keys that a program without --control would ignore.
 void check_needs_no_control(Problems& problems, const GraphModule& module,
                             const Description& description) {
   auto refuse = [&](const Place& place, const std::string& key) {
@@ -54,7 +54,7 @@ void check_needs_no_control(Problems& problems, const GraphModule& module,
                  module.name);
 }
 
-/// Plans a module without its addresses, modes and links, which depend on other modules.
+/// Plans a module except for its addresses, modes and links, which depend on other modules.
 void plan_module(Planning& planning, const Describe& describe, const GraphModule& module) {
   auto& problems = planning.problems;
   planning.names.insert(module.name);
@@ -70,7 +70,7 @@ void plan_module(Planning& planning, const Describe& describe, const GraphModule
                         module.name, program);
   if (auto named = check_names(*parsed); !named)
     return problems.add(module.place, "module {}: {}", module.name, named.error().detail);
-  if (planning.index.contains(module.name)) return;  // a duplicate, which has been reported
+  if (planning.index.contains(module.name)) return;  // a duplicate, already reported
   const auto& description = planning.described[module.name] = std::move(*parsed);
   const std::string name = "unix-listen:@" + planning.plan.token + "." + module.name;
   PlannedModule planned;
@@ -172,12 +172,12 @@ std::vector<std::string> PlannedModule::command() const {
   return words;
 }
 
-std::set<std::string> reach(const Ways& ways, std::set<std::string> modules) {
+std::set<std::string> reach(const Edges& edges, std::set<std::string> modules) {
   std::vector<std::string> next(modules.begin(), modules.end());
   while (!next.empty()) {
-    const auto found = ways.find(next.back());
+    const auto found = edges.find(next.back());
     next.pop_back();
-    if (found == ways.end()) continue;
+    if (found == edges.end()) continue;
     for (const auto& module : found->second)
       if (modules.insert(module).second) next.push_back(module);
   }

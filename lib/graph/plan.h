@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// From a graph to the commands that run it: every name is checked against what the modules say of
-// themselves (--describe), and every link gets its two ends. Pure.
+// From a graph to the command lines that run it: checks names against the modules' descriptions
+// (--describe) and gives each link its two ends. Pure.
 
 #include <chrono>
 #include <cstdint>
@@ -21,62 +21,62 @@ namespace hc {
 
 struct HeldPort;
 
-/// One end of a link, as a module gets it.
+/// One end of a link, as passed to a module.
 struct PlannedEnd {
   bool is_input = false;
   std::string port, uri;
-  std::string route;  ///< the words of --route; empty: none
+  std::string route;  ///< for --route; empty: none
 
   /// "PORT=URI"
   [[nodiscard]] std::string text() const { return port + "=" + uri; }
 };
 
-/// A process that is to run.
+/// A process to run.
 struct PlannedModule {
   std::string name;
-  std::string program;                            ///< a path, or a name that PATH has
-  std::string host;                               ///< that it runs on; empty: that of `hc run`
-  std::string group;                              ///< the graph that includes it; empty: none
-  std::vector<std::string> options;               ///< what is said neither below nor by links
+  std::string program;                            ///< a path, or a name found in PATH
+  std::string host;                               ///< empty: the host of `hc run`
+  std::string group;                              ///< the included graph it is from; empty: none
+  std::vector<std::string> options;               ///< besides parameters and links
   std::map<std::string, std::string> parameters;  ///< as text
-  std::map<std::string, ParameterState> known;    ///< all that it has, to check values with
+  std::map<std::string, ParameterState> known;    ///< all its parameters, to check values
   std::string description;                        ///< of its program, one line of JSON
   std::vector<PlannedEnd> ends;                   ///< in the order of the file's links
-  std::string manage_uri;                         ///< where the runner listens to it
-  std::string control_uri;  ///< where it listens to the runner; empty: it does not
+  std::string manage_uri;                         ///< for its reports
+  std::string control_uri;                        ///< for its commands; empty: it takes none
   Restart restart = Restart::Failure;
-  std::chrono::seconds hang{0};     ///< without a report for so long it is restarted; 0: never
+  std::chrono::seconds hang{0};     ///< restarted after this time without a report; 0: never
   std::string mode;                 ///< of a task; empty: none
-  std::vector<std::string> modes;   ///< it works in; empty: all
+  std::vector<std::string> modes;   ///< in which it works; empty: all
   std::string workspace;            ///< whose focus it obeys; empty: none
-  std::set<std::string> exclusive;  ///< inputs that take the mode in focus alone
-  bool ends_graph = false;          ///< when it has ended with status 0
+  std::set<std::string> exclusive;  ///< its exclusive inputs
+  bool ends_graph = false;          ///< the graph ends when it ends with status 0
 
   void add_option(std::string option, std::string value) {
     options.insert(options.end(), {std::move(option), std::move(value)});
   }
 
-  /// Whether a parameter can have a value. Errors: Invalid.
+  /// Checks a value for a parameter. Errors: Invalid.
   [[nodiscard]] Status check_parameter(const std::string& parameter,
                                        const std::string& value) const;
 
-  /// Whether a new value of a parameter restarts it: it is fixed, or the module takes no commands.
+  /// Whether a new value needs a restart: the parameter is fixed, or the module takes no commands.
   [[nodiscard]] bool is_fixed(const std::string& parameter) const {
     const auto found = known.find(parameter);
     return control_uri.empty() || (found != known.end() && found->second.options.fixed);
   }
 
-  /// Program and arguments, as it is started.
+  /// Program and arguments.
   [[nodiscard]] std::vector<std::string> command() const;
 };
 
-/// A link. Its ends stand in its modules' PlannedModule::ends, by port and URI.
+/// A link. Its ends are also in PlannedModule::ends of its modules, with the same port and URI.
 struct PlannedLink {
-  std::string from, to;                       ///< "MODULE.PORT", or a URI of the world outside
+  std::string from, to;                       ///< "MODULE.PORT", or a URI outside the graph
   std::string sender_uri, reader_uri;         ///< empty: the end is outside
-  std::string keep;                           ///< what it does when its reader is slow
-  std::map<std::string, std::string> policy;  ///< the rest of it: `rate` and so on
-  bool lasts = false;                         ///< its reader waits for its writer's next process
+  std::string keep;                           ///< policy for a slow reader
+  std::map<std::string, std::string> policy;  ///< the other keys: `rate` and so on
+  bool reconnects = false;  ///< its reader reconnects to its writer's next process
 
   /// One of its ends, without its route.
   [[nodiscard]] PlannedEnd end(bool is_input) const {
@@ -88,63 +88,60 @@ struct PlannedLink {
 struct Plan {
   std::vector<PlannedModule> modules;
   std::vector<PlannedLink> links;
-  std::string token;                              ///< as it was given
-  std::map<std::string, std::int64_t> modes;      ///< their numbers
-  std::map<std::string, std::int64_t> sources;    ///< of outputs, "MODULE.PORT": their `src`
-  std::map<std::string, std::int64_t> addresses;  ///< of inputs that have one, "MODULE.PORT"
+  std::string token;                              ///< as given
+  std::map<std::string, std::int64_t> modes;      ///< numbers of modes, by name
+  std::map<std::string, std::int64_t> sources;    ///< `src` of outputs, by "MODULE.PORT"
+  std::map<std::string, std::int64_t> addresses;  ///< of inputs that have one, by "MODULE.PORT"
   std::set<std::string> workspaces;               ///< modules that publish the focus
   std::vector<std::string> unlinked;              ///< outputs without a link, "MODULE.PORT"
-  std::vector<std::string> warnings;              ///< what may not be meant, as Problems::lines()
-  /// Of links over TCP, by their names: the port is theirs for as long as a plan has it.
+  std::vector<std::string> warnings;              ///< as Problems::warnings()
+  /// Reserved for links over TCP, by link name, while any plan holds them.
   std::map<std::string, std::shared_ptr<const HeldPort>> ports;
-  std::string frames;  ///< as text (G31), by the names of the file
+  std::string frames;  ///< as text (G31), with the names of the file
 };
 
-/// From a module to those that its messages lead to.
-using Ways = std::map<std::string, std::set<std::string>>;
+/// Edges from modules to the receivers of their messages.
+using Edges = std::map<std::string, std::set<std::string>>;
 
-/// All modules that ways lead to from some, these included.
-std::set<std::string> reach(const Ways& ways, std::set<std::string> modules);
+/// The modules reachable from `modules`, including these.
+std::set<std::string> reach(const Edges& edges, std::set<std::string> modules);
 
-/// Gives what `program --describe` prints on a host (empty: that of `hc run`).
+/// Returns the output of `program --describe` on a host (empty: the host of `hc run`).
 using Describe =
     std::function<Result<std::string>(const std::string& program, const std::string& host)>;
 
-/// Gives a link over TCP its port on the host of its writer, of 127.0.0.1, or of all addresses for
-/// readers on other hosts.
+/// Reserves a port for a link over TCP on its writer's host: of 127.0.0.1, or of all addresses for
+/// a reader on another host.
 using HoldPort = std::function<Result<std::shared_ptr<const HeldPort>>(const std::string& host,
                                                                        bool is_for_others)>;
 
-/// What links to and from another host need.
+/// Addresses and key of a host, for links to and from it.
 struct HostPlace {
-  std::string address;      ///< at which other hosts reach it
-  std::string runner;       ///< at which it reaches the host of `hc run`
-  std::string fingerprint;  ///< of its key, which is for this run alone
+  std::string address;      ///< for connections from other hosts
+  std::string runner;       ///< for its connections to the host of `hc run`
+  std::string fingerprint;  ///< of its key, which is made for one run
 };
-/// By name; of the host of `hc run` (empty) only the fingerprint is needed.
+/// By name; the host of `hc run` (empty) needs only the fingerprint.
 using HostPlaces = std::map<std::string, HostPlace>;
 
-/// The file of the key of its host, as every module that has a link to another host finds it: a
-/// descriptor that it is started with.
+/// The key of a module's host, for links to other hosts, is open in the module as this descriptor.
 inline constexpr int kKeyDescriptor = 3;
 inline constexpr std::string_view kKeyFile = "/proc/self/fd/3";
 
 /// Checks a graph and plans it.
 ///
-/// @param token  a word that no other running graph has; the names of links begin with it.
+/// A link's name is made of its ends and stays the same when the graph is planned again. Ports
+/// without an address get the lowest free ones, in the order of the file.
 ///
-/// The names of links say what they join, so they stay the same when a graph is planned again.
+/// @param token  unique among running graphs; the prefix of all link names.
+/// @param before  an earlier plan of this graph whose addresses and TCP ports stay, so that
+/// unchanged modules are planned as before; null: none.
+/// @param hold_port  empty: links over TCP get port 0, and the plan cannot be run.
+/// @param places  of the hosts that run modules.
 ///
-/// Ports without an address get the least ones that are free, in the order of the file.
-///
-/// @param before  a plan of this graph whose addresses and TCP ports stay, so that modules that
-/// have not changed are planned as they were; null: there was none.
-/// @param hold_port  null: such links have port 0, and the plan cannot be run.
-/// @param places  of the hosts that modules run on.
-///
-/// Problems: as spec/graph.md lists them; of a graph that is not whole none, as what it lacks may
-/// be what is named. Nothing more is said of a module without a program (empty), whose problem has
-/// been reported. The plan is of no use where there are problems.
+/// Problems: see spec/graph.md. None for a graph that is not whole, whose missing files may declare
+/// any name, and no more for a module whose program is empty, which has been reported. With
+/// problems, do not use the plan.
 Plan make_plan(Graph graph, const Describe& describe, std::string_view token, Problems& problems,
                const Plan* before = nullptr, const HoldPort& hold_port = {},
                const HostPlaces& places = {});

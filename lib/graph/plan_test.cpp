@@ -112,7 +112,7 @@ TEST(Plan, ALinkGoesOverTcpWhereBothEndsHaveNothingBetter) {
             "tcp-listen:127.0.0.1:" + port + "?readers=1&stay=1&same_user=1");
   EXPECT_EQ(planned.links[0].reader_uri, "tcp:127.0.0.1:" + port + "?wait=60&same_user=1");
   EXPECT_NE(ports.at("t.java.out.filter.in")->number, number);
-  // Who listens there can do so, and the port stays that of the link in the next plan.
+  // The module can listen on the port, which stays the link's in the next plan.
   sockaddr_in place{AF_INET, htons(number), {htonl(INADDR_LOOPBACK)}, {}};
   EXPECT_TRUE(listen_on({&place, sizeof place}, port));
   auto next = must(plan(text + "parameters.rate = 1\n", {}, &planned, hold));
@@ -137,7 +137,7 @@ TEST(Plan, MemoryThatIsSharedIsEnough) {
   };
   EXPECT_EQ(with_reader("seer"),
             "g.toml:6: memory is at least 1576960 bytes where it is shared, not 1048576");
-  EXPECT_EQ(with_reader("any"), "");  // which is linked by a socket
+  EXPECT_EQ(with_reader("any"), "");  // over a socket
 }
 
 TEST(Plan, ErrorsNameTheLineAndWhatWouldBeRight) {
@@ -189,16 +189,16 @@ TEST(Plan, TwoLinksCannotListenAtThePortOfOneHost) {
                  "\"\n");
   };
   EXPECT_EQ(listening("tcp-listen:7000", "tcp-listen:127.0.0.1:7000"),
-            "g.toml:4: another link listens at tcp-listen:127.0.0.1:7000 too");
+            "g.toml:4: another link also listens at tcp-listen:127.0.0.1:7000");
   EXPECT_EQ(listening("tcp-listen:0.0.0.0:7000", "tcp-listen:7000"),
-            "g.toml:4: another link listens at tcp-listen:7000 too");
+            "g.toml:4: another link also listens at tcp-listen:7000");
   EXPECT_EQ(listening("tcp-listen:192.0.2.1:7000", "tcp-listen:7000"), "");
 }
 
 TEST(Plan, TwoLinksCannotWriteToOneSharedMemory) {
   const auto problems =
       wrong("[modules.source]\noutputs.left = \"shm:s\"\noutputs.right = \"shm:s?keep=1\"\n");
-  EXPECT_NE(problems.find("g.toml:4: another link writes to shm:s?keep=1 too"), problems.npos)
+  EXPECT_NE(problems.find("g.toml:4: another link also writes to shm:s?keep=1"), problems.npos)
       << problems;
 }
 
@@ -249,7 +249,7 @@ TEST(Plan, ALoopHasARate) {
             "example rate = 30");
   EXPECT_EQ(loop("rate = 30\n"), "");
   EXPECT_EQ(wrong("[modules.filter]\ninputs.on = \"filter.out\"\n"),
-            "g.toml:3: module filter has no input \"on\", did you mean \"in\"?");  // and of no loop
+            "g.toml:3: module filter has no input \"on\", did you mean \"in\"?");  // and no loop
   EXPECT_TRUE(wrong("[modules.filter]\ninputs.in = \"filter.out\"\n")
                   .starts_with("g.toml:3: loop without a rate: filter -> filter;"));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What is wrong with a graph: all of it, each with its file and line.
+// Collects all problems of a graph, with file and line.
 
 #include <algorithm>
 #include <string>
@@ -14,36 +14,36 @@
 
 namespace hc {
 
-/// Where something is.
+/// A position in a graph's files.
 struct Place {
-  int line = 0;  ///< from 1 on; 0: it is in no file
-  int file = 0;  ///< as Problems counts them; 0 is the graph's own, others are included
+  int line = 0;  ///< from 1; 0: not in a file
+  int file = 0;  ///< index into Problems::files(); 0: the graph file, others: included files
 };
 
-/// The options `--set`, which are in no file.
+/// The options `--set`.
 inline constexpr Place kCommandLine{0, -1};
 
-/// Collects what is wrong with one graph file, and with those that it includes.
+/// Collects the problems of a graph file and of the files it includes.
 class Problems {
  public:
-  /// @param file  as it was given, for the lines.
+  /// @param file  as given, for error lines.
   explicit Problems(std::string file) : files_{std::move(file)} {}
-  /// @param files  as files() gives them.
+  /// @param files  as returned by files().
   explicit Problems(std::vector<std::string> files) : files_(std::move(files)) {}
 
-  /// Makes a file that is included known. Gives its number, for places in it.
+  /// Adds an included file. Returns its index, for places in it.
   int add_file(std::string file) {
     files_.push_back(std::move(file));
     return static_cast<int>(files_.size()) - 1;
   }
 
   void add(const Place& place, std::string what) { found_.push_back({place, std::move(what)}); }
-  /// The same with values in it, as format() puts them there.
+  /// Adds a problem with values, as format() does.
   template <typename First, typename... Rest>
   void add(const Place& place, std::string_view what, const First& first, const Rest&... rest) {
     add(place, format(what, first, rest...));
   }
-  /// Notes what is not wrong, and may not be meant.
+  /// Adds a warning.
   void warn(const Place& place, std::string what) { warnings_.push_back({place, std::move(what)}); }
 
   [[nodiscard]] bool empty() const { return found_.empty(); }
@@ -53,10 +53,9 @@ class Problems {
     return files_.at(static_cast<std::size_t>(number));
   }
 
-  /// Each as "FILE:LINE: WHAT", "--set: WHAT" or "WHAT", in the order of the files and their lines,
-  /// after those in no file; what would steer a terminal or end a line is shown as \x0a.
+  /// Each as "FILE:LINE: WHAT", "--set: WHAT" or "WHAT", sorted by file and line, those without a
+  /// file first; control characters are escaped (\x0a).
   [[nodiscard]] std::vector<std::string> lines() const { return lines_of(found_); }
-  /// The warnings in the same way.
   [[nodiscard]] std::vector<std::string> warnings() const { return lines_of(warnings_); }
 
  private:

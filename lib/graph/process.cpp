@@ -22,26 +22,26 @@ namespace hc {
 
 namespace {
 
-/// What a guard and its program get from us. Between fork and exec, and in a guard all its life,
-/// nothing may allocate: another thread of ours may have held a lock when we forked.
+/// The arguments of a guard and its program. Between fork and exec, and in a guard at any time,
+/// nothing may allocate: another thread may have held a lock at the fork.
 struct Start {
   char* const* arguments;
   int input, output, errors;  // of the program; -1: none
-  int number;                 // for the number of the program, or -errno where none is started
-  int life;                   // at its end when we have ended
-  const Given* given;         // to the program
+  int number;                 // to write the program's PID, or -errno if it was not started
+  int life;                   // at its end when the parent has ended
+  const Inherited* inherited;
   char* const* environment;
 };
 
-/// Ends a guard that has no program, and says why by errno.
+/// Ends a guard without a program; the parent gets errno.
 [[noreturn]] void give_up(const Start& start) {
   const int why = -errno;
-  [[maybe_unused]] const auto said = ::write(start.number, &why, sizeof why);
+  [[maybe_unused]] const auto written = ::write(start.number, &why, sizeof why);
   ::_exit(kCannotExecute);
 }
 
-/// Closes what exec would: on a disk that hangs that is late or never, and meanwhile others wait
-/// for the ends of these pipes, as guards do for that of our life.
+/// Closes what exec would close: a hanging disk may delay exec for ever, while others, such as
+/// guards, wait for the ends of these pipes.
 void close_on_exec(const Start& start) {
   const int list = ::open("/proc/self/fd", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (list < 0) give_up(start);
@@ -59,10 +59,10 @@ void close_on_exec(const Start& start) {
   ::close(list);
 }
 
-/// Becomes the program, or says on its standard error why it cannot.
+/// Executes the program, or writes to standard error why it cannot.
 [[noreturn]] void become(const Start& start, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(kCannotExecute);  // it died before it could be noticed
+  if (::getppid() != parent) ::_exit(kCannotExecute);  // the guard died before prctl
   std::signal(SIGPIPE, SIG_DFL);
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
@@ -76,7 +76,7 @@ void close_on_exec(const Start& start) {
   ::_exit(kCannotExecute);
 }
 
-/// Signals every child of ours to die; whether there was one that can be.
+/// Sends SIGKILL to all children; returns whether one could be signalled.
 bool kill_children() {
   int list = ::open("/proc/thread-self/children", O_RDONLY | O_CLOEXEC);
   bool any = false;
@@ -95,17 +95,17 @@ bool kill_children() {
   return any;
 }
 
-/// The guard between us and a program: see process.h.
+/// The guard of a program: see process.h.
 [[noreturn]] void guard(Start start) {
   sigset_t all, ended;
   ::sigfillset(&all);
   ::sigprocmask(SIG_SETMASK, &all, nullptr);
-  std::signal(SIGCHLD, SIG_DFL);  // were it ignored, nothing could be waited for
+  std::signal(SIGCHLD, SIG_DFL);  // if ignored, waitpid would not work
   ::setpgid(0, 0);
   ::prctl(PR_SET_NAME, "guard");
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   pid_t self = ::getpid();
-  // Done before the program is forked, which anybody may stop before it has done it.
+  // Before the fork, since anyone may stop the program before it would do this itself.
   for (int* kept : {&start.life, &start.number}) {
     const int copy = ::fcntl(*kept, F_DUPFD_CLOEXEC, kKeyDescriptor + 1);
     if (copy < 0) give_up(start);
@@ -116,8 +116,8 @@ bool kill_children() {
   ::dup2(start.input >= 0 ? start.input : null, STDIN_FILENO);
   ::dup2(start.output >= 0 ? start.output : null, STDOUT_FILENO);
   ::dup2(start.errors >= 0 ? start.errors : null, STDERR_FILENO);
-  for (const int listener : start.given->listeners) ::fcntl(listener, F_SETFD, 0);
-  if (const int key = start.given->key; key == kKeyDescriptor)
+  for (const int listener : start.inherited->listeners) ::fcntl(listener, F_SETFD, 0);
+  if (const int key = start.inherited->key; key == kKeyDescriptor)
     ::fcntl(key, F_SETFD, 0);
   else if (key >= 0)
     ::dup2(key, kKeyDescriptor);
@@ -125,10 +125,10 @@ bool kill_children() {
   const pid_t program = ::fork();
   if (program == 0) become(start, self);
   if (program < 0) give_up(start);
-  // Where we have ended meanwhile, it fails, and the program is killed below.
-  [[maybe_unused]] const auto said = ::write(start.number, &program, sizeof program);
+  // Fails if the parent has ended meanwhile; then the program is killed below.
+  [[maybe_unused]] const auto written = ::write(start.number, &program, sizeof program);
 
-  // All pipes of other processes are open here too, and would not close when we go.
+  // The fork has also inherited the pipes of other processes and would keep them open.
   ::dup2(start.life, 0);
   ::close_range(1, ~0U, 0);
   ::sigemptyset(&ended);
@@ -150,12 +150,12 @@ bool kill_children() {
   }
   // Orphans become our children, so this continues until no process is left.
   while (kill_children()) ::waitpid(-1, nullptr, 0);
-  // Those that the system would not list, where it lists none, and this process itself.
+  // If the system lists no children: kill the group, including this process.
   if (!has_ended) ::kill(0, SIGKILL);
   ::_exit(status);
 }
 
-/// Pointers to words, as exec takes them.
+/// Pointers to words, null-terminated, for exec.
 std::vector<char*> pointers(const std::vector<std::string>& words) {
   std::vector<char*> made;
   made.reserve(words.size() + 1);
@@ -164,7 +164,7 @@ std::vector<char*> pointers(const std::vector<std::string>& words) {
   return made;
 }
 
-/// Our environment, with the listeners in place of those that we were given ourselves.
+/// The environment, with these listeners instead of inherited ones.
 std::vector<std::string> environment_with(const std::vector<int>& listeners) {
   const std::string prefix = std::string(internal::kListeners) + "=";
   std::vector<std::string> words;
@@ -174,11 +174,10 @@ std::vector<std::string> environment_with(const std::vector<int>& listeners) {
   return words;
 }
 
-/// Why a program was not started, and what to do.
 Error start_error(const std::string& program, int number) {
   const std::string why = number == EAGAIN
-                              ? "there are as many processes as this user, or its control group, "
-                                "may have (ulimit -u, pids.max)"
+                              ? "limit of processes of this user or control group reached (ulimit "
+                                "-u, pids.max)"
                               : std::strerror(number);
   return {Code::System, program + " cannot be started: " + why};
 }
@@ -192,8 +191,8 @@ Result<std::array<Descriptor, 2>> make_pipe() {
 }  // namespace
 
 Result<Process> Process::start(const std::vector<std::string>& command, Capture capture,
-                               const Given& given) {
-  const auto words = environment_with(given.listeners);
+                               const Inherited& inherited) {
+  const auto words = environment_with(inherited.listeners);
   const auto arguments = pointers(command), environment = pointers(words);
   auto output = HC_TRY(make_pipe());
   auto number = HC_TRY(make_pipe());
@@ -212,7 +211,7 @@ Result<Process> Process::start(const std::vector<std::string>& command, Capture 
                                                  : -1,
                     number[1].get(),
                     life[0].get(),
-                    &given,
+                    &inherited,
                     environment.data()};
   const pid_t child = ::fork();
   if (child < 0) return start_error(command[0], errno);
@@ -229,9 +228,10 @@ Result<Process> Process::start(const std::vector<std::string>& command, Capture 
     if (*ours) ::fcntl(ours->get(), F_SETFL, O_NONBLOCK);
   if (!process.handle_) return system_error("pidfd_open", command[0]);
   number[1].reset();
-  int& said = process.number_;  // 0: the guard was killed, as its end tells
-  HC_TRY(system_call("read", "", [&] { return ::read(number[0].get(), &said, sizeof said); }));
-  if (said < 0) return start_error(command[0], -said);
+  int& started = process.number_;  // 0: the guard was killed; poll_status() will report it
+  HC_TRY(
+      system_call("read", "", [&] { return ::read(number[0].get(), &started, sizeof started); }));
+  if (started < 0) return start_error(command[0], -started);
   return process;
 }
 
@@ -250,7 +250,7 @@ std::optional<int> Process::poll_status() {
   if (status_ || ::waitid(P_PID, static_cast<id_t>(guard_), &ended, WEXITED | WNOHANG | WNOWAIT) ||
       ended.si_pid != guard_)
     return status_;
-  // What a guard that was killed could not see to. Until it is reaped, the number is nobody else's.
+  // A killed guard could not do this. Its PID is not reused until it is reaped.
   ::kill(-guard_, SIGKILL);
   int status = 0;
   ::waitpid(guard_, &status, 0);
@@ -260,8 +260,8 @@ std::optional<int> Process::poll_status() {
 
 void Process::ask_to_end() const {
   if (status_) return;
-  // First, as a stopped process could not end; later it may undo the stop of a leak checker or a
-  // debugger that looks at a process that is ending.
+  // SIGCONT first: later it could resume a process that a leak checker or debugger has stopped at
+  // its end.
   ::kill(-guard_, SIGCONT);
   ::kill(-guard_, SIGTERM);
 }

@@ -32,7 +32,7 @@ void wait_for(int descriptor) {
   EXPECT_TRUE(wait_readable(descriptors));
 }
 
-/// What a process says until `end` is said, or all is.
+/// The output of a process up to `end`, or to its end.
 std::string listen(const Process& process, char end = '\0') {
   std::string text;
   while (true) {
@@ -48,14 +48,14 @@ int status_of(Process& process) {
   return process.poll_status().value_or(-1);
 }
 
-/// Whether a process is there and runs.
+/// Whether a process exists and is not a zombie.
 bool runs(pid_t process) {
   std::ifstream file("/proc/" + std::to_string(process) + "/stat");
   std::string number, name, state;
   return file >> number >> name >> state && state != "Z";
 }
 
-/// A shell's words that leave a process in a session of its own behind and say its number.
+/// Shell code that leaves a process in a new session behind and prints its PID.
 const std::string kLeaveBehind = "echo $(setsid sh -c 'echo $$; exec sleep 1000 >&2' &); ";
 
 TEST(Process, IsHeardAndHasAStatus) {
@@ -86,7 +86,7 @@ TEST(Process, IsAskedToEndWithItsGroup) {
   process.ask_to_end();
   EXPECT_EQ(listen(process), "both\n");
   EXPECT_EQ(status_of(process), 5);
-  process.ask_to_end();  // to nobody
+  process.ask_to_end();  // it has ended
 }
 
 TEST(Process, NothingIsLeftBehindWhenItEnds) {
@@ -118,7 +118,7 @@ TEST(Process, NothingIsLeftBehindWhenItGoesOutOfScope) {
 
 TEST(Process, OthersDoNotKeepAGuardAlive) {
   auto first = shell("exec sleep 1000");
-  auto second = shell("exec sleep 1000");  // its guard was forked with the pipe of the first open
+  auto second = shell("exec sleep 1000");  // its guard inherits the first one's pipe at the fork
   first.kill();
   EXPECT_EQ(status_of(first), 128 + SIGKILL);
 }
@@ -128,16 +128,16 @@ TEST(Process, AGuardThatIsKilledTakesItsGroupAlong) {
   std::string numbers = listen(process, '\n');
   ASSERT_EQ(::kill(std::stoi(numbers), SIGKILL), 0);
   EXPECT_EQ(status_of(process), 128 + SIGKILL);
-  EXPECT_EQ(listen(process), "");  // all who could write have ended
+  EXPECT_EQ(listen(process), "");  // all writers have ended
 }
 
-/// A program on a disk that hangs: who executes it waits.
+/// A program whose exec hangs, as on a hanging disk.
 class HungProgram {
  public:
   HungProgram() {
     std::ofstream(name_) << "#!/bin/sh\necho said\n";
     ::chmod(name_.c_str(), S_IRWXU);
-    // Who opens a file that is leased waits until the lease is given back.
+    // Opening a leased file blocks until the lease is released.
     std::signal(SIGIO, SIG_IGN);
     lease_ = Descriptor(::open(name_.c_str(), O_RDONLY | O_CLOEXEC));
     HC_CHECK(::fcntl(lease_.get(), F_SETLEASE, F_WRLCK) == 0, errno);
@@ -146,13 +146,13 @@ class HungProgram {
   HungProgram& operator=(const HungProgram&) = delete;
   ~HungProgram() { ::unlink(name_.c_str()); }
 
-  /// A process that hangs in exec.
+  /// Starts a process that hangs in exec.
   [[nodiscard]] Process start() const {
     auto process = must(Process::start({name_}, Capture::Output));
     while (::fcntl(lease_.get(), F_GETLEASE) == F_WRLCK) ::sched_yield();
     return process;
   }
-  void go_on() { lease_.reset(); }
+  void release() { lease_.reset(); }
 
  private:
   const std::string name_ = ::testing::TempDir() + "hung_" + std::to_string(::getpid());
@@ -168,7 +168,7 @@ TEST(Process, NothingIsLeftBehindWhenWeAreKilled) {
     ::close(ends[0]);
     auto process = shell(kLeaveBehind + "sleep 1000");
     std::string left = listen(process, '\n') + "\n";
-    const auto another = hung.start();  // it was forked with the pipe of the first open
+    const auto another = hung.start();  // inherits the first one's pipe at the fork
     if (::write(ends[1], left.data(), left.size()) < 0) ::_exit(1);
     while (true) ::pause();
   }
@@ -178,7 +178,7 @@ TEST(Process, NothingIsLeftBehindWhenWeAreKilled) {
   EXPECT_TRUE(runs(std::stoi(left)));
   ASSERT_EQ(::kill(runner, SIGKILL), 0);
   ASSERT_EQ(::waitpid(runner, nullptr, 0), runner);
-  // What is left gives no notice of its end, but for the watchdog of the test.
+  // Poll, since the orphan's end cannot be waited for; the watchdog ends the test.
   while (runs(std::stoi(left))) ::sched_yield();
   ::close(ends[0]);
 }
@@ -186,7 +186,7 @@ TEST(Process, NothingIsLeftBehindWhenWeAreKilled) {
 TEST(Process, AProgramOnADiskThatHangsIsNotWaitedFor) {
   HungProgram hung;
   auto process = hung.start();
-  hung.go_on();
+  hung.release();
   EXPECT_EQ(listen(process), "said\n");
   EXPECT_EQ(status_of(process), 0);
 }

@@ -31,7 +31,7 @@ bool is_program(const fs::path& path) {
 
 struct Described {
   int status = 0;
-  std::string text;  // what was captured
+  std::string text;
 };
 
 /// Runs `program --describe` to its end.
@@ -43,7 +43,9 @@ Result<Described> run_describe(const std::string& program, Process::Capture capt
     auto left = std::chrono::ceil<milliseconds>(give_up - MonotonicClock::now());
     std::array<int, 1> descriptors = {descriptor};
     auto ready = HC_TRY(wait_readable(descriptors, stop, std::max(left, milliseconds(0))));
-    if (ready == 1) return Error{Code::System, program + " --describe does not end"};
+    if (ready == 1)
+      return Error{Code::System, program + " --describe has not ended after " +
+                                     std::to_string(kDescribeTime.count()) + " s"};
     return {};
   };
   while (described.text.size() <= kMaxDescription) {
@@ -56,7 +58,7 @@ Result<Described> run_describe(const std::string& program, Process::Capture capt
     described.status = process.poll_status().value_or(0);
     return described;
   }
-  return Error{Code::System, program + " --describe prints more than a MiB"};
+  return Error{Code::System, program + " --describe prints more than 1 MiB"};
 }
 
 std::string last_line(std::string text) {
@@ -102,7 +104,7 @@ std::string find_program(const std::string& name) {
 
 std::string no_program(const std::string& name) {
   const std::string text = "no program \"" + name + "\"";
-  // Where this program was built, not all others need have been.
+  // In a build tree, some modules may not be built yet.
   const auto build = module_folder().parent_path().parent_path();
   std::error_code missing;
   if (fs::exists(build / "CMakeCache.txt", missing) &&
@@ -114,13 +116,13 @@ std::string no_program(const std::string& name) {
 Result<std::string> describe_program(const std::string& program, int stop) {
   auto described = HC_TRY(run_describe(program, Process::Capture::Output, stop));
   if (described.status == 0) return std::move(described.text);
-  // Run once more for why: one stream of a process is captured.
-  const auto said = run_describe(program, Process::Capture::Errors, stop);
-  const auto line = said ? last_line(said->text) : "";
+  // Run it again for its error message: only one stream of a process is captured.
+  const auto failed = run_describe(program, Process::Capture::Errors, stop);
+  const auto line = failed ? last_line(failed->text) : "";
   return Error{Code::System, program + " --describe failed with status " +
                                  std::to_string(described.status) +
                                  (line.empty() ? "" : ": " + line) +
-                                 "; how a program describes itself is in spec/module.md"};
+                                 "; see spec/module.md for the description of a program"};
 }
 
 }  // namespace hc

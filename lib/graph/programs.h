@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Where programs of modules are, and what they say of themselves.
+// Finds the programs of modules and asks for their descriptions.
 
 #include <filesystem>
 #include <string>
@@ -10,22 +10,22 @@
 
 namespace hc {
 
-/// The folder of the modules that were installed with this program: ../libexec/hypercolumn.
+/// The folder of the modules installed with this program: ../libexec/hypercolumn.
 std::filesystem::path module_folder();
 
 /// The names of all modules in that folder.
 std::vector<std::string> module_names();
 
-/// The folder of the graphs that came with this program; where it was built, a link.
+/// The folder of the shipped graphs; in a build tree, a symbolic link.
 std::filesystem::path graph_folder();
 
-/// A program by its path, or by its name in module_folder() or PATH; empty when there is none.
+/// Finds a program by its path, or by its name in module_folder() or PATH; empty if not found.
 std::string find_program(const std::string& name);
 
-/// Why find_program() finds no program of this name, and what to do.
+/// An error message for a name that find_program() does not find, with what to do.
 std::string no_program(const std::string& name);
 
-/// What `program --describe` prints, at most 1 MiB, within 10 s.
+/// The output of `program --describe`, at most 1 MiB, within 10 s.
 ///
 /// Errors: System (it cannot be executed, or failed), Stopped (`stop` is readable).
 Result<std::string> describe_program(const std::string& program, int stop = -1);

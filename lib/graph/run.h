@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Runs a planned graph: starts its processes and supervises them, has them changed while they run,
-// reports what they do, and takes all of them down together.
+// Runs a planned graph: starts, supervises, changes and stops its processes, reports their state.
 
 #include <algorithm>
 #include <chrono>
@@ -17,11 +16,11 @@
 
 namespace hc {
 
-/// What a graph has done.
+/// The outcome of a run.
 struct RunReport {
-  GraphState state;              ///< at its end
-  std::vector<LogLine> results;  ///< and errors, by module
-  bool stopped = false;          ///< ended because it was asked to
+  GraphState state;              ///< at the end
+  std::vector<LogLine> results;  ///< results and errors, by module
+  bool stopped = false;          ///< on request
 
   [[nodiscard]] bool has_errors() const {
     return std::ranges::find(results, Level::Error, &LogLine::level) != results.end();
@@ -30,46 +29,46 @@ struct RunReport {
 
 /// How often a module is restarted.
 struct RestartLimits {
-  std::size_t starts_at_once = 5;                              ///< so many …
-  std::chrono::nanoseconds window = std::chrono::seconds(10);  ///< … within this time
+  std::size_t starts_at_once = 5;  ///< starts without a delay, within `window`
+  std::chrono::nanoseconds window = std::chrono::seconds(10);
   std::chrono::nanoseconds first_delay = std::chrono::milliseconds(100);
   std::chrono::nanoseconds longest_delay = std::chrono::seconds(30);
-  int delayed_starts = 8;  ///< so many with a delay, none of which ran for `window`: given up
+  int delayed_starts = 8;  ///< given up after these, if none ran for `window`
 };
 
-/// How patient a graph is with its modules.
+/// Time limits of supervision.
 struct SupervisionLimits {
   RestartLimits restarts;
   std::chrono::nanoseconds grace = std::chrono::seconds(5);  ///< between SIGTERM and SIGKILL
-  /// Without a report from a module that has reported before: stalled.
+  /// A module is stalled after this time without a report, once it has sent one.
   std::chrono::nanoseconds stall = std::chrono::milliseconds(1500);
-  /// For the first report of a module that takes commands and has a `hang`, where that is not
-  /// longer: it may have to load what it needs.
+  /// Least time for the first report of a module that takes commands and has a `hang`: it may have
+  /// to load libraries.
   std::chrono::nanoseconds first_report = std::chrono::seconds(60);
 };
 
 struct RunOptions {
-  int stop = -1;  ///< descriptor that is readable when the graph is to end
-  /// Gets events, and the lines of modules.
+  int stop = -1;  ///< readable when the graph must end
+  /// Gets events and the log lines of modules.
   std::function<void(const LogLine& line)> event;
-  bool with_module_lines = true;  ///< false: only errors, and the last ones of a module that fails
-  /// Called with the state of the graph, twice a second.
+  bool with_module_lines = true;  ///< false: only errors, and the last lines of failed modules
+  /// Called twice a second.
   std::function<void(const GraphState& state)> state;
-  /// Where others find the graph: it has two links of that name (spec/graph.md). Empty: none.
+  /// The name under which clients find the graph (spec/graph.md); empty: it serves none.
   std::string name;
-  std::string file;  ///< what its state calls the graph file
-  /// Loads the graph again when its files change, and plans what commands change in it, on another
-  /// thread. Null: only parameters can be changed. Must outlive the run.
+  std::string file;  ///< name of the graph file in its state
+  /// Reloads the graph when its files change, and plans edits, on another thread. Null: only
+  /// parameters can be changed. Must outlive the run.
   GraphLoader* loader = nullptr;
-  /// Other hosts, those of the plan connected to; null: there are none. Must outlive the run.
+  /// The other hosts, all connected; null: none. Must outlive the run.
   Hosts* hosts = nullptr;
   SupervisionLimits limits;
 };
 
-/// Runs a loaded graph, which has a plan, to its end: until all modules have ended, one fails that
-/// is never restarted, or `stop` is readable. Nothing that it started is left then.
+/// Runs a loaded graph with a plan until all modules have ended, a module with `restart = "never"`
+/// fails, or `stop` is readable. On return all its processes have ended.
 ///
-/// Errors: System; Closed when a module failed, with its name and status.
+/// Errors: System; Closed if a module failed, with its name and status.
 Result<RunReport> run_graph(LoadedGraph graph, const RunOptions& options);
 
 }  // namespace hc

@@ -6,15 +6,15 @@
 
 namespace hc::graphics {
 
-/// How a camera sees: u = fx · x / z + cx, v = fy · y / z + cy, for a point in its optical frame
-/// (x right, y down, z forward). (0, 0) is the middle of the top left pixel.
+/// Projects u = fx · x / z + cx, v = fy · y / z + cy, for a point in its optical frame (x right, y
+/// down, z forward). (0, 0) is the centre of the top left pixel.
 struct PinholeCamera {
   int width = 800, height = 600;   ///< [px]
   double fx = 600, fy = 600;       ///< focal lengths [px]
-  double cx = 399.5, cy = 299.5;   ///< where the optical axis meets the image [px]
-  double near = 0.05, far = 50.0;  ///< what is nearer or farther along z is not seen [m]
+  double cx = 399.5, cy = 299.5;   ///< principal point [px]
+  double near = 0.05, far = 50.0;  ///< clipping distances along z [m]
 
-  /// Where a point is seen [px]; only of one with z > 0.
+  /// The pixel of a point with z > 0 [px].
   [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& p_eye) const {
     return {fx * p_eye.x() / p_eye.z() + cx, fy * p_eye.y() / p_eye.z() + cy};
   }

@@ -27,7 +27,7 @@ Mesh make_rectangle(float width, float height, const Eigen::Vector2f& repeat) {
 }
 
 Mesh make_box(const Eigen::Vector3f& size) {
-  // What turns the rectangle's outward direction, −z, to that of each side.
+  // Rotate the rectangle's outward direction, −z, to that of each side.
   const std::array<Eigen::Vector3f, 6> directions = {
       Eigen::Vector3f::UnitX(), Eigen::Vector3f(-Eigen::Vector3f::UnitX()),
       Eigen::Vector3f::UnitY(), Eigen::Vector3f(-Eigen::Vector3f::UnitY()),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Surfaces of triangles, and those of simple bodies. Pure.
+// Triangle meshes, and those of simple bodies. Pure.
 
 #include <cstdint>
 #include <vector>
@@ -9,14 +9,13 @@
 
 namespace hc::graphics {
 
-/// A corner of triangles.
 struct Vertex {
   Eigen::Vector3f position;                           ///< object's frame [m]
   Eigen::Vector3f normal;                             ///< outwards, of length 1
-  Eigen::Vector2f texture = Eigen::Vector2f::Zero();  ///< 0 … 1 over the image, row 0 on top
+  Eigen::Vector2f texture = Eigen::Vector2f::Zero();  ///< 0 … 1 over the image, row 0 at the top
 };
 
-/// Triangles, three indices each, counter-clockwise as seen from outside.
+/// Triangles of three indices each, counter-clockwise as seen from outside.
 struct Mesh {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;
@@ -25,24 +24,23 @@ struct Mesh {
   void append(const Mesh& other);
 };
 
-/// A rectangle in the plane z = 0, its middle in the origin, seen from where z < 0 with x to the
-/// right and y down: so as an image is seen by the camera that takes it (x right, y down,
-/// z forward).
+/// A rectangle in the plane z = 0, centred at the origin, visible from z < 0 with x right and y
+/// down, as in a camera's optical frame.
 ///
 /// @param width, height  along x and y [m].
-/// @param repeat  how often its image is repeated along x and y.
+/// @param repeat  repetitions of its image along x and y.
 Mesh make_rectangle(float width, float height,
                     const Eigen::Vector2f& repeat = Eigen::Vector2f::Ones());
 
-/// A box, its middle in the origin. Each side has the whole image.
+/// A box centred at the origin. Each side has the whole image.
 ///
 /// @param size  along x, y and z [m].
 Mesh make_box(const Eigen::Vector3f& size);
 
-/// A ball, its middle in the origin; the image goes round it once, from pole to pole along z.
+/// A ball centred at the origin; the image wraps around it once, with the poles along z.
 ///
 /// @param radius  [m].
-/// @param rings  between the poles, at least 2; twice as many corners on each.
+/// @param rings  between the poles, at least 2; with twice as many vertices each.
 Mesh make_ball(float radius, int rings = 24);
 
 }  // namespace hc::graphics

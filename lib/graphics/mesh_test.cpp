@@ -46,7 +46,7 @@ TEST(Mesh, a_rectangle_looks_at_who_stands_before_it) {
     EXPECT_FLOAT_EQ(vertex.texture.x(), (vertex.position.x() / 2 + 0.5F) * 4);
     EXPECT_FLOAT_EQ(vertex.texture.y(), (vertex.position.y() + 0.5F) * 2);
   }
-  // The triangles' own direction is that of their normals.
+  // The winding of the triangles agrees with their normals.
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     const auto corner = [&](std::size_t k) -> Eigen::Vector3f {
       return mesh.vertices[mesh.indices[i + k]].position;

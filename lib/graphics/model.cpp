@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostVertices = 10'000'000;
 
-// assimp knows more, but some of its readers believe a file's counts and run for hours.
+// assimp reads more formats, but some readers trust a file's counts and run for hours.
 constexpr std::array<std::string_view, 4> kFormats = {".obj", ".stl", ".gltf", ".glb"};
 
 Mesh mesh_of(const aiMesh& from) {
@@ -41,11 +41,11 @@ Mesh mesh_of(const aiMesh& from) {
   return mesh;
 }
 
-/// An image of a model, which lies in its file or beside it; empty where it is none.
+/// A texture of a model, embedded or in the model's folder; empty if it cannot be read.
 cv::Mat read_texture(const aiScene& scene, const char* name, const fs::path& folder) {
   const aiTexture* inside = scene.GetEmbeddedTexture(name);
   if (inside == nullptr) return cv::imread((folder / name).string(), cv::IMREAD_COLOR);
-  const bool is_packed = inside->mHeight == 0;  // as PNG or JPEG, else not in these formats
+  const bool is_packed = inside->mHeight == 0;  // PNG or JPEG; these model formats have no others
   if (!is_packed || inside->mWidth == 0) return {};
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(inside->pcData);
   return cv::imdecode(std::vector<std::uint8_t>(bytes, bytes + inside->mWidth), cv::IMREAD_COLOR);
@@ -57,7 +57,7 @@ Result<cv::Mat> texture_of(const aiScene& scene, const aiMaterial& material,
   if (material.GetTexture(aiTextureType_DIFFUSE, 0, &name) == AI_SUCCESS) {
     cv::Mat image = read_texture(scene, name.C_Str(), folder);
     if (image.empty())
-      return Error{Code::Malformed, (folder / name.C_Str()).string() + ": is no image"};
+      return Error{Code::Malformed, (folder / name.C_Str()).string() + ": not an image"};
     cv::cvtColor(image, image, cv::COLOR_BGR2RGB);
     return image;
   }
@@ -72,7 +72,7 @@ Result<std::vector<Part>> read_model(const std::string& path) {
   std::error_code none;
   if (!fs::is_regular_file(path, none)) return Error{Code::NotFound, path + ": no such file"};
   if (std::find(kFormats.begin(), kFormats.end(), fs::path(path).extension()) == kFormats.end())
-    return Error{Code::Unsupported, path + ": a model is .obj, .stl, .gltf or .glb"};
+    return Error{Code::Unsupported, path + ": not a model (.obj, .stl, .gltf or .glb)"};
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(
       path, aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_PreTransformVertices |

@@ -11,17 +11,17 @@
 
 namespace hc::graphics {
 
-/// A surface of a model, and what is painted on it.
+/// A surface of a model and its texture.
 struct Part {
   Mesh mesh;
   cv::Mat texture;  ///< (H, W, 3) u8, red, green, blue; one pixel is a plain colour
 };
 
-/// Reads a model: Wavefront .obj, .stl, .gltf or .glb. Its lengths are taken as metres, its axes as
-/// they are; textures lie in it or beside it. Normals are made where it has none.
+/// Reads a model: Wavefront .obj, .stl, .gltf or .glb. Lengths are in metres; axes are unchanged;
+/// textures are embedded or in the same folder. Missing normals are computed.
 ///
-/// Errors: NotFound (no such file); Unsupported (another format); Malformed (what assimp says; a
-/// texture that is no image; no triangle; more than 10 million corners).
+/// Errors: NotFound (no such file); Unsupported (another format); Malformed (from assimp; invalid
+/// texture; no triangle; more than 10 million vertices).
 Result<std::vector<Part>> read_model(const std::string& path);
 
 }  // namespace hc::graphics

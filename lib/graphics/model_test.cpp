@@ -36,7 +36,7 @@ TEST_F(Models, a_file_gives_its_triangles_and_colours) {
   EXPECT_EQ(part.texture.at<cv::Vec3b>(0, 0), cv::Vec3b(255, 128, 0));
   for (const auto& vertex : part.mesh.vertices) {
     EXPECT_EQ(vertex.normal, Eigen::Vector3f(0, 0, 1));
-    // A file counts texture rows from below, an image from above.
+    // Files count texture rows from the bottom, images from the top.
     EXPECT_FLOAT_EQ(vertex.texture.y(), 1 - vertex.position.y() / 3);
   }
 }
@@ -50,7 +50,7 @@ TEST_F(Models, a_texture_lies_beside_the_file) {
   write("square.mtl", "newmtl paint\nmap_Kd none.png\n");
   parts = read_model(folder / "square.obj");
   ASSERT_FALSE(parts);
-  EXPECT_NE(parts.error().detail.find("none.png: is no image"), std::string::npos);
+  EXPECT_NE(parts.error().detail.find("none.png: not an image"), std::string::npos);
 }
 
 TEST_F(Models, what_is_no_model_is_refused) {
@@ -69,7 +69,7 @@ TEST_F(Models, what_is_no_model_is_refused) {
     EXPECT_EQ(parts.error().code, Code::Malformed) << name;
     EXPECT_EQ(parts.error().detail.find('\n'), std::string::npos) << parts.error().detail;
   }
-  // assimp would read this one's vertices for hours, though there are none.
+  // assimp would take hours for the vertices that this file claims but lacks.
   EXPECT_EQ(read_model(write("cut.ply",
                              "ply\nformat binary_little_endian 1.0\nelement vertex "
                              "4000000000\nproperty float x\nend_header\n"))

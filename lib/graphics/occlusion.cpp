@@ -9,10 +9,10 @@
 namespace hc::graphics {
 namespace {
 
-/// Two neighbours are of one surface if they differ by less [px].
+/// Neighbours that differ by less belong to one surface [px].
 constexpr float kSurface = 1.5F;
 
-/// A row of nearness, of which the columns from `begin` on are looked at [px].
+/// A row of nearness; only columns from `begin` to `end` are used [px].
 struct Row {
   std::vector<float> nearness;
   std::size_t begin = 0, end = nearness.size();
@@ -24,7 +24,7 @@ void invert(const float* depth, float scale, Row& row) {
     row.nearness[x] = depth[x] > 0 ? std::min(scale / depth[x], most) : 0;
 }
 
-/// Moves each pixel to where the right eye sees it; the nearest stays.
+/// Moves each pixel to its position in the right eye; the nearest wins.
 void move_right(const Row& left, Row& right) {
   std::fill(right.nearness.begin(), right.nearness.end(), 0.0F);
   const auto put = [&](float u, float nearness) {
@@ -37,7 +37,7 @@ void move_right(const Row& left, Row& right) {
     if (here == 0 || u < 0) continue;
     put(u + 0.5F, here);
     if (x + 1 == left.end) continue;
-    // What is stretched leaves no gap between two pixels.
+    // Fill the gap if the surface is stretched.
     const float next = left.nearness[x + 1];
     if (next != 0 && std::abs(next - here) < kSurface) put(u + 1, std::min(here, next));
   }
@@ -59,8 +59,7 @@ void fill_holes(Row& row) {
   std::fill(at(begin), at(row.end), before);
 }
 
-/// The left eye's nearness from `begin` to `end`, and on both sides as far as the holes there
-/// reach.
+/// The left eye's nearness from `begin` to `end`, extended to the ends of holes at both sides.
 void see_left(const float* depth, float scale, std::size_t begin, std::size_t end, Row& row) {
   while (begin > 0 && !(depth[begin] > 0)) --begin;
   while (end < row.nearness.size() && !(depth[end - 1] > 0)) ++end;
@@ -70,8 +69,8 @@ void see_left(const float* depth, float scale, std::size_t begin, std::size_t en
   fill_holes(row);
 }
 
-/// The right eye's from `begin` on. What moves there comes from columns further right, or from the
-/// one before; all are asked only where a hole begins further left.
+/// The right eye's nearness from `begin`. It depends on columns further right and the previous one;
+/// on all only if a hole starts further left.
 void see_right(const float* depth, float scale, std::size_t begin, Row& left, Row& right) {
   left.begin = begin - std::min<std::size_t>(begin, 1);
   right.begin = begin;

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How near the scene is in the images of two eyes, by the depth of the left one. Pure.
+// Nearness of the scene in the images of two eyes, from the depth of the left one. Pure.
 //
-// Nearness is disparity, focal length · baseline / depth [px]: what is measured has the same error
-// in it everywhere. The pair is rectified: the right eye sees a point so many pixels further left.
+// Nearness is disparity, focal length · baseline / depth [px], whose error is the same everywhere.
+// The pair is rectified: in the right image a point is that many pixels further left.
 
 #include <opencv2/core.hpp>
 
 namespace hc::graphics {
 
-/// The nearness of all that a part of the left or the right image shows. Where depth is unknown, it
-/// is that of the nearest known pixels to the left and right in the row, of the farther one: what
-/// only one eye sees belongs to what is behind. 0 in a row without any. What the left eye does not
-/// see is unknown in the right one, too.
+/// The nearness in a part of the left or right image. Unknown pixels take the smaller nearness of
+/// the nearest known pixels left and right in the row, since surfaces visible to one eye only
+/// belong to the background; 0 in a row without known pixels. Surfaces hidden from the left eye are
+/// unknown in the right image, too.
 ///
 /// @param depth  (H, W) f32 of the left image [m]; 0 where unknown.
 /// @param scale  focal length · baseline [px · m].

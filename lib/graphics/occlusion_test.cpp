@@ -9,7 +9,7 @@
 namespace hc::graphics {
 namespace {
 
-/// A row of depth whose nearness, with a scale of 1, is as given; 0: unknown.
+/// A row of depth from its nearness at a scale of 1; 0: unknown.
 cv::Mat row_of(const std::vector<float>& nearness) {
   cv::Mat depth(1, static_cast<int>(nearness.size()), CV_32F);
   for (int x = 0; x < depth.cols; ++x) {
@@ -42,14 +42,14 @@ TEST(Occlusion, at_the_edges_a_hole_is_as_what_is_beside_it) {
 }
 
 TEST(Occlusion, the_right_eye_sees_what_is_near_further_left_and_before_the_rest) {
-  // The two pixels of nearness 4 move by 4 and hide those of nearness 1, which move by 1; what the
-  // left eye does not see, at 4 and 5, is far.
+  // The two pixels of nearness 4 move by 4 and hide those of nearness 1, which move by 1; pixels
+  // that the left eye does not see, 4 and 5, are far.
   EXPECT_EQ(right_of({1, 1, 1, 1, 1, 1, 4, 4, 1, 1}),
             (std::vector<float>{1, 1, 4, 4, 1, 1, 1, 1, 1, 1}));
 }
 
 TEST(Occlusion, a_slanted_surface_has_no_gaps_for_the_right_eye) {
-  // Further away to the right, so that the right eye sees it wider.
+  // Depth increases to the right, so that the right eye sees it wider.
   std::vector<float> slanted(40);
   for (std::size_t x = 0; x < slanted.size(); ++x) slanted[x] = 20 - 0.4F * static_cast<float>(x);
   const auto seen = right_of(slanted);

@@ -15,14 +15,14 @@ struct Group {
   std::vector<Item> items;
 };
 
-/// Bodies that may hide one another are drawn together.
+/// Groups bodies that may hide one another, to draw them together.
 std::vector<Group> group(std::span<const Body> bodies, const PinholeCamera& camera,
                          const Eigen::Isometry3d& T_world_camera) {
   std::vector<Group> groups;
   for (const auto& body : bodies) {
     Group all{part_of(body, camera, T_world_camera), body.items()};
     if (all.part.empty()) continue;
-    // What grows may reach another that it did not reach before.
+    // A group that grows may reach others, so start over.
     for (auto other = groups.begin(); other != groups.end();) {
       if ((other->part & all.part).empty()) {
         ++other;
@@ -38,8 +38,8 @@ std::vector<Group> group(std::span<const Body> bodies, const PinholeCamera& came
   return groups;
 }
 
-/// How much the scene lets be seen of what is drawn in a row, 0 … 255; beside it, of the last that
-/// is drawn in the row, so that edges can be looked for on both of their sides.
+/// Visibility of the drawn pixels of a row, 0 … 255; other pixels take that of the last drawn one,
+/// so that edges can be refined on both sides.
 void see(const float* depth, const float* nearness, float scale, int width, std::uint8_t* seen) {
   float drawn = 0;  // nearness
   for (int x = 0; x < width; ++x) {
@@ -50,10 +50,10 @@ void see(const float* depth, const float* nearness, float scale, int width, std:
   }
 }
 
-constexpr int kNear = 6;              // of an edge [px]
-constexpr int kReach = 8, kStep = 4;  // of the pixels that are asked about it [px]
+constexpr int kNear = 6;              // distance from an edge to refine [px]
+constexpr int kReach = 8, kStep = 4;  // of the window and its samples [px]
 
-/// How alike two colours are, by the sum of their channels' differences.
+/// Similarity of two colours, by the sum of their channels' differences.
 std::array<float, 3 * 255 + 1> make_likeness() {
   constexpr float kNoise = 20, kLeast = 1e-4F;
   std::array<float, 3 * 255 + 1> all;
@@ -62,7 +62,7 @@ std::array<float, 3 * 255 + 1> make_likeness() {
   return all;
 }
 
-/// How much is seen of a pixel near an edge: as much as of those that are near and alike.
+/// Visibility of a pixel near an edge: the mean over near pixels of similar colour.
 std::uint8_t seen_as_alike(const cv::Mat& image, const cv::Mat& seen, int y, int x) {
   static const auto kLikeness = make_likeness();
   const auto& here = image.at<cv::Vec3b>(y, x);
@@ -81,15 +81,15 @@ std::uint8_t seen_as_alike(const cv::Mat& image, const cv::Mat& seen, int y, int
       sum += weight * static_cast<float>(shares[u]);
     }
   }
-  constexpr float kContrast = 3, kMiddle = 127.5F;  // the mean is not to soften the edge
+  constexpr float kContrast = 3, kMiddle = 127.5F;  // so that the mean does not soften the edge
   return cv::saturate_cast<std::uint8_t>(kMiddle + kContrast * (sum / weights - kMiddle));
 }
 
-/// Moves the edges of what is seen to edges of the image.
+/// Aligns the edges of the visibility with edges of the image.
 ///
 /// Source: Kopf et al., Joint Bilateral Upsampling, 2007.
 ///
-/// @param rgba  where nothing is drawn, nothing is done.
+/// @param rgba  pixels that are not drawn are skipped.
 void refine(const cv::Mat& image, const cv::Mat& rgba, const cv::Mat& seen, cv::Mat& refined) {
   seen.copyTo(refined);
   double least = 0;
@@ -111,7 +111,7 @@ void refine(const cv::Mat& image, const cv::Mat& rgba, const cv::Mat& seen, cv::
 }
 
 void cover(const cv::Vec4b* rgba, int width, std::uint8_t* opacity) {
-  for (int x = 0; x < width; ++x) opacity[x] &= rgba[x][3];  // which is 0 or 255
+  for (int x = 0; x < width; ++x) opacity[x] &= rgba[x][3];  // 0 or 255
 }
 
 void blend(const cv::Vec4b* rgba, const std::uint8_t* opacity, int width, cv::Vec3b* image) {
@@ -176,7 +176,7 @@ cv::Rect part_of(const Body& body, const PinholeCamera& camera,
   }
   if (behind == 8) return {};
   if (behind > 0) return whole;
-  // A pixel more, and no number that an int does not hold.
+  // One pixel more, limited so that the conversion to int cannot overflow.
   const Eigen::Vector2d most(camera.width, camera.height);
   const Eigen::Vector2d from = (seen.min().array() - 1).floor().max(0.0).min(most.array());
   const Eigen::Vector2d to = (seen.max().array() + 2).ceil().max(0.0).min(most.array());
@@ -214,7 +214,7 @@ Status Overlay::draw_part(const std::vector<Item>& items, const View& view, cons
   }
   refine(image(part), rgba, seen_, opacity_);
   for (int y = 0; y < part.height; ++y) cover(rgba.ptr<cv::Vec4b>(y), part.width, opacity_.ptr(y));
-  // The rim of what is drawn is softened, too, inwards: there is no colour beside it.
+  // Softens the rim of the bodies, too; only inwards, since there is no colour outside.
   cv::blur(opacity_, seen_, {3, 3}, {-1, -1}, cv::BORDER_REPLICATE);
   cv::parallel_for_({0, part.height}, [&](const cv::Range& rows) {
     for (int y = rows.start; y < rows.end; ++y) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Draws things into a camera's image as if they were there: what is before them hides them.
-// No messages. All of it on the thread that has made the renderer.
+// Draws bodies into a camera's image, with occlusion by the scene. No messages. For the thread that
+// made the renderer.
 
 #include <array>
 #include <functional>
@@ -16,30 +16,30 @@
 
 namespace hc::graphics {
 
-/// A thing at a place.
+/// A body at a pose.
 struct Body {
   std::vector<SurfaceId> surfaces;
-  Eigen::AlignedBox3d bounds;  ///< of all its corners, in its own frame, before it is scaled [m]
+  Eigen::AlignedBox3d bounds;  ///< in its frame, before scaling [m]
   double scale = 1;            ///< of its size [1]
   Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();
 
-  /// Makes its longest side so long [m].
+  /// Sets the length of its longest side [m].
   void set_size(double size);
   [[nodiscard]] std::vector<Item> items() const;
   /// The corners of its bounds, in the world [m].
   [[nodiscard]] std::array<Eigen::Vector3d, 8> corners() const;
 };
 
-/// Has a renderer hold a model.
+/// Loads a model into a renderer.
 Body make_body(Renderer& renderer, const std::vector<Part>& parts);
 
-/// The part of an image in which a body is seen; empty where it is not.
+/// The part of an image that a body covers; empty if outside.
 cv::Rect part_of(const Body& body, const PinholeCamera& camera,
                  const Eigen::Isometry3d& T_world_camera);
 
 class Overlay {
  public:
-  /// Gives the nearness of the scene in a part of the image: see occlusion.h.
+  /// Computes the nearness of the scene in a part of the image: see occlusion.h.
   using Nearness = std::function<void(const cv::Rect& part, cv::Mat& nearness)>;
   struct View {
     PinholeCamera camera;
@@ -49,23 +49,22 @@ class Overlay {
     Nearness nearness;  ///< of the scene; empty: nothing hides a body
   };
 
-  /// @param renderer  outlives it.
+  /// @param renderer  must outlive the overlay.
   explicit Overlay(Renderer& renderer) : renderer_(renderer) {}
 
-  /// Draws bodies into an image. A body is hidden where the scene is nearer by more than kMargin;
-  /// where that begins and ends is looked for in the image's colours, too, as depth is coarse at
-  /// edges.
+  /// Draws bodies into an image. The scene hides a body if it is nearer by more than kMargin. Since
+  /// depth is coarse at edges, their position is refined with the image's colours.
   ///
   /// @param[in,out] image  (H, W, 3) u8, red, green, blue.
-  /// @param[in,out] mask  (H, W) u8: what was drawn is written into it, up to 255 where a pixel
-  ///     shows a body alone. Null: unwanted.
+  /// @param[in,out] mask  (H, W) u8: opacity of the bodies is written into it, up to 255. May be
+  ///     null.
   /// Errors: as Renderer::draw().
-  /// Cost: what takes part is the bodies' rectangle; doc/augment.md has figures. All cores.
+  /// Cost: proportional to the bodies' rectangles; doc/augment.md has figures. All cores.
   Status draw(std::span<const Body> bodies, const View& view, cv::Mat& image,
               cv::Mat* mask = nullptr);
 
-  static constexpr float kMargin = 0.25F;  ///< by which what is drawn may be behind the scene [px]
-  static constexpr float kSoft = 0.5F;     ///< over which it vanishes then [px]
+  static constexpr float kMargin = 0.25F;  ///< by which a body may be behind the scene [px]
+  static constexpr float kSoft = 0.5F;     ///< over which it then fades out [px]
 
  private:
   Status draw_part(const std::vector<Item>& items, const View& view, const cv::Rect& part,

@@ -26,7 +26,7 @@ class Augmenting : public testing::Test {
     return body;
   }
 
-  /// @param scene  depth [m] of all that the image shows; 0: nothing hides.
+  /// @param scene  depth of the scene [m]; 0: no occlusion.
   void draw(const std::vector<Body>& bodies, const cv::Mat& scene = {}) {
     Overlay::View view{camera, Eigen::Isometry3d::Identity(), {}, kScale, {}};
     if (!scene.empty())
@@ -85,7 +85,7 @@ TEST_F(Augmenting, an_edge_of_depth_that_is_off_moves_to_that_of_the_image) {
 }
 
 TEST_F(Augmenting, what_stands_on_a_surface_is_seen_whole) {
-  const cv::Mat scene(240, 320, CV_32F, cv::Scalar(1.8));  // where its front is
+  const cv::Mat scene(240, 320, CV_32F, cv::Scalar(1.8));  // at its front
   draw({cube_at(0, 0, 2)}, scene);
   EXPECT_TRUE(is_drawn(120, 160));
   EXPECT_TRUE(is_drawn(100, 140));

@@ -48,11 +48,11 @@ Error failure(const char* call) {
                                              static_cast<unsigned>(eglGetError()))};
 }
 
-/// An OpenGL 3.3 core context over EGL, without a window, a screen or an X server: what is drawn
-/// goes into buffers of one's own. It is current on the thread that has made it.
+/// An OpenGL 3.3 core context over EGL, for drawing into buffers without a window, screen or X
+/// server. Current on the thread that made it.
 class Context {
  public:
-  /// Errors: Unsupported (no EGL without a surface, or no OpenGL 3.3, with what EGL says).
+  /// Errors: Unsupported (no surfaceless EGL, or no OpenGL 3.3; with EGL's error).
   /// Cost: 10 to 100 ms.
   static Result<std::unique_ptr<Context>> make() {
     EGLDisplay display =
@@ -88,10 +88,10 @@ class Context {
   EGLContext context_;
 };
 
-/// Whether OpenGL compiled a shader or linked a program.
+/// The result of compiling a shader or linking a program.
 ///
 /// @param what  GL_COMPILE_STATUS or GL_LINK_STATUS. @param get, get_log  glGetShaderiv and
-/// glGetShaderInfoLog, or those of programs. Errors: Unsupported (what its compiler says).
+/// glGetShaderInfoLog, or those of programs. Errors: Unsupported (with the compiler's log).
 template <typename Get, typename GetLog>
 Status outcome(GLuint object, GLenum what, Get get, GetLog get_log) {
   GLint done = 0;
@@ -118,8 +118,8 @@ Result<GLuint> link_program() {
   return program;
 }
 
-/// From a camera's frame to OpenGL's clip space. Rows come out from the top down, as OpenGL's first
-/// row is that of clip coordinate -1.
+/// From a camera's frame to OpenGL's clip space. Rows are read from the top down, since OpenGL's
+/// first row is at clip coordinate -1.
 Eigen::Matrix4f projection(const PinholeCamera& camera) {
   const double w = camera.width, h = camera.height, n = camera.near, f = camera.far;
   Eigen::Matrix4d matrix;
@@ -130,7 +130,7 @@ Eigen::Matrix4f projection(const PinholeCamera& camera) {
   return matrix.cast<float>();
 }
 
-/// A new buffer, bound, with elements in it.
+/// Makes and binds a buffer with elements.
 template <typename T>
 GLuint upload(GLenum kind, const std::vector<T>& elements) {
   GLuint buffer = 0;
@@ -146,7 +146,7 @@ struct Surface {
   GLsizei count = 0;
 };
 
-/// Where is drawn to: as large as the largest image so far.
+/// The framebuffer, as large as the largest image so far.
 struct Target {
   int width = 0, height = 0;
   GLuint frame = 0, colour = 0, depth = 0;
@@ -166,7 +166,7 @@ struct Renderer::State {
 };
 
 Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
-// What OpenGL holds goes with its context.
+// The context frees OpenGL's objects.
 Renderer::~Renderer() = default;
 
 Result<std::unique_ptr<Renderer>> Renderer::make() {
@@ -183,9 +183,9 @@ Result<std::unique_ptr<Renderer>> Renderer::make() {
   state->ambient = place("ambient");
   state->diffuse = place("diffuse");
   glEnable(GL_DEPTH_TEST);
-  glEnable(GL_SCISSOR_TEST);  // what is cleared is what is drawn on
+  glEnable(GL_SCISSOR_TEST);  // limits glClear() to the drawn part
   glEnable(GL_CULL_FACE);
-  glFrontFace(GL_CW);  // as y is turned over
+  glFrontFace(GL_CW);  // since y is flipped
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   return std::unique_ptr<Renderer>(new Renderer(std::move(state)));
 }
@@ -233,7 +233,7 @@ Status Renderer::State::aim(int width, int height) {
   if (width < 1 || height < 1 || width > most || height > most)
     return Error{Code::Unsupported, "graphics: an image of " + std::to_string(width) + " x " +
                                         std::to_string(height) + " cannot be drawn, " +
-                                        std::to_string(most) + " is the most"};
+                                        std::to_string(most) + " is the maximum"};
   width = std::max(width, target.width);
   height = std::max(height, target.height);
   if (target.frame == 0) {
@@ -249,7 +249,7 @@ Status Renderer::State::aim(int width, int height) {
   glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, width, height);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target.depth);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    return Error{Code::Unsupported, "graphics: OpenGL does not draw into memory here"};
+    return Error{Code::Unsupported, "graphics: OpenGL cannot draw into memory here"};
   target.width = width;
   target.height = height;
   return {};
@@ -265,7 +265,7 @@ Status Renderer::render(std::span<const Item> items, const PinholeCamera& camera
   glUniform3fv(state_->to_light, 1, to_light.data());
   glUniform1f(state_->ambient, light.ambient * light.exposure);
   glUniform1f(state_->diffuse, light.diffuse * light.exposure);
-  // The last first: what is small and before the walls hides them, and they are not shaded there.
+  // The last first: small items hide parts of the walls, which then need no shading.
   for (std::size_t i = items.size(); i-- > 0;) {
     const Item& item = items[i];
     const Surface& surface = state_->surfaces.at(item.surface);
@@ -284,7 +284,7 @@ void Renderer::read_depth(const PinholeCamera& camera, cv::Mat& depth) {
   state_->raw_depth.create(camera.height, camera.width, CV_32F);
   glReadPixels(0, 0, camera.width, camera.height, GL_DEPTH_COMPONENT, GL_FLOAT,
                state_->raw_depth.data);
-  // d = (1 + clip z / clip w) / 2, turned round.
+  // Inverts d = (1 + clip z / clip w) / 2.
   const auto near = static_cast<float>(camera.near), far = static_cast<float>(camera.far);
   for (int row = 0; row < camera.height; ++row) {
     const auto* from = state_->raw_depth.ptr<float>(row);

@@ -25,17 +25,17 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kTimeToEnd{1};
-constexpr int kHeartbeatsOfUsage = 2, kUsagesOfMemory = 4;
+constexpr int kHeartbeatsPerUsage = 2, kUsagesPerMemory = 4;
 
-/// A module that runs here, or will again.
+/// A module that runs here, or will run again.
 struct Child {
   std::unique_ptr<ModuleProcess> process;
-  bool is_over = false;      // no process will follow
-  std::uint64_t unsaid = 0;  // bytes of its log that were dropped
+  bool is_over = false;       // it will not be started again
+  std::uint64_t dropped = 0;  // bytes of its log since the last that was sent
   LogLimit log_limit;
 };
 
-/// Of the runner, which an order brought.
+/// A question of the runner.
 struct Question {
   std::int64_t id = 0;
   std::string what, subject;
@@ -65,7 +65,7 @@ class Agent {
     const int stop = options_.stop;
     stop_ = HC_TRY(loop_->watch(stop, stop < 0 ? 0U : EPOLLIN, [this](auto) { end({}); }));
     Json hello = {{"what", "hello"}, {"version", options_.version}};
-    // "CLIENT PORT SERVER PORT": the two hosts as they see each other.
+    // "CLIENT PORT SERVER PORT": addresses of the two hosts as seen from each other.
     const char* connection = std::getenv("SSH_CONNECTION");
     std::istringstream words(connection == nullptr ? "" : connection);
     std::string client, port, server;
@@ -76,7 +76,7 @@ class Agent {
   }
 
   void end(Status outcome) {
-    // That who started this one has ended is no failure.
+    // The end of the runner is not a failure.
     if (!outcome && outcome.error().detail == Conversation::kEnded) outcome = {};
     outcome_ = std::move(outcome);
     is_over_ = true;
@@ -84,8 +84,7 @@ class Agent {
     stop_.reset();
   }
 
-  /// Gives modules a moment to leave their devices in order; those that have not ended then are
-  /// killed with this object.
+  /// Gives modules kTimeToEnd to release their devices; the destructor kills the others.
   Status end_children() {
     for (auto& [number, child] : children_) child.process->ask_to_end();
     auto runs = [](const auto& entry) { return entry.second.process->runs(); };
@@ -95,11 +94,10 @@ class Agent {
     return outcome_;
   }
 
-  void send(const Json& order) { conversation_->say(make_order(order)); }
+  void send(const Json& order) { conversation_->send(make_order(order)); }
 
-  /// Speaks from time to time, so that the other end knows that this one is there.
   void send_heartbeat() {
-    if (++heartbeats_ % kHeartbeatsOfUsage == 0) send_usage();
+    if (++heartbeats_ % kHeartbeatsPerUsage == 0) send_usage();
     send_times({0, 0, monotonic_now(), monotonic_to_wall()});
     heartbeat_ = loop_->call_at(Clock::now() + kHeartbeat, [this] { send_heartbeat(); });
   }
@@ -118,7 +116,7 @@ class Agent {
     return found == children_.end() ? nullptr : found->second.process.get();
   }
 
-  /// @param taken  when the order came, by the monotonic clock [ns].
+  /// @param taken  arrival of the order on the monotonic clock [ns].
   void obey(const Json& order, std::int64_t taken) try {
     if (order.is_null()) return;
     const std::string what = order.at("what");
@@ -155,7 +153,7 @@ class Agent {
       answer_next();
     }
   } catch (const Json::exception& error) {
-    end(Error{Code::Malformed, std::string("an order: ") + error.what()});
+    end(Error{Code::Malformed, std::string("order: ") + error.what()});
   }
 
   void start(std::int64_t number, const Json& order) {
@@ -172,7 +170,7 @@ class Agent {
   Status start_child(std::int64_t number, const Json& order) {
     if (find(number) == nullptr) {
       ModuleCallbacks callbacks{
-          [this, number](std::string_view bytes) { return pass_on_log(number, bytes); },
+          [this, number](std::string_view bytes) { return forward_log(number, bytes); },
           [this, number](const Message& message) { report(number, message); },
           [this, number] {
             send({{"what", "listens"}, {"number", number}});
@@ -180,7 +178,7 @@ class Agent {
           },
           [this, number](int status) {
             send({{"what", "ended"}, {"number", number}, {"status", status}});
-            // Later, since the child calls this.
+            // Deferred, since the child is the caller.
             loop_->post([this, number] { forget_if_over(number); });
           }};
       children_[number].process =
@@ -198,34 +196,34 @@ class Agent {
   }
 
   void report(std::int64_t number, const Message& message) {
-    const bool is_counters = message.header.src <= 1;  // the next ones say the same and more
+    const bool is_counters = message.header.src <= 1;  // cumulative, so they may be dropped
     if (is_counters && conversation_->backlog() > kCrowded) return;
     if (message.header.src < 0 || message.header.src >= Report) return;
-    Message handed_on = message;
-    handed_on.header.src += Report;
-    handed_on.header.dst = static_cast<std::int32_t>(number);
-    conversation_->say(handed_on);
+    Message forwarded = message;
+    forwarded.header.src += Report;
+    forwarded.header.dst = static_cast<std::int32_t>(number);
+    conversation_->send(forwarded);
   }
 
-  /// Hands on a piece of what a module writes; what there is no room for is dropped, and counted.
-  bool pass_on_log(std::int64_t number, std::string_view bytes) {
+  /// Forwards a piece of a module's log; drops and counts it above the limit.
+  bool forward_log(std::int64_t number, std::string_view bytes) {
     auto& child = children_.at(number);
     const auto now = SystemClock().monotonic();
     static_cast<void>(child.log_limit.take_remark(now));
     const bool passes = child.log_limit.passes(bytes.size(), now);
     if (!passes || conversation_->backlog() > kCrowded) {
-      child.unsaid += bytes.size();
+      child.dropped += bytes.size();
       return passes;
     }
-    if (const auto unsaid = std::exchange(child.unsaid, 0); unsaid > 0)
-      conversation_->say(
-          make_bytes(std::to_string(unsaid) + " bytes of the log dropped: too many\n", number));
-    conversation_->say(make_bytes(bytes, number));
+    if (const auto dropped = std::exchange(child.dropped, 0); dropped > 0)
+      conversation_->send(make_bytes(
+          std::to_string(dropped) + " bytes of the log dropped: too much output\n", number));
+    conversation_->send(make_bytes(bytes, number));
     return true;
   }
 
   void send_usage() {
-    const bool with_memory = usages_++ % kUsagesOfMemory == 0;
+    const bool with_memory = usages_++ % kUsagesPerMemory == 0;
     std::vector<UsageRow> rows;
     for (auto& [number, child] : children_) {
       if (!child.process->runs()) continue;
@@ -236,7 +234,7 @@ class Agent {
     if (!rows.empty()) send({{"what", "usage"}, {"modules", rows}});
   }
 
-  /// Holds a port, of a number if one is given.
+  /// Reserves a port; number 0: any.
   void hold(const Json& order) {
     auto port = hold_port(order.at("of_all"), order.at("port").get<std::uint16_t>());
     if (port) ports_[(*port)->number] = *port;
@@ -251,7 +249,7 @@ class Agent {
             {value ? key : "error", value ? *value : Json(value.error().detail)}};
   }
 
-  /// Answers a question on another thread, since programs that are asked may be slow.
+  /// Answers the next question on another thread, as the programs asked may be slow.
   void answer_next() {
     if (aside_.is_busy() || questions_.empty()) return;
     auto aside = run_aside(
@@ -275,7 +273,7 @@ class Agent {
       return Json(std::move(description));
     }
     if (question.what == "examine" && options_.examine) return Json(options_.examine(subject));
-    if (question.what != "find") return Error{Code::Invalid, "no such question: " + question.what};
+    if (question.what != "find") return Error{Code::Invalid, "unknown question: " + question.what};
     return unless_stopped(stop, [subject]() -> Result<Json> {
       const auto program = find_program(subject);
       if (!program.empty()) return Json(program);
@@ -290,7 +288,7 @@ class Agent {
   Descriptor key_;
   std::map<std::int64_t, Child> children_;
   std::map<std::int64_t, std::shared_ptr<const HeldPort>> ports_;
-  std::map<std::int64_t, std::shared_ptr<void>> readers_;  // in the place of modules
+  std::map<std::int64_t, std::shared_ptr<void>> readers_;  // replace ended modules
   std::deque<Question> questions_;
   int heartbeats_ = 0, usages_ = 0;
   bool is_over_ = false;

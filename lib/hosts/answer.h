@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Asks the thread of a loop, from another thread, and waits for the answer. Internal.
+// Asks a loop's thread from another thread, and waits for the answer. Internal.
 
 #include <chrono>
 #include <functional>
@@ -15,10 +15,9 @@ namespace hc::hosts {
 template <typename T>
 using Give = std::function<void(Result<T>)>;
 
-/// Calls `begin` on the loop's thread and waits, on this other thread, until it has given an
-/// answer.
+/// Calls `begin` on the loop's thread and blocks the calling thread until the answer is given.
 ///
-/// Errors: Stopped (`stop` is readable), Closed (no answer in time), System.
+/// Errors: Stopped (`stop` is readable), Closed (timeout), System.
 template <typename T>
 Result<T> answer_of(Loop& loop, int stop, std::chrono::nanoseconds timeout,
                     std::function<void(Give<T>)> begin) {
@@ -37,7 +36,7 @@ Result<T> answer_of(Loop& loop, int stop, std::chrono::nanoseconds timeout,
     here->answer.emplace(Error{Code::Stopped, "asked to stop"});
   }));
   const auto late = here->loop->call_at(std::chrono::steady_clock::now() + timeout, [&] {
-    if (!here->answer) here->answer.emplace(Error{Code::Closed, "no answer in time"});
+    if (!here->answer) here->answer.emplace(Error{Code::Closed, "timed out"});
   });
   while (!here->answer) HC_TRY(here->loop->turn());
   return std::move(*here->answer);

@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 class AnswerTest : public ::testing::Test {
  protected:
-  /// Asks on another thread, while this one turns the loop.
+  /// Asks on another thread while this one turns the loop.
   Result<std::string> ask(std::function<void(Give<std::string>)> begin, int stop = -1,
                           std::chrono::nanoseconds timeout = 1h) {
     auto answer = std::async(std::launch::async, [&, begin = std::move(begin)] {

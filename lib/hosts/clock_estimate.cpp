@@ -8,17 +8,17 @@ namespace hc::hosts {
 namespace {
 
 constexpr std::size_t kRecent = 8, kFitted = 64;
-constexpr double kFitSpan = 4e9;          // of the first fit [ns]
-constexpr double kUnknownDrift = 500e-6;  // before; the maximum that Linux corrects a clock by
+constexpr double kFitSpan = 4e9;          // least span of a fit [ns]
+constexpr double kUnknownDrift = 500e-6;  // before a fit: the largest correction that Linux makes
 constexpr double kFittedDrift = 15e-6;    // source: PHI of RFC 5905, section 7.3
-constexpr double kFittedDoubt = 25e-6;    // of a fit that is used
+constexpr double kFittedDoubt = 25e-6;    // largest of a usable fit
 constexpr double kLeastDoubt = 20e3;      // of an exchange with the shortest delay [ns]
 
 }  // namespace
 
 void ClockEstimate::add(const Exchange& exchange) {
   const auto& [asked, taken, answered, received] = exchange;
-  // Differences first: the clocks may be far apart.
+  // Subtract first: the clocks may be far apart, and sums could overflow.
   const Sample sample{asked + (received - asked) / 2, ((taken - asked) + (answered - received)) / 2,
                       std::max<std::int64_t>(0, (received - asked) - (answered - taken))};
   recent_.push_back(sample);
@@ -31,8 +31,8 @@ void ClockEstimate::add(const Exchange& exchange) {
   fit();
 }
 
-/// Weighted least squares. What of an exchange's delay is above the shortest one has come on one of
-/// its ways, nobody knows on which, so that its offset is wrong by half of that at most.
+/// Weighted least squares. The excess of an exchange's delay over the shortest delay may have
+/// occurred in either direction, so its offset is wrong by at most half of it.
 void ClockEstimate::fit() {
   const auto& first = best_ones_.front();
   if (static_cast<double>(best_.here - first.here) < kFitSpan) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How the clock of another host runs against ours, from exchanges of four timestamps. Pure.
+// Estimates offset and drift of another host's clock from exchanges of four timestamps. Pure.
 
 #include <cstdint>
 #include <deque>
@@ -8,7 +8,7 @@
 
 namespace hc::hosts {
 
-/// An exchange: a question, sent and answered, by the clocks of both ends [ns].
+/// The timestamps of a request and its reply, each by the clock of the host named [ns].
 struct Exchange {
   std::int64_t asked = 0;     ///< here
   std::int64_t taken = 0;     ///< there
@@ -16,8 +16,8 @@ struct Exchange {
   std::int64_t received = 0;  ///< here
 };
 
-/// The difference of two clocks that both run on and are never set. Of the last eight exchanges the
-/// one with the shortest delay counts, whose times are disturbed by the smallest amount.
+/// The difference of two monotonic clocks. Uses the exchange with the shortest delay of the last
+/// eight, which has the smallest error.
 /// Source: RFC 5905, section 8 (offset, delay) and section 10 (clock filter).
 class ClockEstimate {
  public:
@@ -25,15 +25,14 @@ class ClockEstimate {
 
   /// Whether there has been an exchange.
   [[nodiscard]] bool is_known() const { return !recent_.empty(); }
-  /// The clock there less the clock here, when that is `here` [ns].
+  /// The other clock minus this one, at time `here` [ns].
   [[nodiscard]] std::int64_t offset(std::int64_t here) const;
-  /// By how much that can be wrong: half the delay, if all of it was one way, and what the clocks
-  /// have drifted since [ns].
+  /// Bound on the error of offset(): half the delay, plus the drift since the exchange [ns].
   [[nodiscard]] std::int64_t error(std::int64_t here) const;
-  /// How much faster the clock there runs, by least squares; nothing while that is not known within
-  /// some 50 ppm, which takes 4 s at the minimum.
+  /// Relative rate by which the other clock is faster, by least squares; nullopt until it is known
+  /// within about 50 ppm, after 4 s at the earliest.
   [[nodiscard]] std::optional<double> drift() const { return drift_; }
-  /// The shortest delay of late, there and back [ns].
+  /// The shortest recent round trip [ns].
   [[nodiscard]] std::int64_t delay() const { return best_.delay; }
 
  private:
@@ -43,11 +42,11 @@ class ClockEstimate {
 
   void fit();
 
-  std::deque<Sample> recent_;  // all of the last
+  std::deque<Sample> recent_;
   std::deque<Sample> best_ones_;
   Sample best_;
   std::optional<double> drift_;
-  double doubt_ = 0;  // of it, standard deviation
+  double doubt_ = 0;  // standard deviation of drift_
 };
 
 }  // namespace hc::hosts

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000, kHour = 3600'000 * kMs;
 
-/// A clock that is an hour ahead and runs by `drift` faster.
+/// A clock that is an hour ahead and faster by `drift`.
 std::int64_t there(std::int64_t here, double drift) {
   return here + kHour + static_cast<std::int64_t>(drift * static_cast<double>(here));
 }
@@ -64,7 +64,7 @@ TEST(ClockEstimate, TheDriftIsFittedAndTheErrorBoundsWhatIsWrong) {
 TEST(ClockEstimate, WhatTookLongIsNotTakenForADrift) {
   ClockEstimate estimate;
   std::int64_t now = 0;
-  // A machine that is busy at first: each exchange is late on its way out.
+  // A machine that is busy at first: each request is late.
   for (std::int64_t late = 4 * kMs; now < 40'000 * kMs; now += 500 * kMs, late = late * 3 / 4) {
     estimate.add(exchange(now, kMs / 10 + late, kMs / 10, 100e-6));
     if (estimate.drift()) {

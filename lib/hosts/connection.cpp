@@ -18,15 +18,16 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kGreeting{20000};  // until ssh has connected and the agent has spoken
+constexpr milliseconds kGreeting{
+    20000};  // for ssh to connect and the agent to send its first order
 constexpr milliseconds kAnswerTime{30000};
-constexpr std::chrono::seconds kLasting{10};  // a connection that counts as one
-constexpr int kFirstExchanges = 8;            // of the clock, unless they take longer:
-constexpr milliseconds kLongestFirst{300};
+constexpr std::chrono::seconds kLasting{10};  // a connection of this length resets the backoff
+constexpr int kFirstExchanges = 8;            // of timestamps, or as many as
+constexpr milliseconds kLongestFirst{300};    // take no longer
 constexpr std::size_t kSpares = 4;
 constexpr std::size_t kMaxErrorText = 4096;  // [byte]
 
-/// A word of a command line that a shell is to take as it is, but for ~/ at its begin.
+/// Quotes a word for a shell, except for a leading ~/.
 std::string quoted(const std::string& word) {
   std::string text = word.starts_with("~/") ? "~/'" : "'";
   for (char c : word.substr(text.size() - 1)) text += c == '\'' ? "'\\''" : std::string(1, c);
@@ -34,7 +35,7 @@ std::string quoted(const std::string& word) {
 }
 
 std::vector<std::string> ssh_command(const GraphHost& host) {
-  // No terminal, no question, nothing forwarded or shared; and it notices a cut network.
+  // No terminal, prompts, forwarding or sharing; detects a broken network.
   std::vector<std::string> words = {"ssh", "-T", "-x", "-a"};
   for (const char* option :
        {"BatchMode=yes", "ConnectTimeout=10", "ServerAliveInterval=1", "ServerAliveCountMax=3",
@@ -45,9 +46,9 @@ std::vector<std::string> ssh_command(const GraphHost& host) {
   return words;
 }
 
-/// An address that an agent tells; empty where links cannot use it, such as a link-local one.
+/// An address reported by the agent; empty if links cannot use it, such as a link-local one.
 std::string address_in(const Json& hello, const char* key) {
-  const std::string text = hello.value(key, "127.0.0.1");  // ssh that connects to nothing
+  const std::string text = hello.value(key, "127.0.0.1");  // without SSH_CONNECTION
   std::array<unsigned char, sizeof(in6_addr)> bytes{};
   const bool is_address = ::inet_pton(AF_INET, text.c_str(), bytes.data()) == 1 ||
                           ::inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1;
@@ -55,10 +56,10 @@ std::string address_in(const Json& hello, const char* key) {
 }
 
 Error not_connected() {
-  return {Code::Closed, "it is not connected"};
+  return {Code::Closed, "not connected"};
 }
 
-/// The last line of a text that is not empty, as a terminal may have it.
+/// The last non-empty line of a text, with control characters replaced.
 std::string last_line(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' '))
     text.pop_back();
@@ -69,14 +70,14 @@ std::string last_line(std::string text) {
 }
 
 constexpr std::string_view kHowToInstall =
-    R"(; install Hypercolumn there, or say where its hc is: hc = "PATH")";
+    R"(; install Hypercolumn there, or set the path of its hc: hc = "PATH")";
 
 }  // namespace
 
-/// Runs the processes of a module there.
+/// Runs the processes of a module on that host.
 class Connection::Module final : public ModuleProcess {
  public:
-  /// @param number  the module's number in the conversation.
+  /// @param number  identifies the module in messages.
   Module(std::shared_ptr<Connection> host, std::int64_t number, std::string manage_uri,
          ModuleCallbacks callbacks)
       : host_(std::move(host)),
@@ -106,22 +107,22 @@ class Connection::Module final : public ModuleProcess {
   [[nodiscard]] bool runs() const override { return runs_; }
   void ask_to_end() override { send("end"); }
   void kill() override { send("kill"); }
-  void look() override {}  // its end comes over the connection
-  void let_names_go() override { send("over"); }
+  void check_end() override {}  // the agent reports it
+  void release_names() override { send("over"); }
   [[nodiscard]] bool is_listening() const override { return is_listening_; }
   bool send(const Message& command) override {
-    Message handed_on = command;
-    handed_on.header.src = Commands;
-    handed_on.header.dst = static_cast<std::int32_t>(number_);
-    host_->say(handed_on);
+    Message forwarded = command;
+    forwarded.header.src = Commands;
+    forwarded.header.dst = static_cast<std::int32_t>(number_);
+    host_->forward(forwarded);
     return true;
   }
   [[nodiscard]] pid_t number() const override { return process_; }
   Usage usage(bool) override { return usage_; }
 
-  // Events that the agent reports.
+  // Events reported by the agent.
 
-  void said(std::string_view bytes) const { callbacks_.said(bytes); }
+  void wrote(std::string_view bytes) const { callbacks_.wrote(bytes); }
   void reported(Message report) const {
     report.header.src -= Report;
     report.header.dst = 0;
@@ -131,10 +132,10 @@ class Connection::Module final : public ModuleProcess {
     if (what == "started") process_ = order.at("process");
     if (what == "listens") {
       is_listening_ = runs_;
-      for (const auto& command : callbacks_.listens()) send(command);
+      for (const auto& command : callbacks_.connected()) send(command);
     }
     if (what != "ended") return;
-    if (order.contains("error")) said(order.at("error").get<std::string>() + "\n");
+    if (order.contains("error")) wrote(order.at("error").get<std::string>() + "\n");
     ended(std::clamp(order.at("status").get<int>(), 0, kHostLost - 1));
   }
   void used(const UsageRow& row) {
@@ -179,8 +180,8 @@ void Connection::close() {
 
 void Connection::ask(Json question, Answered answered) {
   if (!state_.is_connected) return answered(not_connected());
-  question["id"] = ++asked_;
-  questions_[asked_] = std::move(answered);
+  question["id"] = ++last_question_;
+  questions_[last_question_] = std::move(answered);
   send(question);
 }
 
@@ -193,14 +194,15 @@ Result<std::string> Connection::ask_text(const char* what, const std::string& su
         self->ask(question, [self, question, give](Result<Json> answered) {
           auto& known = self->answers_[question.dump()];
           if (answered) known = *answered;
-          // So that the rest of the graph can be changed while this host is away.
+          // While the host is disconnected, the last answer lets the rest of the graph be changed.
           if (!answered && answered.error().code == Code::Closed && !known.is_null())
             answered = known;
           give(std::move(answered));
         });
       }));
   const auto text = answer.find("text");
-  if (text == answer.end() || !text->is_string()) return Error{Code::Malformed, "no text"};
+  if (text == answer.end() || !text->is_string())
+    return Error{Code::Malformed, "agent: answer without text"};
   return text->get<std::string>();
 }
 
@@ -221,12 +223,13 @@ void Connection::ask_for_port(bool of_all, std::uint16_t number, Give<std::uint1
       [give = std::move(give)](const Result<Json>& answer) {
         const auto port = answer ? answer->value("port", 0U) : 0U;
         if (!answer) return give(answer.error());
-        if (port == 0 || port > UINT16_MAX) return give(Error{Code::Malformed, "no port"});
+        if (port == 0 || port > UINT16_MAX)
+          return give(Error{Code::Malformed, "agent: answer without a port"});
         give(static_cast<std::uint16_t>(port));
       });
 }
 
-/// A port there, released when its last owner ends, on whichever thread.
+/// A reserved port; its last owner releases it, on any thread.
 std::shared_ptr<const HeldPort> Connection::held(std::uint16_t number, bool of_all) {
   ports_[number] = of_all;
   return {new HeldPort{Descriptor(), number}, [host = weak_from_this()](const HeldPort* port) {
@@ -243,21 +246,21 @@ Result<std::shared_ptr<const HeldPort>> Connection::spare_port() {
   if (spares_.empty()) return not_connected();
   const auto number = spares_.back();
   spares_.pop_back();
-  want_spare();
+  ask_for_spare();
   return held(number, true);
 }
 
 std::unique_ptr<ModuleProcess> Connection::make_process(const PlannedModule& module,
                                                         ModuleCallbacks callbacks) {
-  return std::make_unique<Module>(shared_from_this(), ++numbered_, module.manage_uri,
+  return std::make_unique<Module>(shared_from_this(), ++last_number_, module.manage_uri,
                                   std::move(callbacks));
 }
 
 std::shared_ptr<void> Connection::read_in_place(const std::string& reader_uri) {
-  const auto number = ++numbered_;
+  const auto number = ++last_number_;
   readers_[number] = reader_uri;
   send({{"what", "read"}, {"number", number}, {"uri", reader_uri}});
-  // Only that it goes is of interest.
+  // The pointer itself is not used, only its deleter.
   return {this, [host = weak_from_this(), number](void*) {
             auto self = host.lock();
             if (!self) return;
@@ -283,7 +286,7 @@ void Connection::connect() {
   conversation_ = std::move(*conversation);
 }
 
-/// Keeps the last that ssh says: why it cannot connect.
+/// Keeps the end of ssh's error output, which says why it cannot connect.
 void Connection::read_ssh_errors() {
   std::array<char, kMaxErrorText> piece;
   const ssize_t size = ::read(ssh_->errors(), piece.data(), piece.size());
@@ -299,7 +302,7 @@ void Connection::take(const Message& message) {
   if (header.src == Order) return obey(read_order(message), received);
   const auto found = modules_.find(header.dst);
   if (found == modules_.end()) return;
-  if (header.src == Log) found->second->said(message.characters());
+  if (header.src == Log) found->second->wrote(message.text());
   if (header.src >= Report) found->second->reported(message);
 }
 
@@ -324,17 +327,17 @@ void Connection::obey(const Json& order, std::int64_t received) try {
   const auto found = modules_.find(order.value("number", std::int64_t{0}));
   if (found != modules_.end()) found->second->obey(what, order);
 } catch (const Json::exception& error) {
-  lose(std::string("what it says is wrong: ") + error.what());
+  lose(std::string("malformed message: ") + error.what());
 }
 
-/// The agent is there, and says who it is.
+/// Handles the first message of the agent.
 void Connection::greet(const Json& hello) {
   is_greeted_ = true;
-  error_text_.clear();  // what ssh says to everybody
+  error_text_.clear();  // a banner
   const std::string version = hello.value("version", "");
   if (version != parts_.version)
-    return lose("it has hc " + version + ", and this is hc " + parts_.version +
-                ": install the same");
+    return lose("it has hc " + version + ", but this is hc " + parts_.version +
+                ": install the same version");
   place_.address = parts_.declared.address.value;
   if (place_.address.empty()) place_.address = address_in(hello, "address");
   place_.runner = address_in(hello, "runner");
@@ -347,12 +350,12 @@ void Connection::greet(const Json& hello) {
   send_heartbeat();
 }
 
-/// The first answers to a beat, one right behind the other, make the connection: then its clock is
-/// known, also where one of them was late.
+/// Handles an answer to a heartbeat. The connection counts as made after the first few, sent back
+/// to back, so that its clock is known even if one of them was late.
 void Connection::take_times(const Moments& times, std::int64_t received) {
   if (!is_greeted_) return;
   const auto [asked, taken, answered, there] = times;
-  look_at_clock(there);
+  check_clock(there);
   if (asked == 0) return;
   estimate_.add({asked, taken, answered, received});
   if (!state_.is_connected && ++first_exchanges_ < kFirstExchanges &&
@@ -364,40 +367,40 @@ void Connection::take_times(const Moments& times, std::int64_t received) {
   state_.error = seconds(estimate_.error(now));
   state_.drift = estimate_.drift();
   state_.latency = seconds(estimate_.delay());
-  if (!std::exchange(state_.is_connected, true)) begin_work();
+  if (!std::exchange(state_.is_connected, true)) finish_connecting();
 }
 
-/// The host is connected: asks again for the ports and readers that outlast a connection.
-void Connection::begin_work() {
+/// Asks again for the ports and readers of an earlier connection.
+void Connection::finish_connecting() {
   connected_ = Clock::now();
   state_.detail.clear();
   for (const auto& each : ports_)
     ask_for_port(each.second, each.first,
                  [this, number = each.first](const Result<std::uint16_t>& port) {
                    if (!port)
-                     parts_.log(hc::format("host {}: port {} is lost: {}", parts_.declared.name,
+                     parts_.log(hc::format("host {}: lost port {}: {}", parts_.declared.name,
                                            number, port.error().detail));
                  });
   for (const auto& [number, uri] : readers_)
     send({{"what", "read"}, {"number", number}, {"uri", uri}});
-  for (std::size_t i = 0; i < kSpares; ++i) want_spare();
+  for (std::size_t i = 0; i < kSpares; ++i) ask_for_spare();
   if (const auto opened = std::exchange(opened_, {}))
     opened({});
   else
-    parts_.log("host " + parts_.declared.name + ": connected again");
+    parts_.log("host " + parts_.declared.name + ": reconnected");
   parts_.changed();
 }
 
-/// Notices that the clock there was set.
-void Connection::look_at_clock(std::int64_t there_to_wall) {
+/// Logs that the wall clock of the host was set.
+void Connection::check_clock(std::int64_t there_to_wall) {
   if (there_to_wall_ && std::abs(there_to_wall - *there_to_wall_) > kClockSet)
-    parts_.log(
-        hc::format("host {}: its clock was set by {:.3f} s; times of its messages stay right",
-                   parts_.declared.name, seconds(there_to_wall - *there_to_wall_)));
+    parts_.log(hc::format(
+        "host {}: its clock was set by {:.3f} s; the times in its messages are not affected",
+        parts_.declared.name, seconds(there_to_wall - *there_to_wall_)));
   there_to_wall_ = there_to_wall;
 }
 
-void Connection::want_spare() {
+void Connection::ask_for_spare() {
   ask_for_port(true, 0, [this](const Result<std::uint16_t>& port) {
     if (port) spares_.push_back(*port);
   });
@@ -413,21 +416,24 @@ void Connection::send_heartbeat() {
   heartbeat_ = loop_.call_at(Clock::now() + kHeartbeat, [this] { send_heartbeat(); });
 }
 
-/// Why the connection is lost: what ssh says, and else what was noticed here.
-std::string Connection::reason_of(const std::string& noticed) const {
-  std::string said = last_line(error_text_);
-  auto is_said = [&](std::string_view words) { return said.find(words) != std::string::npos; };
-  const bool has_ssh = !said.starts_with("exec(");  // else it could not be executed here
-  if (!is_greeted_ && has_ssh && (is_said("not found") || is_said("No such file")))
-    return said + std::string(kHowToInstall);
-  if (!said.empty()) return said;
-  const bool is_noise = !is_greeted_ && noticed.starts_with(Conversation::kNoMessage);
-  return noticed +
-         (is_noise ? "; what a shell there starts with, as ~/.bashrc, must print nothing" : "");
+/// Why the connection is lost: the error message of ssh, or else what was observed here.
+std::string Connection::reason_of(const std::string& observed) const {
+  std::string ssh_error = last_line(error_text_);
+  auto contains = [&](std::string_view words) {
+    return ssh_error.find(words) != std::string::npos;
+  };
+  const bool has_ssh = !ssh_error.starts_with("exec(");  // otherwise ssh is missing here
+  if (!is_greeted_ && has_ssh && (contains("not found") || contains("No such file")))
+    return ssh_error + std::string(kHowToInstall);
+  if (!ssh_error.empty()) return ssh_error;
+  const bool is_noise = !is_greeted_ && observed.starts_with(Conversation::kNoMessage);
+  return observed + (is_noise ? "; start-up files of the shell there, such as ~/.bashrc, must "
+                                "print nothing"
+                              : "");
 }
 
-/// The connection is lost, or has never been there: what ran over it is over. It is tried again
-/// unless it has never been.
+/// Ends all modules and questions after the connection was lost or could not be made. Reconnects,
+/// unless it was the first attempt.
 void Connection::lose(const std::string& why) {
   if (ssh_) read_ssh_errors();
   const std::string reason = reason_of(why);
@@ -435,13 +441,13 @@ void Connection::lose(const std::string& why) {
   state_.detail = reason;
   state_.offset = state_.error = state_.drift = state_.latency = {};
   spares_.clear();
-  // They may come and go meanwhile.
+  // Callbacks may add and remove modules, so iterate over a copy.
   for (const auto& [number, known] : std::map(modules_))
     if (const auto module = modules_.find(number); module != modules_.end())
       module->second->ended(kHostLost);
   for (const auto& [id, answered] : std::exchange(questions_, {})) answered(not_connected());
   heartbeat_.reset();
-  // What calls this may be the conversation, which must not be destroyed then.
+  // The conversation may be the caller, so it is destroyed later.
   if (conversation_) conversation_->close();
   again_ = loop_.call_at(Clock::now(), [this] {
     disconnect();
@@ -454,7 +460,7 @@ void Connection::lose(const std::string& why) {
   if (is_closed_) return;
   if (was_connected && Clock::now() - connected_ > kLasting) pause_.reset();
   if (was_connected)
-    parts_.log("host " + parts_.declared.name + ": lost: " + reason + "; connecting again");
+    parts_.log("host " + parts_.declared.name + ": connection lost: " + reason + "; reconnecting");
   parts_.changed();
 }
 

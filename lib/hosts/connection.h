@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// One other host: ssh to it, its agent, and what runs there. Internal.
+// The connection to one host over ssh: its agent, and the modules it runs. Internal.
 
 #include <chrono>
 #include <functional>
@@ -19,14 +19,14 @@
 
 namespace hc::hosts {
 
-/// The connection to a host, which is made again whenever it is lost. Used on the thread of a loop,
-/// except for the functions of Host for planning.
+/// The connection to a host; reconnects when it is lost. Used on the thread of a loop, except for
+/// the functions of Host for planning.
 class Connection final : public Host, public std::enable_shared_from_this<Connection> {
  public:
   struct Parts {
     GraphHost declared;
     std::string version;
-    std::string key, fingerprint;  ///< of that host: PEM
+    std::string key, fingerprint;  ///< of that host; the key in PEM
     std::function<void(const std::string& line)> log;
     std::function<void()> changed;
   };
@@ -35,13 +35,12 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
     state_.name = parts_.declared.name;
   }
 
-  /// Connects for the first time. If that fails, it is not tried again.
+  /// Connects for the first time, without retries.
   /// @param opened  gets the outcome. Errors: Closed.
   void open(std::function<void(Status)> opened) {
     opened_ = std::move(opened);
     connect();
   }
-  /// Ends all there is.
   void close();
 
   [[nodiscard]] bool is_of(const GraphHost& declared) const;
@@ -68,13 +67,13 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   class Module;
   using Answered = std::function<void(Result<Json>)>;
 
-  /// Sends to the agent, if it is connected.
-  void send(const Json& order) { say(make_order(order)); }
-  void say(const Message& message) {
-    if (conversation_) conversation_->say(message);
+  /// Sends to the agent, if connected.
+  void send(const Json& order) { forward(make_order(order)); }
+  void forward(const Message& message) {
+    if (conversation_) conversation_->send(message);
   }
   void ask(Json question, Answered answered);
-  /// Has a port held there, of a number if that is not 0.
+  /// Reserves a port there; number 0: any.
   void ask_for_port(bool of_all, std::uint16_t number, Give<std::uint16_t> give);
   Result<std::string> ask_text(const char* what, const std::string& subject, int stop);
   std::shared_ptr<const HeldPort> held(std::uint16_t number, bool of_all);
@@ -85,42 +84,42 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   void obey(const Json& order, std::int64_t received);
   void greet(const Json& hello);
   void take_times(const Moments& times, std::int64_t received);
-  void begin_work();
-  void look_at_clock(std::int64_t there_to_wall);
-  void want_spare();
+  void finish_connecting();
+  void check_clock(std::int64_t there_to_wall);
+  void ask_for_spare();
   void ask_time();
   void send_heartbeat();
   void lose(const std::string& why);
-  [[nodiscard]] std::string reason_of(const std::string& noticed) const;
+  [[nodiscard]] std::string reason_of(const std::string& observed) const;
   void disconnect();
 
   Loop& loop_;
   const Parts parts_;
-  std::function<void(Status)> opened_;  // to be called with the outcome of the first attempt
+  std::function<void(Status)> opened_;  // of the first attempt
   bool is_closed_ = false;
   HostState state_;
   HostPlace place_;
 
-  // While ssh runs.
+  // While ssh runs:
   std::optional<Process> ssh_;
   std::unique_ptr<Conversation> conversation_;
   Loop::Handle ssh_errors_, heartbeat_, again_;
-  std::string error_text_;  // what ssh has written to its standard error
+  std::string error_text_;  // end of ssh's standard error
   bool is_greeted_ = false;
   Backoff pause_{std::chrono::milliseconds(100), std::chrono::seconds(5)};
   std::chrono::steady_clock::time_point connected_, greeted_;
-  int first_exchanges_ = 0;  // of the clock
+  int first_exchanges_ = 0;  // of timestamps, before it counts as connected
   ClockEstimate estimate_;
   std::optional<std::int64_t> there_to_wall_;
   std::int64_t wall_offset_ = 0;
   std::vector<std::uint16_t> spares_;
 
-  std::int64_t asked_ = 0, numbered_ = 0;
+  std::int64_t last_question_ = 0, last_number_ = 0;
   std::map<std::int64_t, Answered> questions_;
   std::map<std::string, Json> answers_;  // to questions of ask_text()
   std::map<std::int64_t, Module*> modules_;
-  std::map<std::int64_t, std::string> readers_;  // in place of those that are over
-  std::map<std::uint16_t, bool> ports_;          // and whether they are of all addresses
+  std::map<std::int64_t, std::string> readers_;  // URIs of readers that replace ended modules
+  std::map<std::uint16_t, bool> ports_;          // reserved; true: of all addresses
 };
 
 }  // namespace hc::hosts

@@ -18,7 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kMostInATurn = 64;  // pieces, so that a busy peer does not keep us from all else
+constexpr int kMostInATurn = 64;  // pieces, so that a busy peer does not block the loop
 
 }  // namespace
 
@@ -26,7 +26,7 @@ std::int64_t monotonic_now() {
   return SystemClock().monotonic().count();
 }
 
-/// Two clocks cannot be read at once; of a few tries the quickest counts.
+/// Two clocks cannot be read at once: uses the fastest of three attempts.
 std::int64_t monotonic_to_wall() {
   std::int64_t best = 0, best_width = std::numeric_limits<std::int64_t>::max();
   for (int i = 0; i < 3; ++i) {
@@ -53,8 +53,7 @@ Json read_order(const Message& message) {
 }
 
 Message make_bytes(std::string_view bytes, std::int64_t process) {
-  Draft draft = Draft::make({MatrixType::Table, 1, Scalar::U8, Encoding::Binary}, 1,
-                            static_cast<std::int32_t>(bytes.size()));
+  Draft draft = Draft::make({MatrixType::Table, 1, Scalar::U8, Encoding::Binary}, static_cast<std::int32_t>(bytes.size()), 1);
   std::memcpy(draft.elements().data(), bytes.data(), bytes.size());
   draft.header.src = Log;
   draft.header.dst = static_cast<std::int32_t>(process);
@@ -71,7 +70,7 @@ Result<std::unique_ptr<Conversation>> Conversation::make(Loop& loop, int in, int
   self->readable_ = HC_TRY(loop.watch(in, EPOLLIN, [self](auto) { self->read(); }));
   self->writable_ = HC_TRY(loop.watch(out, 0, [self](auto) { self->write(); }));
   self->silence_ = loop.call_at(self->heard_ + patience, [self] {
-    if (self->is_stuck_) return self->end("it does not take what it is sent");
+    if (self->is_stuck_) return self->end("it does not read its messages");
     const auto due = self->heard_ + self->patience_;
     if (Clock::now() < due) return self->silence_.call_at(due);
     self->end("no answer for " + std::to_string(self->patience_.count() / 1000) + " s");
@@ -79,7 +78,7 @@ Result<std::unique_ptr<Conversation>> Conversation::make(Loop& loop, int in, int
   return made;
 }
 
-void Conversation::say(const Message& message) {
+void Conversation::send(const Message& message) {
   if (is_over_) return;
   waiting_ += encode(message);
   write();
@@ -93,7 +92,7 @@ void Conversation::write() {
     } else if (size < 0 && errno == EINTR) {
       continue;
     } else {
-      break;  // that it is over is found when reading; it may have said why
+      break;  // read() handles errors, after any last message
     }
   }
   if (waiting_.size() > kTooMuch) {

@@ -23,12 +23,11 @@ class AllHosts final : public Hosts {
   AllHosts(const AllHosts&) = delete;
   AllHosts& operator=(const AllHosts&) = delete;
   ~AllHosts() override {
-    close_those_not_open();
+    close_opening();
     for (const auto& [name, host] : hosts_) host->close();
   }
 
-  /// Before anything else: the key is every module's, of whose links any may be to a host that is
-  /// declared later.
+  /// Call this first: every module gets the key, as it may be linked to hosts declared later.
   Status make_key() {
     const auto text = HC_TRY(tls::make_key_text());
     fingerprint_ = HC_TRY(tls::fingerprint_of_text(text));
@@ -41,7 +40,7 @@ class AllHosts final : public Hosts {
         *loop_, stop, std::chrono::hours(1),
         [this, declared](const auto& give) { begin_connecting(declared, give); });
     if (!connected && connected.error().code == Code::Stopped)
-      loop_->post([this] { close_those_not_open(); });
+      loop_->post([this] { close_opening(); });
     return connected;
   }
   Status serve(const std::function<void()>& work) override {
@@ -67,7 +66,7 @@ class AllHosts final : public Hosts {
 
  private:
   void begin_connecting(const GraphHost& declared, const Give<Connected>& give) {
-    if (!clock_) look_at_clock();  // with the first host
+    if (!clock_) check_clock();  // with the first host
     const auto known = hosts_.find(declared.name);
     if (known != hosts_.end() && known->second->is_of(declared))
       return give(Connected{known->second, known->second->place()});
@@ -82,17 +81,17 @@ class AllHosts final : public Hosts {
     host->open([this, give, name = declared.name, host](const Status& opened) {
       opening_.erase(host);
       if (!opened) {
-        loop_->post([host] { host->close(); });  // it is what calls this
+        loop_->post([host] { host->close(); });  // deferred, since the host is the caller
         return give(opened.error());
       }
       auto& entry = hosts_[name];
-      if (entry) entry->close();  // the file says something else of it now
+      if (entry) entry->close();  // its declaration has changed
       entry = host;
       give(Connected{host, host->place()});
     });
   }
 
-  void close_those_not_open() {
+  void close_opening() {
     for (const auto& host : std::exchange(opening_, {})) host->close();
   }
 
@@ -102,15 +101,15 @@ class AllHosts final : public Hosts {
     changed_.raise();
   }
 
-  /// Notices that the clock of this host is set.
-  void look_at_clock() {
+  /// Logs when the clock of this host was set.
+  void check_clock() {
     const auto wall_offset = monotonic_to_wall();
     if (wall_offset_ && std::abs(wall_offset - *wall_offset_) > kClockSet)
       log(hc::format("graph: the clock of this host was set by {:.3f} s",
                      seconds(wall_offset - *wall_offset_)));
     wall_offset_ = wall_offset;
     clock_ =
-        loop_->call_at(std::chrono::steady_clock::now() + kHeartbeat, [this] { look_at_clock(); });
+        loop_->call_at(std::chrono::steady_clock::now() + kHeartbeat, [this] { check_clock(); });
   }
 
   const std::string version_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Reaches other hosts through ssh, where `hc agent` starts the modules of a graph.
+// Runs modules of a graph on other hosts, through ssh and `hc agent`.
 
 #include <memory>
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace hc::hosts {
 
-/// Makes the key of this run, and connects to nobody yet.
+/// Makes the key of this run; connects to no host yet.
 ///
-/// @param version  of this program, which an agent must have too. Errors: System.
+/// @param version  of this program; agents must have the same. Errors: System.
 Result<std::unique_ptr<Hosts>> make_hosts(std::string version);
 
 }  // namespace hc::hosts

@@ -16,7 +16,7 @@ Result<Descriptor> make_key_file(std::string_view key) {
   constexpr mode_t kOwnerOnly = 0600;
   HC_TRY(system_call("fchmod", "key", [&] { return ::fchmod(file.get(), kOwnerOnly); }));
   HC_TRY(write_all(file.get(), key));
-  // Modules have it too, and one must not change it for the others.
+  // Modules share it, and none may change it for the others.
   HC_TRY(system_call("fcntl", "key", [&] {
     constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL;
     return ::fcntl(file.get(), F_ADD_SEALS, kSeals);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A key that has no name in any folder: memory of this process, which only its user can open
-// (/proc/PID/fd/NUMBER), and those that inherit it. It goes with the last of them. Internal.
+// A key file in memory, without a path: readable only by this user (/proc/PID/fd/NUMBER) and by
+// processes that inherit it; freed with the last of them. Internal.
 
 #include <string_view>
 

@@ -39,14 +39,14 @@ std::int64_t signed_time(std::uint64_t time) {
       std::min<std::uint64_t>(time, std::numeric_limits<std::int64_t>::max()));
 }
 
-/// The topic of MTP that a message and its companion have; empty: it is neither.
+/// The MTP topic of a message or of its companion; empty: it is neither.
 std::string_view pair_topic(const StoredMessage& stored) {
   if (is_mtp(stored)) return stored.channel->topic;
   const auto topic = stored.channel->metadata.find(kCompanionKey);
   return topic != stored.channel->metadata.end() ? std::string_view(topic->second) : "";
 }
 
-/// Whether the companion of a message of MTP has its elements.
+/// Whether the elements of an MTP message are stored in its companion.
 bool lacks_elements(const StoredMessage& stored) {
   const auto matrix = ros::CdrReader::read<ros::Matrix>(stored.data);
   return matrix && matrix->offset > 0;
@@ -54,7 +54,7 @@ bool lacks_elements(const StoredMessage& stored) {
 
 class McapReader final : public Reader {
  public:
-  /// @param most_ahead  of chunks that are kept to find a companion. [byte]
+  /// @param most_ahead  limit on chunks held while searching for a companion. [byte]
   McapReader(mcap::Reader reader, const Limits& limits, std::uint64_t most_ahead, Topics topics)
       : reader_(std::move(reader)), limits_(limits), most_ahead_(most_ahead), topics_(topics) {}
 
@@ -104,19 +104,19 @@ class McapReader final : public Reader {
   Result<std::map<std::string, mcap::StringMap>> metadata() override { return reader_.metadata(); }
 
  private:
-  /// The next message with its companion, whichever of them comes first; a companion without its
-  /// message comes alone. Nothing at the end.
+  /// The next message and its companion, in either order; a companion without a message is returned
+  /// as the message. nullopt at the end.
   Result<std::optional<StoredPair>> read_pair() {
-    if (!HC_TRY(look(0))) return std::optional<StoredPair>();
+    if (!HC_TRY(read_ahead(0))) return std::optional<StoredPair>();
     StoredPair pair{std::move(queue_.front()), std::nullopt};
     queue_.pop_front();
-    pair.companion = find_other(pair.message);
+    pair.companion = find_counterpart(pair.message);
     if (pair.companion && is_mtp(*pair.companion)) std::swap(pair.message, *pair.companion);
     return std::optional(std::move(pair));
   }
 
-  /// Reads ahead, so that there is a message at a place of the queue; false: none so far.
-  Result<bool> look(std::size_t place) {
+  /// Reads ahead until the queue has a message at `place`; false at the end.
+  Result<bool> read_ahead(std::size_t place) {
     if (place < queue_.size()) return true;
     if (failed_) return *std::exchange(failed_, std::nullopt);
     auto stored = HC_TRY(reader_.next());
@@ -124,9 +124,9 @@ class McapReader final : public Reader {
     return stored.has_value();
   }
 
-  /// Takes the companion of a message, or the message of a companion, out of those of the same log
-  /// time, as far as the limits go.
-  std::optional<StoredMessage> find_other(const StoredMessage& one) {
+  /// Takes the companion of a message, or the message of a companion, from those with the same log
+  /// time, within the limits.
+  std::optional<StoredMessage> find_counterpart(const StoredMessage& one) {
     constexpr std::size_t kMost = 1000;
     const auto topic = pair_topic(one);
     const bool is_alone = topic.empty() || (is_mtp(one) && !lacks_elements(one));
@@ -138,7 +138,7 @@ class McapReader final : public Reader {
         const auto time = reader_.next_time();
         if (!time) failed_ = time.error();
         if (!time || *time != one.record.log_time) break;
-        auto read = look(i);
+        auto read = read_ahead(i);
         if (!read) failed_ = read.error();
         if (!read || !*read) break;
       }
@@ -156,7 +156,7 @@ class McapReader final : public Reader {
     return std::nullopt;
   }
 
-  /// The message of MTP, with the elements of its companion where they are there.
+  /// The MTP message, with its companion's elements if it has none.
   Result<Message> rebuild(const StoredPair& pair) {
     const auto& stored = pair.message;
     const auto& topic = stored.channel->topic;
@@ -172,17 +172,17 @@ class McapReader final : public Reader {
     if (matrix->offset > 0) {
       if (!pair.companion)
         return wrong("message " + std::to_string(header->seq) +
-                     " lacks the message for viewers that has its elements");
+                     " has no companion message, which has its elements");
       const auto data = pair.companion->data;
       if (matrix->offset > data.size() || matrix->size > data.size() - matrix->offset)
-        return wrong("elements reach over the end of the message for viewers");
+        return wrong("elements extend beyond the companion message");
       elements = data.subspan(matrix->offset, matrix->size);
       owner = pair.companion->owner;
     }
     Message message{*header, elements, std::move(owner), 0};
     if (message.plain() && elements.size() != header->element_bytes())
-      return wrong("there are " + std::to_string(elements.size()) + " bytes of elements, not " +
-                   std::to_string(header->element_bytes()));
+      return wrong("expected " + std::to_string(header->element_bytes()) +
+                   " bytes of elements, got " + std::to_string(elements.size()));
     const auto address = reinterpret_cast<std::uintptr_t>(elements.data());
     if (message.plain() && address % size_of(header->info.scalar) != 0) {
       const SharedBytes bytes = allocate_bytes(elements.size());
@@ -202,7 +202,7 @@ class McapReader final : public Reader {
   std::int64_t log_time_ = 0;
   std::optional<StoredPair> ahead_;
   std::deque<StoredMessage> queue_;  // read ahead, by log time
-  std::optional<Error> failed_;      // what comes behind them
+  std::optional<Error> failed_;      // the error after them
 };
 
 }  // namespace
@@ -216,7 +216,7 @@ std::vector<StreamInfo> streams_of(const Summary& summary) {
   std::map<std::string_view, std::size_t> by_topic;
   for (const auto& [id, channel] : summary.channels) {
     if (!is_matrix(channel, schema_of(summary, channel))) continue;
-    by_topic.emplace(channel.topic, all.size());  // others of this topic would only repeat it
+    by_topic.emplace(channel.topic, all.size());  // further channels of a topic are copies
     const auto count = summary.counts.find(id);
     all.push_back(
         {stream_name(channel), "", count != summary.counts.end() ? count->second : 0, 0, 0, {id}});
@@ -246,13 +246,13 @@ Result<std::unique_ptr<Reader>> read_mcap(const Place& place, const LinkOptions&
   auto reader = mcap::Reader::open(place.path, limits);
   if (!reader) return reader.error();
   const auto& summary = reader->summary();
-  // Of a file without its end, channels that only chunks declare may not be known yet.
+  // In a truncated file, channels declared only in chunks may not be known yet.
   const auto known = streams_of(summary);
   const bool all = topics == Topics::All;
   if (!all && known.empty() && !summary.channels.empty() && summary.is_whole)
     return Error{Code::Unsupported, place.path + ": a recording of " +
                                         std::to_string(summary.channels.size()) +
-                                        " topics, none of them made here"};
+                                        " topics, none of them MTP"};
   const auto& wanted = place.stream;
   if (!wanted.empty() && std::ranges::find(known, wanted, &StreamInfo::name) == known.end()) {
     std::vector<std::string> names;

@@ -27,12 +27,12 @@ namespace fs = std::filesystem;
 
 Message message_of(const Info& info, std::int32_t width, std::int32_t height, std::int64_t seq,
                    std::mt19937& random) {
-  auto draft = Draft::make(info, width, height);
+  auto draft = Draft::make(info, height, width);
   draft.header.seq = seq;
   draft.header.src = 7;
   draft.header.time = 1'763'683'200'000'000'000 + seq;
   for (auto& each : draft.elements()) each = static_cast<std::byte>(random());
-  if (info.encoding == Encoding::Text)  // a NaN has one spelling
+  if (info.encoding == Encoding::Text)  // no NaN, whose bits text does not preserve
     for (auto& each : draft.elements()) each = static_cast<std::byte>(random() % 64);
   return std::move(draft).finish();
 }
@@ -51,7 +51,7 @@ WriterOptions chunks_of(std::size_t bytes = 10000) {
 
 class Mcap : public Recordings {};
 
-/// Records images 0 … count - 1 at 1 ns, 2 ns, …; the bytes of each.
+/// Records images 0 … count - 1 at 1 ns, 2 ns, …; returns the bytes of each.
 std::vector<std::string> record_images(const std::string& file, int count,
                                        const WriterOptions& options = chunks_of(),
                                        std::int32_t width = 40) {
@@ -99,14 +99,14 @@ TEST_F(Mcap, EveryMessageComesOutAsItWentIn) {
 }
 
 TEST_F(Mcap, NoImageIsStoredTwice) {
-  const auto all = record_images(in("x.mcap"), 20);  // of random pixels, so nothing gets less
+  const auto all = record_images(in("x.mcap"), 20);  // random pixels do not compress
   EXPECT_LT(static_cast<double>(fs::file_size(in("x.mcap"))),
             1.1 * static_cast<double>(20 * all[0].size()) + 5000);
 }
 
 TEST_F(Mcap, ALargeBlankImageIsReadAgain) {
   auto writer = writer_of(in("x.mcap"));
-  auto draft = Draft::make({MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary}, 6000, 4000);
+  auto draft = Draft::make({MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary}, 4000, 6000);
   std::ranges::fill(draft.elements(), std::byte(0));
   const auto blank = std::move(draft).finish();
   ASSERT_TRUE(writer->add(*writer->add_stream("eye"), blank, 1));
@@ -157,16 +157,16 @@ TEST_F(Mcap, AFileThatIsCutOffIsReadUpToItsLastWholeChunk) {
     write("cut.mcap", whole.substr(0, size));
     const auto played = play(in("cut.mcap"));
     ASSERT_LE(played.messages.size(), all.size());
-    ASSERT_GE(played.messages.size(), most);  // more bytes, no fewer messages
+    ASSERT_GE(played.messages.size(), most);  // never fewer messages than before
     most = played.messages.size();
     for (std::size_t i = 0; i < most; ++i) ASSERT_EQ(played.messages[i], all[i]);
-    if (!played.error) continue;  // all chunks and the record that ends them are there
+    if (!played.error) continue;  // complete up to DataEnd
     ASSERT_EQ(played.error->code, size < 8 ? Code::Malformed : Code::Truncated) << size;
   }
   EXPECT_EQ(most, all.size());
 }
 
-/// Where a record begins, of those of one kind the `number`th from 0.
+/// The offset of the `number`th record of a kind, from 0.
 std::size_t offset_of(Opcode opcode, int number, const std::string& file) {
   std::size_t at = kMagic.size();
   while (static_cast<Opcode>(file.at(at)) != opcode || number-- > 0) {
@@ -177,7 +177,7 @@ std::size_t offset_of(Opcode opcode, int number, const std::string& file) {
   return at;
 }
 
-/// A file without its end, as a recorder that was killed leaves it: all of its chunks.
+/// A file without summary, as left by a recorder that was killed.
 std::string without_end(const std::string& file) {
   return file.substr(0, offset_of(Opcode::DataEnd, 0, file));
 }
@@ -192,7 +192,7 @@ TEST_F(Mcap, FilesThatAreCutOffAreMergedByTimeAndSaidOnce) {
     auto writer = writer_of(in(name), options);
     const auto stream = *writer->add_stream(name);
     ASSERT_TRUE(writer->add(stream, image(1), kSecond));
-    ASSERT_TRUE(writer->log({"a", Level::Info, "a line"}));  // which is not of MTP
+    ASSERT_TRUE(writer->log({"a", Level::Info, "a line"}));  // not a message of MTP
     ASSERT_TRUE(writer->add(stream, image(2), 4 * kSecond));
     ASSERT_TRUE(writer->close().status);
     write(name, without_end(bytes_of(in(name))));
@@ -234,7 +234,7 @@ TEST_F(Mcap, AMessageIsInTheChunkOfItsCompanion) {
   ASSERT_TRUE(writer->close().status);
   EXPECT_EQ(play(in("y.mcap?stream=eye.left")).messages, all);
   auto stored = mcap::Reader::open(in("y.mcap"));
-  std::map<std::string, std::shared_ptr<const void>> chunks;  // of the last message of a topic
+  std::map<std::string, std::shared_ptr<const void>> chunks;  // of each topic's last message
   int pairs = 0;
   for (auto next = stored->next(); next && *next; next = stored->next()) {
     const auto& topic = (*next)->channel->topic;
@@ -249,7 +249,7 @@ TEST_F(Mcap, AMessageIsInTheChunkOfItsCompanion) {
 TEST_F(Mcap, DamageIsFoundAndPassedOver) {
   const auto all = record_images(in("x.mcap"), 12);
   const std::string whole = bytes_of(in("x.mcap"));
-  // Of the messages, and of the length of a chunk.
+  // In the messages, and in the length of a chunk.
   for (const std::size_t at : {whole.size() / 2, offset_of(Opcode::Chunk, 1, whole) + 4}) {
     std::string damaged = whole;
     damaged[at] ^= 1;
@@ -297,13 +297,13 @@ TEST_F(Mcap, HostileFilesCostNoMemory) {
   }
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  // ThreadSanitizer keeps four times as much beside.
+  // ThreadSanitizer adds four times as much.
   constexpr long kMost = (__has_feature(thread_sanitizer) ? 5 : 1) * (700L << 10);  // [KiB]
   EXPECT_LT(usage.ru_maxrss, kMost);
 }
 
-/// A file as others may write it: without a summary, channels and messages in chunks without an
-/// index and beside them, by no order of time.
+/// A file as other programs may write it: without summary; with channels and messages inside
+/// unindexed chunks and outside of chunks, not ordered by time.
 class ForeignFile {
  public:
   RecordWriter out;
@@ -328,7 +328,7 @@ class ForeignFile {
     out.append(plain.bytes);
     out.end();
   }
-  /// All of it.
+  /// The complete file.
   std::string bytes() {
     out.add(Opcode::DataEnd, std::uint32_t{0});
     out.add(Opcode::Footer, std::uint64_t{0}, std::uint64_t{0}, std::uint32_t{0});
@@ -374,8 +374,8 @@ TEST_F(Mcap, FilesOfOthersAreReadWholeAndByTime) {
   EXPECT_EQ(times, (std::vector<std::uint64_t>{1, 2, 3, 4, 5, 6, 7, 8, 9}));
   const auto refused = play(in("x.mcap"));
   EXPECT_EQ(refused.error->code, Code::Unsupported);
-  EXPECT_NE(refused.error->detail.find("2 topics, none of them made here"), std::string::npos);
-  // A copy has all of it.
+  EXPECT_NE(refused.error->detail.find("2 topics, none of them MTP"), std::string::npos);
+  // A copy has all topics.
   EXPECT_EQ(topics_of(summary_of(copy({in("x.mcap")}, "y.mcap"))), topics_of(reader->summary()));
 }
 
@@ -592,7 +592,7 @@ TEST_F(Mcap, ARecordingIsSplitAndItsOldestFilesAreRemoved) {
     messages.insert(messages.end(), played.messages.begin(), played.messages.end());
     const auto summary = summary_of(file);
     EXPECT_EQ(topics_of(summary)["/tf_static"], 1U) << file;
-    EXPECT_LT(summary.end - summary.begin, 60U) << file;  // which began with the file
+    EXPECT_LT(summary.end - summary.begin, 60U) << file;  // repeated with the file's start time
   }
   EXPECT_TRUE(std::equal(messages.rbegin(), messages.rend(), all.rbegin()));
 }
@@ -645,7 +645,7 @@ TEST_F(Mcap, OfStaticFramesWithoutEndTheLatestAreRepeatedAndThoseThatCanBeRead) 
     file.out.end();
   }
   write("tf.mcap", file.bytes());
-  auto writer = writer_of(in("x.mcap"), chunks_of());  // behind both
+  auto writer = writer_of(in("x.mcap"), chunks_of());  // numbered after both
   const auto stream = *writer->add_stream("eye.left");
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(writer->add(stream, image(i), 1000 + i));
   ASSERT_TRUE(writer->close().status);
@@ -683,8 +683,8 @@ TEST_F(Mcap, EachJointThatAnOutputMovesIsOnTf) {
   const auto other = *writer->add_stream("arm.pose");
   ASSERT_TRUE(writer->add(stream, pose(2003, 0.5), 1));
   ASSERT_TRUE(writer->add(stream, pose(3004, 0.25), 2));
-  ASSERT_TRUE(writer->add(stream, pose(7, 9), 3));    // of no joint
-  ASSERT_TRUE(writer->add(other, pose(2003, 9), 4));  // moves none
+  ASSERT_TRUE(writer->add(stream, pose(7, 9), 3));    // not a joint's coord
+  ASSERT_TRUE(writer->add(other, pose(2003, 9), 4));  // of a stream without joints
   ASSERT_TRUE(writer->close().status);
   auto reader = must(mcap::Reader::open(in("x.mcap")));
   std::vector<std::string> joints;
@@ -752,7 +752,7 @@ TEST_F(Mcap, WhatWasLastIsSaved) {
   EXPECT_LE(played.messages.size(), 15U);  // whole chunks
   EXPECT_EQ(played.messages.back(), encode(image(59)));
   const auto summary = summary_of(in("x_0001.mcap"));
-  EXPECT_LE(summary.end - summary.begin, 15 * kSecond);  // what holds for long is as new
+  EXPECT_LE(summary.end - summary.begin, 15 * kSecond);  // lasting messages get the start time
   EXPECT_EQ(topics_of(summary)["/tf_static"], 1U);
   EXPECT_EQ(play(in("x_0002.mcap")).messages.back(), encode(image(69)));
 }

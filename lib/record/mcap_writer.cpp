@@ -13,17 +13,17 @@ namespace {
 
 using mcap::StringMap;
 
-/// Channels have 16-bit numbers. A message may need three new ones, for the two topics of its
-/// stream and /tf; two are for /tf_static and /rosout.
+/// Channel numbers have 16 bits. A message may need three new channels: two topics of its stream
+/// and /tf; two are reserved for /tf_static and /rosout.
 constexpr std::uint16_t kMostChannels = 65535 - 5;
 constexpr std::string_view kStaticFrames = "/tf_static", kFrames = "/tf", kLog = "/rosout";
-/// The end of the names of streams of traces.
+/// Suffix of the names of trace streams.
 constexpr std::string_view kTrace = ".trace";
 /// Age at which a chunk is written. Source: doc/recordings.md
 constexpr std::chrono::milliseconds kChunkTime{500};
-/// Size of chunks that may wait to be written. [byte]
+/// Limit on chunks waiting to be written. [byte]
 constexpr std::size_t kBacklog = std::size_t{256} << 20;
-/// The frame in which Rerun shows everything by default.
+/// The frame in which Rerun displays everything by default.
 constexpr std::string_view kRerunOrigin = "tf#/";
 
 /// A topic's quality of service for rosbag2: reliable, and transient local (1) or volatile (2).
@@ -49,7 +49,7 @@ std::string topic_of(std::string_view name) {
 }
 
 Error no_room() {
-  return {Code::TooLarge, "MCAP: a file has room for " + std::to_string(kMostChannels) +
+  return {Code::TooLarge, "MCAP: a file can have " + std::to_string(kMostChannels) +
                               " topics, two for each stream; record fewer streams in one file"};
 }
 
@@ -62,8 +62,8 @@ mcap::SchemaRecord schema_of(ros::Type type) {
   return {0, schema.name, "ros2msg", schema.text};
 }
 
-/// The child frames that a message of /tf_static is about: as in tf2, a later message replaces what
-/// it says of each. Of one that cannot be read they are not known.
+/// The child frames of a /tf_static message; as in tf2, a later message replaces each of them.
+/// Empty if it cannot be read.
 std::set<std::string> frames_of(std::span<const std::byte> message) {
   std::set<std::string> frames;
   if (const auto tf = ros::CdrReader::read<ros::TfMessage>(message))
@@ -145,7 +145,7 @@ std::uint16_t McapWriter::channel(Stream& stream, ros::Type type) {
   if (number != 0) return number;
   if (type == ros::Type::Matrix)
     return number = add_channel(stream.matrix_topic, type, {{kStreamKey, stream.name}});
-  // A topic has one type; another one, such as compressed images, gets a topic below it.
+  // A topic has one type; others, such as compressed images, get a topic below it.
   std::string topic = stream.topic;
   if (std::exchange(stream.has_topic, true))
     topic = take_name(topics_, topic + (type == ros::Type::CompressedImage
@@ -172,7 +172,7 @@ std::uint16_t McapWriter::copied_channel(const mcap::StoredMessage& message, con
     if (here.empty()) here = take_name(topics_, topic);
     return here;
   };
-  // Topics of streams stay separate; others of the same name and definition become one.
+  // Topics of streams stay separate; other topics with the same name and definition are merged.
   if (stream == copy.metadata.end() && companion == copy.metadata.end()) {
     auto& other = other_channels_[{copy.topic, copy.encoding + key_of(schema)}];
     if (other == 0) {
@@ -235,12 +235,12 @@ Status McapWriter::write(std::size_t number, const Message& message, std::int64_
   const std::int64_t published = header.time != 0 ? header.time : time;
   const bool is_picture =
       header.info.type == MatrixType::RgbImage || header.info.type == MatrixType::IntensityImage;
-  // The size for CameraInfo: of rectified images, until one comes that of any image.
+  // The size for CameraInfo: that of rectified images, or of any image until one arrives.
   if (is_picture && (header.coord == Coord::kLeftRectified || encoder_.camera_width == 0)) {
     encoder_.camera_width = static_cast<std::uint32_t>(header.width);
     encoder_.camera_height = static_cast<std::uint32_t>(header.height);
   }
-  // The type is that of the first message, except that images may also be compressed.
+  // The type is that of the first message; images may additionally be compressed.
   auto type = stream.is_shown ? ros::type_for(header) : std::nullopt;
   if (type && type != ros::Type::CompressedImage) {
     if (!stream.type) stream.type = type;
@@ -282,7 +282,7 @@ Status McapWriter::log(std::int64_t time, const LogLine& line) {
   return wait_for_room();
 }
 
-/// Records frames that never move, with the time of the first message.
+/// Records the fixed frames, with the time of the first message.
 void McapWriter::record_fixed_frames(std::int64_t time) {
   auto fixed = std::move(joints_.fixed);
   fixed.push_back({.parent = std::string(kRerunOrigin), .child = joints_.root, .time = time});
@@ -366,7 +366,7 @@ void McapWriter::work() {
   while (true) {
     if (!changed_.wait_for(lock, kChunkTime / 2, [&] { return is_ending_ || !jobs_.empty(); })) {
       lock.unlock();
-      // A call that has the chunk looks for itself at its end.
+      // A call that holds the chunk flushes it itself.
       if (const std::unique_lock chunk(chunk_mutex_, std::try_to_lock); chunk) flush_if_due();
       lock.lock();
       continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of messages as recordings, with log times made from the times of the messages.
+// Files of messages as recordings, with log times derived from the messages' times.
 #include <algorithm>
 #include <filesystem>
 #include <limits>
@@ -10,18 +10,18 @@
 namespace hc::record {
 namespace {
 
-/// Makes monotonic log times from times of messages.
+/// Derives monotonic log times from the times of messages.
 class LogTimes {
  public:
-  std::int64_t last = 0;  ///< 0: none is known yet
+  std::int64_t last = 0;  ///< 0: unknown
 
   void add(std::int64_t time) {
-    constexpr std::int64_t kDisorder = 1'000'000'000;  // of messages of several modules [ns]
+    constexpr std::int64_t kDisorder = 1'000'000'000;  // tolerated between modules [ns]
     constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
     if (time <= 0) return;
     const bool is_back = time < last - kDisorder;
     if (is_back) time = time > kMost - shift_ ? kMost : time + shift_;
-    if (is_back && time < last - kDisorder) {  // the clock was set back, once more
+    if (is_back && time < last - kDisorder) {  // the clock was set back again
       shift_ += last - time;
       time = last;
     }
@@ -39,12 +39,12 @@ class MessageReader final : public Reader {
 
   Result<Got> take(Message& message) override {
     message = {};
-    auto got = look();
+    auto got = read_ahead();
     if (got && *got == Got::Message) message = std::move(*std::exchange(ahead_, std::nullopt));
     return got;
   }
   Result<std::optional<std::int64_t>> next_time() override {
-    auto got = look();
+    auto got = read_ahead();
     if (!got) return got.error();
     return *got == Got::Message ? std::optional(times_.last) : std::nullopt;
   }
@@ -79,8 +79,8 @@ class MessageReader final : public Reader {
   }
 
  private:
-  /// Reads the next message into `ahead_`, unless there is one.
-  Result<Got> look() {
+  /// Reads the next message into ahead_, unless it has one.
+  Result<Got> read_ahead() {
     while (!ahead_) {
       Message message;
       auto got = source_->take(message);
@@ -92,8 +92,8 @@ class MessageReader final : public Reader {
     return Got::Message;
   }
 
-  /// The time of the first message with a time near the begin of the file, or 0. What is read from
-  /// a FIFO or device is gone, so only a file is read twice.
+  /// The first non-zero time of a message near the beginning of the file, or 0. Only regular files
+  /// can be read twice, not FIFOs and devices.
   std::int64_t first_time() {
     constexpr std::uint64_t kNear = std::uint64_t{64} << 20;  // [byte]
     std::error_code unknown;

@@ -41,7 +41,7 @@ Place place_of(std::string_view word) {
   Place place;
   std::error_code missing;
   const auto uri = parse_uri(word);
-  // What cannot be a URI is a file: "2025-11-25T13:00:00.mcap", "odd?name".
+  // A word that is not a URI is a file: "2025-11-25T13:00:00.mcap", "odd?name".
   const bool is_uri =
       uri && (uri->scheme != "file" || uri->options.empty() || !fs::exists(word, missing));
   place.uri = is_uri ? *uri : Uri{"file", std::string(word), {}};

@@ -13,7 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Several recordings as one.
 class MergedReader final : public Reader {
  public:
   struct File {
@@ -62,7 +61,8 @@ class MergedReader final : public Reader {
   [[nodiscard]] int descriptor() const override { return last_->reader->descriptor(); }
   Status resume() override {
     Reader* reader = std::exchange(failed_, nullptr);
-    return reader != nullptr ? reader->resume() : Status();  // of Truncated: the others are read
+    return reader != nullptr ? reader->resume()
+                             : Status();  // none after Truncated: the other files continue
   }
   Reader& front() override { return *last_->reader; }
   void start_at(std::int64_t log_time) override {
@@ -100,7 +100,7 @@ class MergedReader final : public Reader {
     failed_ = last_->reader.get();
     return named(error);
   }
-  /// Adds a truncated file to the error that is returned after the last message of all files.
+  /// Adds a truncated file to the error returned after the last message of all files.
   void add_truncated(const Error& error) {
     if (truncated_)
       truncated_->detail += "; " + named(error).detail;
@@ -109,13 +109,13 @@ class MergedReader final : public Reader {
   }
 
   std::vector<File> files_;
-  File* last_ = files_.data();      // that had the last message, or has the next
-  Reader* failed_ = nullptr;        // that is to be resumed
-  std::optional<Error> truncated_;  // of those that have no end
+  File* last_ = files_.data();      // of the last or the next message
+  Reader* failed_ = nullptr;        // to be resumed
+  std::optional<Error> truncated_;  // of all truncated files
   std::int64_t time_ = 0;
 };
 
-/// The files of a folder that are recordings, or the one of a stream.
+/// The recordings in a folder, or that of one stream.
 Result<std::vector<Place>> files_of(const Place& folder) {
   std::vector<std::string> names;
   std::error_code failed;
@@ -125,7 +125,7 @@ Result<std::vector<Place>> files_of(const Place& folder) {
   if (failed) return Error{Code::NotFound, folder.path + ": " + failed.message()};
   if (names.empty())
     return Error{Code::NotFound,
-                 folder.path + ": no MODULE.PORT.mtp in it; hc run --record writes them"};
+                 folder.path + ": no MODULE.PORT.mtp in it, as hc run --record writes them"};
   std::ranges::sort(names);
   if (!folder.stream.empty()) {
     if (std::ranges::find(names, folder.stream) == names.end())

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings whatever they are written in; what is of MCAP alone is in mcap_test.cpp.
+// Recordings of all formats; mcap_test.cpp tests those of MCAP in detail.
 #include <sys/stat.h>
 
 #include <array>
@@ -19,7 +19,7 @@ Result<std::unique_ptr<Writer>> open_folder(const std::string& folder,
   return Writer::open(place_of_streams(folder), options);
 }
 
-/// A message with so many bytes of elements.
+/// A message with this size of elements [byte].
 Message sized(std::int32_t size) {
   Header header;
   header.info = {MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary};
@@ -30,7 +30,7 @@ Message sized(std::int32_t size) {
   return std::move(draft).finish();
 }
 
-/// How many messages a file has, all of them whole.
+/// The number of messages of a file; checks that all are complete.
 std::size_t count(const std::string& path) {
   const auto played = play(path);
   EXPECT_FALSE(played.error) << path << ": " << played.error->text();
@@ -128,7 +128,7 @@ TEST_F(Recorded, WrongNamesAreRefused) {
   for (const auto& [streams, what] :
        {std::pair(std::vector<std::string>{""}, "\"\" cannot be a file name"),
         {{"../a.out"}, "\"../a.out\" cannot be a file name"},
-        {{"a.out", "a.out"}, "\"a.out\" is there twice"}}) {
+        {{"a.out", "a.out"}, "\"a.out\" is given twice"}}) {
     const auto error = refusal(streams);
     EXPECT_EQ(error.code, Code::Invalid);
     EXPECT_EQ(error.detail, std::string("streams: ") + what);
@@ -144,7 +144,7 @@ TEST_F(Recorded, WhereNoneCanBeMadeIsAnError) {
 }
 
 TEST_F(Recorded, OnAFullDiskHasWholeMessages) {
-  for (const std::int32_t size : {30000, 100}) {  // written at once, and from a buffer
+  for (const std::int32_t size : {30000, 100}) {  // written directly, and buffered
     const FullDisk full(100'000);
     auto made = std::move(*open_folder(kept, {"a.out", "b.out"}));
     Status recorded = made->add(1, sized(10));
@@ -206,7 +206,7 @@ TEST_F(InOrder, AMessageWithoutATimeGoesWithTheOneBefore) {
   const auto first = play({file("a.mtp", {0, 0, kNow, kNow + 5, 0, kNow + 7})});
   EXPECT_EQ(first.times, (std::vector{kNow, kNow, kNow, kNow + 5, kNow + 5, kNow + 7}));
   EXPECT_EQ(play({copy({in("a.mtp")}, "a.mcap")}).times, first.times);
-  // Nor does a file of those alone make a recording span decades.
+  // A file without any times does not make a recording span decades.
   const auto both = play({file("b.mtp", {0, 0, 0}), file("c.mtp", {kNow, kNow + 1})});
   EXPECT_EQ(both.times, (std::vector{kNow, kNow, kNow, kNow, kNow + 1}));
   EXPECT_LT(play({copy({in("b.mtp")}, "b.mcap")}).duration(), kSecond * 60);
@@ -216,11 +216,11 @@ TEST_F(InOrder, AFifoIsReadOnce) {
   ASSERT_EQ(::mkfifo(in("x.mtp").c_str(), 0600), 0);
   auto reader = Reader::open({place_of(in("x.mtp"))}, {});
   ASSERT_TRUE(reader) << reader.error().text();
-  std::ofstream fifo(in("x.mtp"), std::ios::binary);  // which has room for 1 MiB
+  std::ofstream fifo(in("x.mtp"), std::ios::binary);  // holds up to 1 MiB
   for (int i = 0; i < 4; ++i) {
     auto message = sized(200'000);
     message.header.seq = i;
-    message.header.time = i == 0 ? 0 : kNow;  // the first has none
+    message.header.time = i == 0 ? 0 : kNow;  // the first without a time
     fifo << encode(message);
   }
   fifo.close();
@@ -240,7 +240,7 @@ TEST_F(InOrder, AClockThatIsSetLosesNoMessageAndMakesNobodyWait) {
   EXPECT_EQ(back.times.size(), 5U);
   EXPECT_EQ(back.duration(), 4 * kSecond);
   EXPECT_TRUE(std::ranges::is_sorted(back.times));
-  // One wrong time, as far ahead as there is: what follows goes on from there.
+  // After one maximal time, the following messages get the same.
   constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
   const auto ahead = play({file("b.mtp", {kNow, kMost, kNow + kSecond, kNow + 2 * kSecond})});
   EXPECT_EQ(ahead.times, (std::vector{kNow, kMost, kMost, kMost}));
@@ -255,7 +255,7 @@ TEST_F(InOrder, LogTimesGoByTheMonotonicClock) {
   options.chunk_bytes = 1;
   auto writer = writer_of(in("x.mcap"), options);
   const auto stream = *writer->add_stream("a.out");
-  for (int i = 0; i < 60; ++i) {  // the clock on the wall is set each second, to and fro
+  for (int i = 0; i < 60; ++i) {  // the wall clock is set back and forth each second
     ASSERT_TRUE(writer->add(stream, at(0, i)));
     clock.advance(std::chrono::seconds(1));
     clock.set_wall(kNow + (i % 2 == 0 ? 3600 : -3600) * kSecond);
@@ -269,12 +269,12 @@ TEST_F(InOrder, LogTimesGoByTheMonotonicClock) {
 
 TEST_F(InOrder, OneLinkMayCarrySeveralStreams) {
   auto writer = writer_of(in("x.mcap"));
-  const std::array<int, 2> from{};  // links
+  const std::array<int, 2> from{};  // two links
   for (int i = 0; i < 6; ++i)
     ASSERT_TRUE(
         writer->add(*writer->stream_of(&from[0], "eyes", 7 + i % 2), at(kNow, i, 7 + i % 2)));
-  ASSERT_TRUE(
-      writer->add(*writer->stream_of(&from[1], "eyes", 7), at(kNow, 0)));  // another of the name
+  ASSERT_TRUE(writer->add(*writer->stream_of(&from[1], "eyes", 7),
+                          at(kNow, 0)));  // another link of the same name
   const auto place = writer->close().place;
   for (const auto& [name, count] : {std::pair("eyes", 3U), {"eyes.src_8", 3U}, {"eyes_2", 1U}})
     EXPECT_EQ(play({place + "?stream=" + name}).messages.size(), count) << name;
@@ -292,7 +292,7 @@ TEST_F(InOrder, InMcapAreCopiedWithAllThatStandsBeside) {
     ASSERT_TRUE(writer->metadata(name, {{"k", "v"}}));
   }
   const auto one = in("one/x.mcap"), two = in("two/x.mcap");
-  // A file that is cut off, too.
+  // Also from a truncated file.
   const auto bytes = bytes_of(one);
   const auto cut = write("cut.mcap", bytes.substr(0, bytes.rfind("a.out") - 800));
   for (const auto& from : {one, cut}) {
@@ -301,7 +301,7 @@ TEST_F(InOrder, InMcapAreCopiedWithAllThatStandsBeside) {
     EXPECT_EQ(play({mended}).messages, play({one}).messages);
     EXPECT_EQ(play({mended}).times, play({one}).times);
   }
-  // Two of the same names: their streams are two, their frames and log are one.
+  // Of two files with the same names, streams stay separate; frames and log are merged.
   const auto both = copy({one, two}, "both.mcap");
   EXPECT_EQ(topics_of(summary_of(both)), (std::map<std::string, std::uint64_t>{{"/a/out", 9},
                                                                                {"/a/out/mtp", 9},
@@ -310,7 +310,7 @@ TEST_F(InOrder, InMcapAreCopiedWithAllThatStandsBeside) {
                                                                                {"/rosout", 2},
                                                                                {"/tf_static", 2}}));
   EXPECT_EQ(play({both + "?stream=a.out_2"}).messages, play({two}).messages);
-  // So are those of a folder beside.
+  // The same with a folder.
   const auto beside = copy({both, copy({one}, "kept/")}, "beside.mcap");
   EXPECT_EQ(play({beside + "?stream=a.out_3"}).messages, play({one}).messages);
 }
@@ -324,7 +324,7 @@ TEST_F(InOrder, AFileThatIsCutOffEndsThatStreamAlone) {
   ASSERT_TRUE(whole.error);
   EXPECT_EQ(whole.error->code, Code::Truncated);
   EXPECT_TRUE(whole.error->detail.starts_with(cut + ": ")) << whole.error->detail;
-  // Where they are counted it is said too.
+  // Counting reports it, too.
   const auto counted = *(*Reader::open({place_of(kept)}, {}))->streams(StreamDetail::Counts);
   EXPECT_TRUE(counted.at(0).status);
   EXPECT_EQ(counted.at(1).messages, 1U);

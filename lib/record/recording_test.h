@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What tests of recordings share.
+// Helpers for tests of recordings.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@
 
 namespace hc::record {
 
-/// What a recording holds: of each message its stream, bytes and log time; and why it ended.
+/// The contents of a recording: stream, bytes and log time of each message; and the final error.
 struct Played {
   std::vector<std::string> streams, messages;
   std::vector<std::int64_t> times;
@@ -66,7 +66,7 @@ inline mcap::Summary summary_of(const std::string& path, const mcap::ReaderLimit
   EXPECT_TRUE(reader) << reader.error().text();
   return reader ? reader->summary() : mcap::Summary();
 }
-/// How many messages each topic has.
+/// The number of messages per topic.
 inline std::map<std::string, std::uint64_t> topics_of(const mcap::Summary& summary) {
   std::map<std::string, std::uint64_t> counts;
   for (const auto& [id, channel] : summary.channels)
@@ -74,19 +74,19 @@ inline std::map<std::string, std::uint64_t> topics_of(const mcap::Summary& summa
   return counts;
 }
 
-/// Has a folder that is removed after the test.
+/// A test with a temporary folder.
 class Recordings : public ::testing::Test {
  protected:
-  /// A path in it.
+  /// A path in the folder.
   [[nodiscard]] std::string in(const std::string& name) const { return folder_ / name; }
-  /// Writes a file; gives its path.
+  /// Writes a file; returns its path.
   std::string write(const std::string& name, const std::string& bytes) const {
     const auto path = in(name);
     std::filesystem::create_directories(std::filesystem::path(path).parent_path());
     std::ofstream(path, std::ios::binary) << bytes;
     return path;
   }
-  /// Copies recordings into another, as `hc record` does; what was written.
+  /// Copies recordings into a new one, as `hc record` does.
   [[nodiscard]] Written copied(const std::vector<std::string>& words, const std::string& name,
                                const WriterOptions& options = {}) const {
     std::vector<Place> places;
@@ -98,7 +98,7 @@ class Recordings : public ::testing::Test {
     EXPECT_TRUE(writer->close().status);
     return writer->written();
   }
-  /// The same; where that is.
+  /// As copied(); returns the place of the new one.
   [[nodiscard]] std::string copy(const std::vector<std::string>& words,
                                  const std::string& name) const {
     return copied(words, name).place;

@@ -19,14 +19,14 @@ Result<std::unique_ptr<Writer>> Writer::open(const Place& place, const WriterOpt
                                     " does not end in .mcap"};
   if (place.kind == Place::Kind::Link)
     return Error{Code::Invalid, place.text() +
-                                    " is a link; a recording is a file or folder, which "
-                                    "is written ./NAME where it begins like a link"};
+                                    " is a link; a recording is a file or folder; write ./NAME "
+                                    "for a name that starts like a link"};
   for (const auto& [key, value] : place.uri.options)
-    return Error{Code::Invalid, place.text() + ": a recording that is made has no option " + key};
+    return Error{Code::Invalid, place.text() + ": a new recording has no option " + key};
   std::set<std::string_view> names;
   for (const auto& name : options.streams)
     if (!names.insert(name).second)
-      return Error{Code::Invalid, "streams: \"" + name + "\" is there twice"};
+      return Error{Code::Invalid, "streams: \"" + name + "\" is given twice"};
   std::unique_ptr<Writer> writer(new Writer(place, options));
   if (auto begun = writer->begin(place); !begun) return begun.error();
   return writer;
@@ -157,7 +157,7 @@ Status Writer::record(std::size_t bytes, const Write& write) {
   written_.bytes += bytes;
   const bool goes_on = written_.status.has_value();
   auto done = goes_on ? end_if_failed(write()) : written_.status;
-  // What MCAP was given, and has lost, it counts itself.
+  // The MCAP writer counts messages that it accepted and lost.
   if (!done && (!goes_on || mcap_ == nullptr || done.error().code == Code::TooLarge))
     ++written_.lost;
   return done;

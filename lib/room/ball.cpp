@@ -15,7 +15,7 @@ constexpr double kShortest = 0.5;      // leg [rad]
 constexpr double kBounce = 0.3;        // height of a bounce [m]
 constexpr double kGravity = 9.81;      // [m/s²]
 
-/// How far one is, and how fast, who starts and ends at rest over a distance.
+/// Position and speed on the way of a motion from rest to rest.
 struct Progress {
   double way, speed;
 };

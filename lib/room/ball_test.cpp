@@ -29,7 +29,7 @@ TEST(Ball, rolls_on_the_arc_at_its_speed_and_never_jumps) {
       EXPECT_LE(std::abs(angle(now)), kArcEnd);
       const double rate = (angle(next) - angle(now)) / kStep;
       fastest = std::max(fastest, std::abs(rate));
-      // The velocity is the position's derivative: between two samples at most 1.6 rad/s² × 10 ms.
+      // The velocity is the derivative of the position: it changes by at most 1.6 rad/s² × 10 ms.
       EXPECT_NEAR(rate,
                   now.velocity.head<2>().norm() / kArcRadius *
                       (now.position.cross(now.velocity).z() < 0 ? -1 : 1),

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Where the head's eyes are in its frame: as mounted, and then as the faults of a real head have
-// it. Pure.
+// The mounting of a head's eyes, nominal and with the faults of a real head. Pure.
 
 #include <Eigen/Geometry>
 
 namespace hc::room {
 
-/// What a real head has wrong, and a calibration finds. [rad]
+/// Errors of a real head, to be found by calibration [rad].
 struct HeadFaults {
-  double zero_pan = 0, zero_tilt = 0;  ///< the bar of the eyes is turned so with the unit at 0
+  double zero_pan = 0, zero_tilt = 0;  ///< rotation of the eyes' bar with the unit at 0
   double offset_roll = 0, offset_pitch = 0, offset_yaw = 0;  ///< of the right eye, in its own frame
 };
 
-/// T_head_eye: from an eye's optical frame (x right, y down, z forward) into the head's, whose
-/// origin is where pan and tilt axis meet (x forward, y left, z up).
+/// T_head_eye: from an eye's optical frame (x right, y down, z forward) to the head's (x forward, y
+/// left, z up), whose origin is the intersection of the pan and tilt axes.
 struct Head {
   Eigen::Isometry3d left_eye, right_eye;
 

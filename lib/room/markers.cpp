@@ -33,7 +33,7 @@ cv::Mat paint(const Placement& placement) {
                                             : cv::Scalar(20, 190, 20));
 }
 
-/// What holds a marker: from the ceiling where it is high, so that none is before the board.
+/// Adds a marker's rod: from the ceiling if it is high, so that none hides the board.
 void add_rod(Scenery& room, const Vector3d& marker, double side, double yaw,
              const cv::Mat& colour) {
   constexpr double kThick = 0.012, kHigh = 1.3;  // [m]
@@ -48,13 +48,13 @@ void add_rod(Scenery& room, const Vector3d& marker, double side, double yaw,
 }  // namespace
 
 std::vector<RoomMarker> add_markers(Scenery& room) {
-  const double d = 0.06;  // how far a place differs [m]
+  const double d = 0.06;  // random offset of a position [m]
   auto near = [&](double x, double y, double z) {
     const double dz = room.random(-d, d), dy = room.random(-d, d), dx = room.random(-d, d);
     return Vector3d(x + dx, y + dy, z + dz);
   };
   const Placement placements[] = {
-      // Straight before the neck: who looks at its middle looks along the world's x.
+      // Straight ahead of the neck, along the world's x axis.
       {"apriltag", 0, 0.30, {kRoomFront - 0.02, 0, kHeadHeight}, 0},
       {"apriltag", 7, 0.16, near(2.9, -1.05, 1.45), -0.35 + room.random(-0.2, 0.2)},
       {"aruco", 23, 0.18, near(2.9, -0.55, 1.75), -0.2 + room.random(-0.2, 0.2)},
@@ -65,7 +65,7 @@ std::vector<RoomMarker> add_markers(Scenery& room) {
   };
   std::vector<RoomMarker> markers;
   for (const auto& placement : placements) {
-    // The margin is a sixth of the image, or one cell of ten.
+    // The margin is 1/6 of the image of a colour marker, else one of ten cells.
     const bool is_colour = std::string_view(placement.kind) == "colour";
     const auto whole = static_cast<float>(placement.side * (is_colour ? 1.5 : 1.25));
     const Isometry3d place = hang(placement.place, placement.yaw);

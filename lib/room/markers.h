@@ -14,14 +14,13 @@ namespace hc::room {
 /// A marker of the room.
 struct RoomMarker {
   std::string kind;  ///< "aruco", "apriltag" or "colour"
-  int id = 0;        ///< of the dictionary; of a coloured one, its hue [degree]
-  double side = 0;   ///< of the black or coloured square, without the white margin [m]
-  /// Optical convention: x right, y down, z into the marker, as seen by who looks at it; its
-  /// middle.
+  int id = 0;        ///< in the dictionary; for colour the hue [degree]
+  double side = 0;   ///< of the black or coloured square without the margin [m]
+  /// Origin in the centre; x right, y down, z into the marker, as seen by a viewer.
   Eigen::Isometry3d T_world_marker = Eigen::Isometry3d::Identity();
 };
 
-/// Hangs them up before the robot, each of which it can see from its neck. @returns  where.
+/// Adds markers in front of the robot, all visible from its neck. @returns  their poses.
 std::vector<RoomMarker> add_markers(Scenery& room);
 
 }  // namespace hc::room

@@ -15,17 +15,17 @@ namespace hc::room {
 
 namespace {
 
-constexpr int kCell = 8;  // of a plate [px]
+constexpr int kCell = 8;  // of a marker [px]
 const cv::Scalar kInk(20, 20, 25);
 const char* const kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";  // fonts-dejavu-core
 
-/// Letters of a font, by their size and stroke as OpenCV's own have them.
+/// Measures and draws text in a font, with OpenCV's scale and stroke.
 struct Pen {
   std::function<cv::Size(const std::string&, double scale, int stroke, int& below)> measure;
   std::function<void(cv::Mat&, const std::string&, cv::Point, double scale, int stroke)> write;
 };
 
-/// OpenCV's own letters, of strokes, which are those of ASCII; others become "?".
+/// OpenCV's stroke font, which has only ASCII; other letters become "?".
 Pen stroked_pen() {
   constexpr int kDuplex = cv::FONT_HERSHEY_DUPLEX;
   const auto plain = [](const std::string& text) {
@@ -33,7 +33,7 @@ Pen stroked_pen() {
     for (const char letter : text)
       if (letter >= ' ' && letter <= '~')
         each += letter;
-      else if ((letter & 0xC0) != 0x80)  // the first byte of a letter in UTF-8
+      else if ((letter & 0xC0) != 0x80)  // first byte of a UTF-8 character
         each += '?';
     return each;
   };
@@ -45,7 +45,7 @@ Pen stroked_pen() {
           }};
 }
 
-/// A TrueType font's letters, for what has others than those of ASCII.
+/// A TrueType font for text that is not ASCII, else OpenCV's font.
 Pen pen_for(const std::string& text) {
   const bool is_ascii =
       std::all_of(text.begin(), text.end(), [](char letter) { return (letter & 0x80) == 0; });
@@ -104,7 +104,7 @@ cv::Mat paint_poster(int width, int height, std::uint64_t seed) {
   cv::RNG random(seed + 3);
   cv::Mat image(height, width, CV_8UC3, cv::Scalar(214, 210, 196));
   for (int i = 0; i < 60; ++i) {
-    // Greys, blues and ochres, of little saturation.
+    // Greys, blues and ochres of low saturation.
     const int base = random.uniform(40, 200), tint = random.uniform(-25, 25);
     const cv::Scalar colour(base + tint, base, base - tint);
     const int y = random.uniform(0, height), x = random.uniform(0, width);
@@ -131,11 +131,11 @@ cv::Mat paint_tag(const std::string& dictionary, int id) {
   }(words);
   const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(
       all.bytesList.rowRange(id, id + 1), all.markerSize);
-  // A black edge of one cell around the bits, and a white one around that.
+  // The bits, a black border of one cell, and a white one.
   cv::Mat cells(all.markerSize + 4, all.markerSize + 4, CV_8U, cv::Scalar(255));
   cells(cv::Rect(1, 1, all.markerSize + 2, all.markerSize + 2)) = cv::Scalar(0);
   cells(cv::Rect(2, 2, all.markerSize, all.markerSize)) = bits * 255;
-  // OpenCV has AprilTags upside down, as their own library reads them.
+  // OpenCV's AprilTags are upside down relative to the AprilTag library.
   if (dictionary == "apriltag") cv::rotate(cells, cells, cv::ROTATE_180);
   cv::Mat image;
   cv::resize(cells, image, {}, kCell, kCell, cv::INTER_NEAREST);

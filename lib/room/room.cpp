@@ -22,7 +22,7 @@ using graphics::make_rectangle;
 
 constexpr double kPi = std::numbers::pi;
 
-/// x to the right, the robot's left above.
+/// Image x is the world's x; the robot's left is at the top.
 cv::Mat paint_floor(std::uint64_t seed) {
   const cv::Mat planks = paint_planks(512, 512, seed);
   cv::Mat floor;
@@ -45,7 +45,7 @@ graphics::SurfaceId add_room(Scenery& room) {
   wall({middle, kRoomSide, kRoomCeiling / 2}, kPi / 2, length);
   wall({middle, -kRoomSide, kRoomCeiling / 2}, -kPi / 2, length);
   wall({kRoomBack, 0, kRoomCeiling / 2}, kPi, 2 * kRoomSide);
-  // Who looks down sees the floor with x to the right.
+  // Seen from above, the floor has x to the right.
   Eigen::Matrix3d down, up;
   down << 1, 0, 0, 0, -1, 0, 0, 0, -1;
   up << 1, 0, 0, 0, 1, 0, 0, 0, 1;
@@ -91,8 +91,8 @@ void add_furniture(Scenery& room) {
   auto cloth = [&](double r, double g, double b) {
     return paint_grains(128, 128, {r, g, b}, 34, static_cast<std::uint64_t>(room.random(0, 1e6)));
   };
-  // A table behind the ball's bench, on the left, with a box and a pot on it.
-  // Dice are thrown one by one: in what order a compiler throws those of one expression is open.
+  // A table behind the ball's bench, on the left, with a box and a pot on it. One random number per
+  // statement, since the order of evaluation in an expression is unspecified.
   auto about = [&](double value, double most) { return value + room.random(-most, most); };
   const double table_y = about(1.2, 0.1), table_x = about(3.3, 0.1);
   const Vector3d table(table_x, table_y, 0);
@@ -118,7 +118,7 @@ void add_furniture(Scenery& room) {
                    cloth(grey + tint, grey, grey - tint));
       y += thick + 0.004;
     }
-  // Stools before and behind the bench, and a chest.
+  // A stool in front of the bench, a chest and a cushion behind it.
   const double stool_yaw = about(0, 1);
   const auto stool_cloth = cloth(118, 110, 96);
   const double stool_x = about(1.55, 0.1), stool_y = about(0.75, 0.1);

@@ -9,7 +9,7 @@ using Eigen::Translation3d;
 using Eigen::Vector3d;
 
 Isometry3d hang(const Vector3d& middle, double yaw) {
-  Eigen::Matrix3d optical;  // columns: x right, y down, z into, of who looks forward
+  Eigen::Matrix3d optical;  // columns: x right, y down, z forward
   optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   return Translation3d(middle) * AngleAxisd(yaw, Vector3d::UnitZ()) * Isometry3d(optical);
 }

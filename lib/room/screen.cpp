@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 constexpr double kWidth = 0.62, kHeight = 0.8, kRadius = 1.95, kMiddle = 0.72;  // [m]
 
-/// From the robot's axis to the screen, on the floor.
+/// Horizontal direction from the robot's axis to the screen.
 Vector3d towards() {
   return {std::cos(kScreenAngle), std::sin(kScreenAngle), 0};
 }
@@ -28,7 +28,7 @@ Vector3d middle() {
 }  // namespace
 
 double share_seen(const Vector3d& ball, const Vector3d& from) {
-  // Rays to points of the disc that is seen.
+  // Rays to points of the visible disc.
   constexpr int kRings = 5, kRays = 16;
   const Vector3d along = (ball - from).normalized();
   const Vector3d right = along.unitOrthogonal(), down = along.cross(right);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The screen that the ball hides behind. Pure, but for what is drawn.
+// The screen behind which the ball hides.
 
 #include <Eigen/Geometry>
 
@@ -8,12 +8,12 @@
 
 namespace hc::room {
 
-/// How much of the ball is seen past the screen. [0 … 1]
+/// The share of the ball that the screen does not hide [0 … 1]. Pure.
 ///
-/// @param ball  its middle, in the world [m]. @param from  where the eye is, in the world [m].
+/// @param ball  its centre in the world [m]. @param from  position of the eye in the world [m].
 double share_seen(const Eigen::Vector3d& ball, const Eigen::Vector3d& from);
 
-/// Puts the screen before the arc on which the ball rolls, with its foot.
+/// Adds the screen with its foot in front of the ball's arc.
 void add_screen(Scenery& room);
 
 }  // namespace hc::room

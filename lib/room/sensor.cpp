@@ -26,7 +26,7 @@ void Sensor::apply(cv::Mat& rgb, double blur, double noise, std::uint64_t number
   }
   cv::RNG place(seed_ ^ (number * 0x9e3779b97f4a7c15U + 1));
   const int x = place.uniform(0, kMargin), y = place.uniform(0, kMargin);
-  const int count = 3 * rgb.cols;  // a local one: the compiler adds 16 numbers at once then
+  const int count = 3 * rgb.cols;  // a local variable, so that the loop is vectorised
   for (int row = 0; row < rgb.rows; ++row) {
     auto* to = rgb.ptr<std::uint8_t>(row);
     const auto* from = field_.ptr<std::int8_t>(row + y) + 3 * x;

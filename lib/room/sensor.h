@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a real camera does to an image: it blurs and adds noise. Pure.
+// Simulates the blur and noise of a real camera. Pure.
 
 #include <cstdint>
 
@@ -17,14 +17,14 @@ class Sensor {
   ///
   /// @param blur  standard deviation of the blur, 0: none [px].
   /// @param noise  standard deviation of the noise of each channel, 0: none; up to 40 [1 of 255].
-  /// @param number  of the image: the same number, the same noise.
-  /// Cost: 1 ms for 800 × 600 with noise, 4 ms more with blur; the first time 30 ms.
+  /// @param number  of the image; determines the noise.
+  /// Cost: 1 ms for 800 × 600 with noise, 4 ms more with blur; 30 ms for the first image.
   void apply(cv::Mat& rgb, double blur, double noise, std::uint64_t number);
 
  private:
   std::uint64_t seed_;
   double noise_ = 0;
-  cv::Mat field_;  // noise for images that begin anywhere within its margin
+  cv::Mat field_;  // noise; an image takes a random part of it
 };
 
 }  // namespace hc::room

@@ -96,7 +96,7 @@ TEST_F(Room, every_marker_is_seen_from_the_neck) {
     const double z = (T_world_left.inverse() * p).z();
     EXPECT_NEAR(depth.at<float>(int(std::lround(pixel.y())), int(std::lround(pixel.x()))), z, 0.01)
         << marker.kind << " " << marker.id;
-    // It faces who looks at it.
+    // It faces the viewer.
     EXPECT_GT(marker.T_world_marker.linear().col(2).dot(p - T_world_left.translation()), 0);
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ROS 2's serialization, CDR (XCDR1, little-endian): structs to bytes and back. A struct says by
-// members() which members it has, in their order; messages.h has those of ROS. Pure.
+// ROS 2's serialization, CDR (XCDR1, little-endian), of structs. A struct lists its members in
+// order in members(); see messages.h. Pure.
 
 #include <array>
 #include <bit>
@@ -20,21 +20,21 @@
 
 namespace hc::ros {
 
-static_assert(std::endian::native == std::endian::little, "numbers are written as they are");
+static_assert(std::endian::native == std::endian::little, "numbers are copied bytewise");
 
-/// A sequence of numbers of type T as bytes that are somebody else's: large ones are not copied.
+/// A view of a sequence of numbers of type T, to avoid copies.
 template <typename T>
 struct Numbers {
   std::span<const std::byte> bytes;
 };
 
-/// A string that is somebody else's, and not copied.
+/// A view of a string.
 struct Characters {
   std::string_view text;
 };
 
-/// A serialized message in pieces, to be written one after the other. `body` is in place, where the
-/// struct had it; the others live as long as their writer and until its next write().
+/// A serialized message in pieces, to be written in order. `body` views the data of the message;
+/// the others are valid until the next write() or the end of their writer.
 struct Pieces {
   std::span<const std::byte> head, body, tail;
   [[nodiscard]] std::size_t size() const { return head.size() + body.size() + tail.size(); }
@@ -52,11 +52,11 @@ concept Number = std::is_arithmetic_v<T>;
 
 }  // namespace internal
 
-/// Writes messages. Keeps its memory from one message to the next.
+/// Writes messages; reuses its memory.
 class CdrWriter {
  public:
-  /// The bytes of a message, its encapsulation header (4 bytes) before them. More than one member
-  /// of Numbers or Characters is a bug.
+  /// Serializes a message, with its encapsulation header (4 bytes). At most one member may be
+  /// Numbers or Characters (checked).
   template <internal::HasMembers T>
   Pieces write(const T& message) {
     buffer_.assign(4, std::byte{0});
@@ -125,17 +125,16 @@ class CdrWriter {
 
   std::vector<std::byte> buffer_;
   std::span<const std::byte> body_;
-  std::size_t split_ = kNone;  // of buffer_, where the body is
+  std::size_t split_ = kNone;  // position of the body in buffer_
 };
 
-/// Reads one message. What is hostile costs no more memory than in proportion to its bytes.
+/// Reads one message. Memory is at most proportional to the input, even if that is hostile.
 class CdrReader {
  public:
-  /// @param bytes  a message with its encapsulation header. Bytes behind it are ignored, since
-  ///   middleware pads. Numbers and Characters of the message view them.
+  /// @param bytes  a message with its encapsulation header, viewed by Numbers and Characters of the
+  ///   result. Bytes behind it are ignored, since middleware pads.
   ///
-  /// Errors: Unsupported (big-endian, or another encoding than XCDR1); Malformed (too short; a
-  /// string without its zero byte).
+  /// Errors: Unsupported (not little-endian XCDR1); Malformed (too short; a string without a NUL).
   template <internal::HasMembers T>
   static Result<T> read(std::span<const std::byte> bytes) {
     if (bytes.size() < 4) return Error{Code::Malformed, "CDR: no encapsulation header"};
@@ -153,7 +152,7 @@ class CdrReader {
  private:
   explicit CdrReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
-  /// The next bytes; empty, and wrong, where there are not so many.
+  /// The next bytes; empty, with an error, if there are fewer.
   std::span<const std::byte> take(std::uint64_t size) {
     if (wrong_ == nullptr && size > bytes_.size() - at_) wrong_ = "the message ends too early";
     if (wrong_ != nullptr) return {};
@@ -180,7 +179,7 @@ class CdrReader {
   void get(Characters& characters) {
     const std::uint32_t length = get_length();
     const auto bytes = take(length);
-    if (bytes.empty()) return;  // some writers have no zero byte in an empty string
+    if (bytes.empty()) return;  // some writers omit the zero byte of an empty string
     if (bytes.back() != std::byte{0}) wrong_ = "a string has no zero byte at its end";
     characters.text = {reinterpret_cast<const char*>(bytes.data()), bytes.size() - 1};
   }
@@ -213,7 +212,7 @@ class CdrReader {
     std::apply([this](auto&... member) { (this->get(member), ...); }, T::members(message));
   }
 
-  std::span<const std::byte> bytes_;  // behind the header, from where alignment counts
+  std::span<const std::byte> bytes_;  // after the header, where alignment starts
   std::size_t at_ = 0;
   const char* wrong_ = nullptr;
 };

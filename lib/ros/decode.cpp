@@ -23,13 +23,13 @@ Error malformed(std::string why) {
   return {Code::Malformed, std::move(why)};
 }
 
-/// Room for a message of a port's type. Errors: TooLarge.
+/// An empty message of a port's type. Errors: TooLarge.
 Result<Draft> draft_for(const PortType& port, std::uint64_t width, std::uint64_t height,
                         std::int64_t time) {
   constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
   if (width > kMost || height > kMost)
     return Error{Code::TooLarge,
-                 "its matrix is " + std::to_string(width) + " x " + std::to_string(height)};
+                 "matrix of " + std::to_string(width) + " x " + std::to_string(height)};
   Header header;
   header.info = port.info;
   header.width = static_cast<std::int32_t>(width);
@@ -39,7 +39,7 @@ Result<Draft> draft_for(const PortType& port, std::uint64_t width, std::uint64_t
   return Draft::make(header);
 }
 
-/// A table or a pose: rows of numbers.
+/// A table or pose from its numbers, row by row.
 Result<Message> matrix_of(const PortType& port, std::uint64_t width, std::uint64_t height,
                           std::int64_t time, std::span<const double> numbers) {
   auto draft = HC_TRY(draft_for(port, width, height, time));
@@ -47,7 +47,7 @@ Result<Message> matrix_of(const PortType& port, std::uint64_t width, std::uint64
   return std::move(draft).finish();
 }
 
-/// Numbers that may stand anywhere.
+/// An unaligned number.
 template <typename T>
 T number_at(std::span<const std::byte> bytes, std::size_t at) {
   T number;
@@ -55,7 +55,7 @@ T number_at(std::span<const std::byte> bytes, std::size_t at) {
   return number;
 }
 
-/// Where the colours of a pixel are.
+/// The layout of a pixel.
 struct Pixel {
   std::string_view encoding;
   std::size_t bytes, red, green, blue;
@@ -66,22 +66,22 @@ constexpr Pixel kPixels[] = {{"rgb8", 3, 0, 1, 2},
                              {"bgra8", 4, 2, 1, 0},
                              {"mono8", 1, 0, 0, 0}};
 
-/// Whether rows of pixels are all there.
+/// Checks the size of the pixel data.
 Status check_rows(const Image& image, std::size_t pixel) {
   const std::uint64_t row = std::uint64_t{image.width} * pixel;
   if (image.step < row)
     return malformed("a row of " + std::to_string(image.width) + " pixels has a step of " +
                      std::to_string(image.step) + " bytes");
   if (std::uint64_t{image.step} * image.height > image.data.bytes.size())
-    return malformed(std::to_string(image.height) + " rows of " + std::to_string(image.step) +
-                     " bytes are promised, " + std::to_string(image.data.bytes.size()) +
-                     " bytes are there");
+    return malformed("expected " + std::to_string(image.height) + " rows of " +
+                     std::to_string(image.step) + " bytes, got " +
+                     std::to_string(image.data.bytes.size()) + " bytes");
   return {};
 }
 
 Error unknown_encoding(const Image& image, const char* known) {
   return {Code::Unsupported, "image encoding \"" + image.encoding.substr(0, 32) +
-                                 "\" is not taken; " + known + " are"};
+                                 "\" is not supported; " + known + " are"};
 }
 
 Result<Message> decode_colours(const Image& image, const PortType& port) {
@@ -112,7 +112,7 @@ Result<Message> decode_colours(const Image& image, const PortType& port) {
 Result<Message> decode_depth(const Image& image, const PortType& port) {
   const bool is_metres = image.encoding == "32FC1";
   if (!is_metres && image.encoding != "16UC1") return unknown_encoding(image, "32FC1 and 16UC1");
-  if (image.is_bigendian != 0) return Error{Code::Unsupported, "its numbers are big-endian"};
+  if (image.is_bigendian != 0) return Error{Code::Unsupported, "big-endian numbers"};
   const std::size_t size = is_metres ? sizeof(float) : sizeof(std::uint16_t);
   HC_TRY(check_rows(image, size));
   auto draft = HC_TRY(draft_for(port, image.width, image.height, nanoseconds(image.header.stamp)));
@@ -134,7 +134,7 @@ Result<Message> convert(const Image& image, const PortType& port, const Choice&)
   return decode_colours(image, port);
 }
 
-/// Width and height of a JPEG image, by its frame header (ITU-T T.81, B.2.2).
+/// Width and height of a JPEG image, from its frame header (ITU-T T.81, B.2.2).
 std::optional<std::pair<std::uint32_t, std::uint32_t>> size_of_jpeg(
     std::span<const std::byte> bytes) {
   auto byte = [&](std::size_t at) { return std::to_integer<std::uint32_t>(bytes[at]); };
@@ -156,7 +156,7 @@ Result<Message> convert(const CompressedImage& image, const PortType& port, cons
   const auto size = size_of_jpeg(image.data.bytes);
   if (!size)
     return Error{Code::Unsupported,
-                 "the compressed image, format \"" + image.format.substr(0, 32) + "\", is no JPEG"};
+                 "compressed image of format \"" + image.format.substr(0, 32) + "\" is not JPEG"};
   Message message;
   message.header.info = port.info;
   message.header.info.encoding = Encoding::Jpeg;
@@ -169,7 +169,7 @@ Result<Message> convert(const CompressedImage& image, const PortType& port, cons
 }
 
 Result<Message> convert(const PointCloud2& cloud, const PortType& port, const Choice&) {
-  if (cloud.is_bigendian) return Error{Code::Unsupported, "its numbers are big-endian"};
+  if (cloud.is_bigendian) return Error{Code::Unsupported, "big-endian numbers"};
   struct Place {
     std::uint32_t offset = 0;
     bool is_double = false;
@@ -182,24 +182,24 @@ Result<Message> convert(const PointCloud2& cloud, const PortType& port, const Ch
                                                           field->datatype == PointField::kFloat64);
     if (!is_float)
       return Error{Code::Unsupported,
-                   "its points have no " + std::string(kNames[i]) + " of float32 or float64"};
+                   "points have no " + std::string(kNames[i]) + " of float32 or float64"};
     const bool is_double = field->datatype == PointField::kFloat64;
     if (std::uint64_t{field->offset} + (is_double ? 8 : 4) > cloud.point_step)
-      return malformed("field " + std::string(kNames[i]) + " is not within a point's " +
+      return malformed("field " + std::string(kNames[i]) + " exceeds the point's " +
                        std::to_string(cloud.point_step) + " bytes");
     places[i] = {field->offset, is_double};
   }
   if (std::uint64_t{cloud.width} * cloud.point_step > cloud.row_step && cloud.height > 1)
     return malformed("a row of " + std::to_string(cloud.width) + " points has a step of " +
                      std::to_string(cloud.row_step) + " bytes");
-  // The last row need not be padded, and row_step of a single one is not set by all.
+  // The last row need not be padded, and some writers do not set row_step of a single row.
   const std::uint64_t row = std::uint64_t{cloud.width} * cloud.point_step;
   const std::uint64_t all =
       cloud.height == 0 ? 0 : (cloud.height - std::uint64_t{1}) * cloud.row_step + row;
   if (all > cloud.data.bytes.size())
-    return malformed(std::to_string(cloud.height) + " x " + std::to_string(cloud.width) +
-                     " points are promised, " + std::to_string(cloud.data.bytes.size()) +
-                     " bytes are there");
+    return malformed("expected " + std::to_string(cloud.height) + " x " +
+                     std::to_string(cloud.width) + " points, got " +
+                     std::to_string(cloud.data.bytes.size()) + " bytes");
   auto draft = HC_TRY(draft_for(port, cloud.width, cloud.height, nanoseconds(cloud.header.stamp)));
   auto to = draft.view<float>().numbers().begin();
   for (std::size_t y = 0; y < cloud.height; ++y)
@@ -214,8 +214,7 @@ Result<Message> convert(const PointCloud2& cloud, const PortType& port, const Ch
 
 Result<Message> convert(const CameraInfo& camera, const PortType& port, const Choice&) {
   const auto& p = camera.p;
-  if (!(p[0] > 0))
-    return malformed("its matrix P has no focal length: the camera is not calibrated");
+  if (!(p[0] > 0)) return malformed("matrix P has no focal length: calibrate the camera");
   const double numbers[] = {p[0], p[5], p[2], p[6], -p[3] / p[0]};
   return matrix_of(port, 5, 1, nanoseconds(camera.header.stamp), numbers);
 }
@@ -225,9 +224,9 @@ Result<Message> matrix_of(const PortType& port, const Pose& pose, std::int64_t t
   const Eigen::Quaterniond rotation(q.w, q.x, q.y, q.z);
   constexpr double kTolerance = 0.01;
   if (!(std::abs(rotation.norm() - 1) < kTolerance))
-    return malformed("its orientation is no unit quaternion");
+    return malformed("orientation is not a unit quaternion");
   if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-    return malformed("its position is not finite");
+    return malformed("position is not finite");
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = rotation.normalized().toRotationMatrix();
   T.translation() = Eigen::Vector3d(p.x, p.y, p.z);
@@ -240,13 +239,13 @@ Result<Message> convert(const PoseStamped& pose, const PortType& port, const Cho
 }
 
 Result<Message> convert(const TfMessage& message, const PortType& port, const Choice& choice) {
-  // The last is the newest.
+  // The last transform is the newest.
   const auto newest = std::find_if(
       message.transforms.rbegin(), message.transforms.rend(),
       [&](const TransformStamped& each) { return each.child_frame_id == choice.child; });
   if (newest != message.transforms.rend())
     return matrix_of(port, newest->transform, nanoseconds(newest->header.stamp));
-  return Error{Code::NotFound, "there is no frame \"" + choice.child + "\" in it"};
+  return Error{Code::NotFound, "no frame \"" + choice.child + "\" in the message"};
 }
 
 Result<Message> convert(const Twist& twist, const PortType& port, const Choice&) {
@@ -259,13 +258,13 @@ Result<Message> convert(const JointState& state, const PortType& port, const Cho
   const std::size_t count = state.name.size();
   for (const auto* list : {&state.position, &state.velocity, &state.effort})
     if (!list->empty() && list->size() != count)
-      return malformed("of " + std::to_string(count) + " joints there are " +
-                       std::to_string(list->size()) + " values");
+      return malformed("expected values of " + std::to_string(count) + " joints, got " +
+                       std::to_string(list->size()));
   std::vector<std::size_t> order;
   for (const auto& name : choice.joints) {
     const auto found = std::ranges::find(state.name, name);
     if (found == state.name.end())
-      return Error{Code::NotFound, "there is no joint \"" + name + "\" in it"};
+      return Error{Code::NotFound, "no joint \"" + name + "\" in the message"};
     order.push_back(static_cast<std::size_t>(found - state.name.begin()));
   }
   if (choice.joints.empty())
@@ -289,7 +288,7 @@ Result<Message> convert(const String& string, const PortType& port, const Choice
 Result<Message> convert(const MultiArray<double>& array, const PortType& port, const Choice&) {
   const std::uint64_t all = array.data.bytes.size() / sizeof(double);
   if (array.data_offset > all)
-    return malformed("its data begin at " + std::to_string(array.data_offset) + " of " +
+    return malformed("data begin at " + std::to_string(array.data_offset) + " of " +
                      std::to_string(all) + " numbers");
   const std::uint64_t count = all - array.data_offset;
   std::uint64_t width = count, height = 1;
@@ -299,8 +298,8 @@ Result<Message> convert(const MultiArray<double>& array, const PortType& port, c
     if (array.dim.size() == 3) width *= array.dim[2].size;  // below 2^64
     const bool fits = height == 0 ? count == 0 : count % height == 0 && count / height == width;
     if (!fits)
-      return malformed("its dimensions are " + std::to_string(height) + " x " +
-                       std::to_string(width) + ", its numbers " + std::to_string(count));
+      return malformed("expected " + std::to_string(height) + " x " + std::to_string(width) +
+                       " numbers, got " + std::to_string(count));
   }
   auto draft = HC_TRY(draft_for(port, width, height, 0));
   const auto from = array.data.bytes.subspan(array.data_offset * sizeof(double));
@@ -343,7 +342,7 @@ Result<Message> decode(Type type, std::span<const std::byte> bytes, const PortTy
     return read_as<String>(bytes, port, choice);
   if (type == Type::Float64MultiArray && is_table)
     return read_as<MultiArray<double>>(bytes, port, choice);
-  return Error{Code::Unsupported, schema(type).name + " does not become " + in_words(port)};
+  return Error{Code::Unsupported, schema(type).name + " does not convert to " + in_words(port)};
 }
 
 }  // namespace hc::ros

@@ -17,9 +17,9 @@
 namespace hc::ros {
 namespace {
 
-const PortType kRgb = rgb_image<std::uint8_t>().type, kGrey = intensity_image<std::uint8_t>().type,
+const PortType kRgb = rgb_image().type, kGrey = intensity_image().type,
                kDepth = intensity_image<float>().type, kPoints = position<float>().type,
-               kPose = transformation<double>().type, kTable = table<double>().type,
+               kPose = transformation().type, kTable = table().type,
                kText = string().type;
 const Stamp kStamp{{5, 7}, "eye"};
 constexpr std::int64_t kTime = 5'000'000'007;
@@ -63,7 +63,7 @@ TEST(Decode, depth_is_in_metres) {
 
 TEST(Decode, a_compressed_image_stays_so) {
   const std::vector<std::uint8_t> pixels(16 * 8 * 3, 200);
-  const auto jpeg = must(compress(rgb_image<std::uint8_t>(16, 8, pixels), Encoding::Jpeg));
+  const auto jpeg = must(compress(rgb_image().message(8, 16, pixels), Encoding::Jpeg));
   const auto image =
       decode(Type::CompressedImage, cdr(CompressedImage{kStamp, "jpeg", {jpeg.elements}}), kRgb);
   ASSERT_TRUE(image) << image.error().detail;
@@ -99,7 +99,7 @@ TEST(Decode, points_whatever_else_they_have) {
   cloud.data.bytes = data;
   EXPECT_EQ(numbers<float>(decode(Type::PointCloud2, cdr(cloud), kPoints)),
             (std::vector<float>{1, 2, 3, 11, 2, 13}));
-  cloud.fields[0].offset = 13;  // its end is behind the point's
+  cloud.fields[0].offset = 13;  // exceeds the point
   EXPECT_EQ(decode(Type::PointCloud2, cdr(cloud), kPoints).error().code, Code::Malformed);
   cloud.fields[0].offset = 0;
   cloud.height = 2;
@@ -148,7 +148,7 @@ TEST(Decode, small_ones) {
             (std::vector<double>{1, 2, 3, 4, 5, 6}));
   const auto text = decode(Type::String, cdr(String{{"zwölf"}}), kText);
   ASSERT_TRUE(text);
-  EXPECT_EQ(text->characters(), "zwölf");
+  EXPECT_EQ(text->text(), "zwölf");
   EXPECT_TRUE(decode(Type::String, cdr(String{{""}}), kText));
   CameraInfo camera;
   camera.p = {500, 0, 320, -60, 0, 510, 240, 0, 0, 0, 1, 0};

@@ -27,7 +27,7 @@ Stamp stamp_of(const Encoder& encoder, const Message& message, std::int32_t coor
   return {time_of(message.header.time), encoder.frame_id(coord)};
 }
 
-/// What ROS calls the pixels of an image; empty: it has no word for them.
+/// ROS's name of an image's pixels; empty: none.
 std::string_view pixel_encoding(const Info& info, std::int32_t coord) {
   struct Names {
     Scalar scalar;
@@ -56,7 +56,7 @@ bool is_metric(std::int32_t coord) {
   return known != nullptr ? known->is_frame : coord >= 100 && coord < 1000;
 }
 
-/// The numbers of a plain message.
+/// The numbers of an uncompressed message.
 std::vector<double> numbers_of(const Message& message) {
   return visit_scalar(message.header.info.scalar, [&](auto zero) {
     const auto numbers = message.view<decltype(zero)>()->numbers();
@@ -83,7 +83,7 @@ std::int16_t sample_of(auto sample) {
   }
 }
 
-/// Samples a second that a coordinate system says [Hz]; 0: none.
+/// The sample rate of a coordinate system [Hz]; 0: none.
 std::uint32_t sample_rate(std::int32_t coord) {
   constexpr std::uint32_t kRates[] = {8000, 16000, 22050, 44100, 48000};
   if (coord < Coord::kSound8k || coord > Coord::kSound48k) return 0;
@@ -107,7 +107,7 @@ Pieces write_array(CdrWriter& writer, const Message& message) {
                                     {message.elements}});
 }
 
-/// Origin and rotation of a matrix of 4 × 4, row by row.
+/// Position and rotation of a 4 × 4 matrix in row-major order.
 Pose pose_of(std::span<const double> n) {
   Eigen::Matrix3d rotation;
   rotation << n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10];
@@ -365,7 +365,7 @@ Result<Pieces> Encoder::encode_camera(const Message& message) {
 
 Result<Pieces> Encoder::encode_text(const Message& message) {
   if (message.header.info.type != MatrixType::String) return unfit(Type::String, message);
-  std::string_view text = message.characters();
+  std::string_view text = message.text();
   if (message.header.height > 1 && !message.header.empty()) {  // R32
     const auto width = static_cast<std::size_t>(message.header.width);
     text_.clear();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Messages as messages of ROS 2: which type a port's become, and their bytes in CDR. Pure.
+// Converts MTP messages to messages of ROS 2: their types, and their bytes in CDR. Pure.
 //
 //     ros::Encoder encoder;
-//     ros::Type type = *ros::type_for(port);            // fixed, as the schema of a topic is
-//     auto pieces = encoder.encode(type, message);      // the elements in place where they fit
+//     ros::Type type = *ros::type_for(port);        // fixed, like the schema of a topic
+//     auto pieces = encoder.encode(type, message);  // views the elements if possible
 
 #include <array>
 #include <cstdint>
@@ -24,32 +24,32 @@
 
 namespace hc::ros {
 
-/// The type that messages of a type become, whatever of a shape it does not fix; nothing for those
-/// in encoding zstd, which are to be expanded first.
+/// The ROS type for messages of a port's type, valid for every shape it allows; nullopt for
+/// encoding zstd, which must be expanded first.
 ///
-/// | messages | become |
+/// | MTP | ROS |
 /// |---|---|
 /// | jpeg | CompressedImage |
 /// | rgb_image, intensity_image; not of u32, u64, i64 | Image |
 /// | position, 1 × 1 of 3 components | PoseStamped without a rotation |
-/// | position else; vector_field of 3 or 6 floats in a metric frame | PointCloud2 |
+/// | other position; vector_field of 3 or 6 floats in a metric frame | PointCloud2 |
 /// | rotation, coord gaze | JointState: roll, tilt, pan |
 /// | rotation, 1 × 1 or any shape | PoseStamped at the origin |
-/// | transformation, 4 × 4 | PoseStamped, in the frame that it leads to |
+/// | transformation, 4 × 4 | PoseStamped, in its target frame |
 /// | string | String |
 /// | sound | RawAudio, pcm-s16 |
 /// | table of 5 × 1 f64, coord left_rectified | CameraInfo (R45) |
-/// | all else | Float64MultiArray, or that of its scalar |
+/// | anything else | Float64MultiArray, or that of its scalar |
 ///
-/// Twist, TfMessage and Log are nobody's by themselves.
+/// Twist, TfMessage and Log are never chosen.
 std::optional<Type> type_for(const PortType& port);
-/// The same of an output, expanded where it is compressed; nothing where it may send anything.
-/// @param jpeg  images of u8 are made CompressedImage.
+/// The ROS type for an output, expanded if compressed; nullopt for an output of any type.
+/// @param jpeg  images of u8 become CompressedImage.
 std::optional<Type> type_for(const PortDescription& output, bool jpeg = false);
-/// The same of a message alone.
+/// The ROS type for a single message.
 std::optional<Type> type_for(const Header& header);
 
-/// A joint of the frames of a graph at some time: T_parent_child.
+/// A joint of the frames of a graph at a time: T_parent_child.
 struct Joint {
   std::string parent, child;
   std::array<double, 3> translation{};            ///< [m]
@@ -57,26 +57,26 @@ struct Joint {
   std::int64_t time = 0;                          ///< [ns since the Unix epoch]
 };
 
-/// Writes messages in CDR. What it gives is valid until it is called again, and no longer than the
-/// message. An object is used by one thread.
+/// Writes messages in CDR. Results are valid until the next call, and no longer than the message.
+/// Not thread-safe.
 class Encoder {
  public:
-  /// Names of frames by their number; the others have those of R44, and numbers as text.
+  /// Names of frames, by number; others have the names of R44, or their number as text.
   std::map<std::int32_t, std::string> frames;
-  /// Size of the images that a CameraInfo is of; 0: unknown. [px]
+  /// Size of the images described by a CameraInfo; 0: unknown. [px]
   std::uint32_t camera_width = 0, camera_height = 0;
-  /// Names of the joints that are the columns of a table which is to be a JointState: rows of
-  /// positions, velocities and efforts, as far as there are.
+  /// Joint names of the columns of a table that becomes a JointState; its rows are positions,
+  /// velocities and efforts, if present.
   std::vector<std::string> joints;
 
-  /// A message as one of `type`. Images, points and so on are `body`, where they were.
+  /// Converts a message to `type`. Elements of images, points and so on are `body`, not copied.
   ///
-  /// Errors: Unsupported (another matrix, shape or encoding than the type can hold).
-  /// Cost: no copy of large elements but those of sound that is not of i16.
+  /// Errors: Unsupported (a matrix, shape or encoding that does not fit the type).
+  /// Cost: copies no large elements, except sound that is not i16.
   Result<Pieces> encode(Type type, const Message& message);
 
-  /// The same of a message in any encoding: expanded where it is compressed, and made JPEG where it
-  /// is to be a CompressedImage; a Matrix has it as it came.
+  /// Converts a message in any encoding: expands or, for CompressedImage, compresses it first; a
+  /// Matrix keeps its encoding.
   ///
   /// Errors: as encode(), expand() and compress().
   Result<Pieces> encode_any(Type type, const Message& message);
@@ -88,11 +88,11 @@ class Encoder {
   /// @param time  [ns since the Unix epoch]
   Pieces encode_log(std::int64_t time, const LogLine& line);
 
-  /// An MTP message whole (`offset` 0), or what its other form lacks, whose bytes from `offset` on
-  /// are its elements.
+  /// A whole MTP message (`offset` 0), or the companion of a message of another type, in which the
+  /// elements start at `offset`.
   Pieces encode_matrix(const Message& message, std::uint32_t offset = 0);
 
-  /// Name of a coordinate system as a frame_id; that of an image is its camera's frame.
+  /// The frame_id of a coordinate system; for images, the frame of their camera.
   [[nodiscard]] std::string frame_id(std::int32_t coord) const;
 
  private:
@@ -111,7 +111,7 @@ class Encoder {
   std::vector<std::byte> samples_;  // of sound in another scalar
 };
 
-/// Seconds and nanoseconds of a time [ns since the Unix epoch], which ends in 2038 there.
+/// Converts a time [ns since the Unix epoch]; ROS times end in 2038.
 Time time_of(std::int64_t nanoseconds);
 
 }  // namespace hc::ros

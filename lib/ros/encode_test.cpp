@@ -16,19 +16,18 @@ template <typename T>
 Message message_of(MatrixType type, int components, std::int32_t width, std::int32_t height,
                    std::vector<T> numbers, std::int32_t coord = 0) {
   Draft draft =
-      Draft::make({type, static_cast<std::uint8_t>(components), scalar_for<T>(), Encoding::Binary},
-                  width, height);
+      Draft::make({type, static_cast<std::uint8_t>(components), scalar_for<T>(), Encoding::Binary}, height, width);
   draft.header.coord = coord;
   draft.header.time = 1'763'683'200'123'456'789;
   std::ranges::copy(numbers, draft.view<T>().numbers().begin());
   return std::move(draft).finish();
 }
 
-/// The message as one of the type that it becomes, read again.
+/// Converts a message, and parses the result.
 template <typename T>
 T become(const Message& message, Type expected, Encoder encoder = {}) {
   EXPECT_EQ(type_for(message.header), expected);
-  static std::vector<std::byte> bytes;  // what is read views them
+  static std::vector<std::byte> bytes;  // viewed by the result
   bytes = bytes_of(must(encoder.encode(expected, message)));
   return *CdrReader::read<T>(bytes);
 }

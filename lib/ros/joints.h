@@ -17,18 +17,18 @@ namespace hc::ros {
 
 struct GraphJoints {
   hc::frames::GraphFrames frames;
-  std::map<std::int32_t, std::string> names;  ///< of frames, by their number
-  std::vector<Joint> fixed;                   ///< those that do not move
-  std::string root;                           ///< the frame that has no parent; empty: no frames
+  std::map<std::int32_t, std::string> names;  ///< of frames, by number
+  std::vector<Joint> fixed;                   ///< joints that do not move
+  std::string root;                           ///< the frame without a parent; empty: no frames
 
   /// @param text  of a module's parameter `frames` (spec/graph.md, G31).
   /// Errors: as frames::read_frames().
   static Result<GraphJoints> read(const std::string& text);
 
-  /// Whether there are joints that poses of an output move, "MODULE.PORT".
+  /// Whether poses of an output, "MODULE.PORT", move any joint.
   [[nodiscard]] bool are_moved_by(std::string_view output) const;
 
-  /// The joint that a pose moves. Errors: as frames::GraphFrames::mover_of() and rigid_of().
+  /// The joint moved by a pose. Errors: as frames::GraphFrames::mover_of() and rigid_of().
   [[nodiscard]] Result<Joint> joint_of(const Message& pose) const;
 };
 

@@ -27,8 +27,7 @@ TEST(GraphJoints, are_fixed_or_moved) {
 TEST(GraphJoints, a_pose_moves_the_one_that_it_is_of) {
   const auto joints = must(GraphJoints::read(kFrames));
   const std::array<double, 16> T = {0, -1, 0, 0.5, 1, 0, 0, 0, 0, 0, 1, 0.25, 0, 0, 0, 1};
-  hc::Message pose =
-      hc::make_message(hc::transformation<double>(4, 4), 4, 4, std::span<const double>(T));
+  hc::Message pose = hc::transformation().message(T);
   pose.header.src = 12;
   pose.header.coord = 2003;
   pose.header.time = 77;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Messages of ROS 2 as structs, as far as ours become such; schema.h has the same as text.
+// The messages of ROS 2 that MTP messages convert to, as structs; schema.h has their definitions.
 // Sources: ros2/common_interfaces, ros2/rcl_interfaces, ros2/geometry2; foxglove/foxglove-sdk.
 
 #include <array>
@@ -36,7 +36,7 @@ struct Quaternion {
   static auto members(auto& m) { return std::tie(m.x, m.y, m.z, m.w); }
 };
 
-/// geometry_msgs/msg/Pose and Transform, which are the same bytes
+/// geometry_msgs/msg/Pose and Transform, which have the same layout
 struct Pose {
   Vector3 position;
   Quaternion orientation;
@@ -152,7 +152,7 @@ struct MultiArrayDimension {
   static auto members(auto& m) { return std::tie(m.label, m.size, m.stride); }
 };
 
-/// std_msgs/msg/Float64MultiArray and the others of numbers
+/// std_msgs/msg/Float64MultiArray and those of other scalars
 template <typename T>
 struct MultiArray {
   std::vector<MultiArrayDimension> dim;
@@ -185,12 +185,12 @@ struct Log {
   }
 };
 
-/// hypercolumn_msgs/msg/Matrix: an MTP message whole, or what a message of another type, which
-/// is its companion, lacks of it.
+/// hypercolumn_msgs/msg/Matrix: a whole MTP message, or its header with a companion message of
+/// another type that contains the elements.
 struct Matrix {
-  std::string header;        ///< its header line without the line end
+  std::string header;        ///< the header line without the line end
   std::uint32_t offset = 0;  ///< of the elements in the companion; 0: they are here
-  std::uint32_t size = 0;    ///< of the elements there [byte]
+  std::uint32_t size = 0;    ///< of the elements in the companion [byte]
   Numbers<std::uint8_t> elements;
   static auto members(auto& m) { return std::tie(m.header, m.offset, m.size, m.elements); }
 };

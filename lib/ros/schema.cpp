@@ -10,13 +10,13 @@
 namespace hc::ros {
 namespace {
 
-/// A definition, without what it is made of.
+/// A definition, without those of its parts.
 struct Definition {
-  std::string_view name;  ///< "sensor_msgs/Image"
+  std::string_view name;  ///< such as "sensor_msgs/Image"
   std::string_view text;
 };
 
-/// What the types are made of.
+/// Types that occur only as parts of others.
 constexpr Definition kParts[] = {
     {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
     {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
@@ -87,7 +87,7 @@ const Definition& find_part(std::string_view name) {
   return *found;
 }
 
-/// Adds the names that a definition is made of, before what these are made of.
+/// Adds the names of a definition's parts, each before its own parts.
 void add_parts(const Definition& definition, std::vector<std::string_view>& parts) {
   std::vector<std::string_view> own;
   for (std::string_view rest = definition.text; !rest.empty();) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The types of ROS 2 that messages become, by name and as text (`ros2msg`). Pure.
+// The types of ROS 2 that messages convert to, with their names and definitions (`ros2msg`). Pure.
 
 #include <cstdint>
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace hc::ros {
 
-/// A message type of ROS 2. The arrays of numbers are in the order of hc::Scalar.
+/// A message type of ROS 2. The arrays are in the order of hc::Scalar.
 enum class Type : std::uint8_t {
   UInt8MultiArray,
   Int8MultiArray,
@@ -36,18 +36,17 @@ enum class Type : std::uint8_t {
   Matrix,
 };
 
-/// How a type is described to others.
 struct Schema {
   Type type;
-  std::string name;  ///< "sensor_msgs/msg/Image"
-  std::string text;  ///< its definition, and behind a line of 80 `=` each that it is made of
+  std::string name;  ///< such as "sensor_msgs/msg/Image"
+  std::string text;  ///< its definition, then those of its parts, each after a line of 80 `=`
 };
 
-/// All of them, in the order of Type.
+/// All schemas, in the order of Type.
 std::span<const Schema> schemas();
 const Schema& schema(Type type);
 
-/// The type of that name; nothing where it is none of these.
+/// The type of that name; nullopt if unknown.
 std::optional<Type> type_of(std::string_view name);
 
 }  // namespace hc::ros

@@ -25,7 +25,7 @@ struct Capture::Queue {
   std::deque<Heard> pieces;
   std::size_t most = 1;
   std::int64_t lost = 0;
-  Event event;  // while there are any
+  Event event;  // raised while there are pieces
   SystemClock clock;
 
   void put(const void* bytes, std::size_t size) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A microphone, by SDL2.
+// A microphone, with SDL2.
 
 #include <chrono>
 #include <cstdint>
@@ -15,34 +15,34 @@
 
 namespace hc::audio {
 
-/// A piece of what was heard.
+/// A piece of recorded sound.
 struct Heard {
   std::vector<std::int16_t> samples;  ///< channels next to one another
-  std::int64_t time = 0;              ///< when the last frame was there [ns since the Unix epoch]
+  std::int64_t time = 0;              ///< of the last frame [ns since the Unix epoch]
 };
 
 /// Records in pieces of one length. For one thread.
 class Capture {
  public:
-  /// @param device  its name as SDL gives it; "" the default one.
+  /// @param device  SDL's name; "": the default.
   /// @param frames  of a piece.
   ///
-  /// Errors: System (no such device, no sound here).
+  /// Errors: System (no such device, no sound system).
   static Result<std::unique_ptr<Capture>> open(const std::string& device, const Format& format,
                                                int frames);
   Capture(const Capture&) = delete;
   Capture& operator=(const Capture&) = delete;
   ~Capture();
 
-  /// Waits for the next piece; nothing when `timeout` has passed or `stop` is readable. The pieces
-  /// of 2 s wait to be taken; then the oldest are dropped.
+  /// Waits for the next piece; nothing on timeout or if `stop` is readable. The queue holds 2 s;
+  /// then the oldest pieces are dropped.
   std::optional<Heard> take(std::chrono::milliseconds timeout, int stop = -1);
 
   /// For poll(): readable while there are pieces.
   [[nodiscard]] int descriptor() const;
   /// False once the device is disconnected.
   [[nodiscard]] bool is_there() const;
-  /// Pieces that were lost so far.
+  /// Pieces dropped so far.
   [[nodiscard]] std::int64_t lost() const;
 
  private:

@@ -44,7 +44,7 @@ void Converter::put_any(std::span<const T> samples) {
 
 void Converter::put(std::span<const float> samples) {
   HC_CHECK(scalar_ == Scalar::F32 && !is_finished_);
-  // One number that is none would spoil its neighbours when the rate is changed.
+  // A NaN would spoil its neighbours in resampling.
   std::vector<float> clean(samples.begin(), samples.end());
   for (float& each : clean) each = std::isnan(each) ? 0 : std::clamp(each, -1.0F, 1.0F);
   put_any<float>(clean);
@@ -60,7 +60,7 @@ void Converter::put(std::span<const std::int16_t> samples) {
 void Converter::finish() {
   if (is_finished_) return;
   is_finished_ = true;
-  // SDL keeps about the last 20 ms back, even when flushed; so silence pushes them out.
+  // SDL holds back about 20 ms, even when flushed; appended silence pushes them out.
   const auto size = static_cast<std::size_t>(from_.rate / 5 * from_.channels);
   if (scalar_ == Scalar::F32)
     put_any<float>(std::vector<float>(size));

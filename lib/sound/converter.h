@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Sound of one format as sound of another: rate, channels, scalar. For one thread at a time.
+// Converts sound between formats: rate, channels, scalar. For one thread at a time.
 
 #include <cstdint>
 #include <memory>
@@ -12,8 +12,7 @@
 
 namespace hc::audio {
 
-/// Takes f32 or i16, gives i16. What is put in comes out in pieces, a little later where the rates
-/// differ.
+/// Converts f32 or i16 to i16. If the rates differ, the output is slightly delayed.
 class Converter {
  public:
   enum class Scalar { I16, F32 };
@@ -25,13 +24,12 @@ class Converter {
     return scalar == scalar_ && from == from_;
   }
 
-  /// @param samples  channels next to one another, −1 … 1; what is beyond is cut off, what is no
-  /// number is silence.
+  /// @param samples  interleaved channels, clipped to −1 … 1; NaN is silence.
   void put(std::span<const float> samples);
   void put(std::span<const std::int16_t> samples);
-  /// Says that nothing follows, so that take() gives the rest; the last that is done.
+  /// Ends the input, so that take() returns the rest; no put() may follow.
   void finish();
-  /// What has been converted, whole frames.
+  /// Takes the converted samples, in whole frames.
   std::vector<std::int16_t> take();
 
  private:

@@ -17,7 +17,7 @@ using hc::audio::Converter;
 using hc::audio::Format;
 using Scalar = Converter::Scalar;
 
-/// A second of a tone of 400 Hz, in all channels.
+/// One second of a 400 Hz tone in all channels.
 std::vector<std::int16_t> tone(const Format& format) {
   std::vector<std::int16_t> samples;
   for (int i = 0; i < format.rate; ++i)
@@ -36,7 +36,7 @@ TEST(Converter, a_tone_stays_a_tone_at_all_rates) {
         converter.finish();
         const auto got = converter.take();
         EXPECT_NEAR(static_cast<double>(got.size()), to, 2) << from << " to " << to;
-        // By its crossings of zero, and its loudness, away from the ends.
+        // Frequency by zero crossings, and loudness, away from the ends.
         int crossings = 0;
         double energy = 0;
         const auto tenth = static_cast<std::size_t>(to / 10);

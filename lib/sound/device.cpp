@@ -15,11 +15,11 @@ namespace {
 
 void say_nothing(const char*, int, const char*, int, const char*, ...) {}
 
-/// ALSA, where SDL uses it, prints several lines whenever a device is not there; SDL_GetError()
-/// says that too.
+/// Silences ALSA, which prints several lines for a missing device; SDL_GetError() reports it, too.
 void hush_alsa() {
   using SetHandler = int (*)(decltype(&say_nothing));
-  static void* const alsa = ::dlopen("libasound.so.2", RTLD_LAZY);  // as SDL does, if it is there
+  static void* const alsa =
+      ::dlopen("libasound.so.2", RTLD_LAZY);  // the one SDL uses, if installed
   if (alsa == nullptr) return;
   if (auto set = reinterpret_cast<SetHandler>(::dlsym(alsa, "snd_lib_error_set_handler")))
     set(say_nothing);
@@ -29,7 +29,7 @@ void hush_alsa() {
 
 Result<AudioSystem> start_audio() {
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
-  // It would print; what fails is in SDL_GetError() too.
+  // SDL would print errors, which are in SDL_GetError(), too.
   SDL_LogSetOutputFunction([](void*, int, SDL_LogPriority, const char*) {}, nullptr);
   hush_alsa();
   if (SDL_InitSubSystem(SDL_INIT_AUDIO) != 0)

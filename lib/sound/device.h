@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What playing and recording by SDL2 share: SDL's audio, restarted for each device, so that a
-// restarted sound server is found; and when to try again. Which driver is used says
-// SDL_AUDIODRIVER (pulseaudio, alsa, disk, dummy, …).
+// Shared by playing and recording with SDL2: SDL's audio, restarted for each device to find a
+// restarted sound server. SDL_AUDIODRIVER selects the driver (pulseaudio, alsa, disk, dummy, …).
 
 #include <algorithm>
 #include <chrono>
@@ -17,19 +16,19 @@
 
 namespace hc::audio {
 
-/// SDL's audio while it is held. One at a time in a process.
+/// Holds SDL's audio. One at a time per process.
 using AudioSystem = std::shared_ptr<void>;
-/// Errors: System (there is no sound here).
+/// Errors: System (no sound system).
 Result<AudioSystem> start_audio();
 
-/// Gives sound that comes in pieces the time of its first frame: counts frames, and starts over
-/// where the count and the clock differ by more than 50 ms. Pure.
+/// Computes the time of the first frame of each piece of sound by counting frames; restarts if
+/// count and clock differ by more than 50 ms. Pure.
 class FrameClock {
  public:
   explicit FrameClock(int rate) : rate_(rate) {}
   /// @param frames  in this piece.
-  /// @param now  when its last frame was there. [ns since the Unix epoch]
-  /// @returns  when its first frame was. [ns since the Unix epoch]
+  /// @param now  time of its last frame [ns since the Unix epoch].
+  /// @returns  time of its first frame [ns since the Unix epoch].
   std::int64_t stamp(std::int64_t frames, std::int64_t now);
 
  private:

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// With SDL's drivers that need no device: disk writes what is played to a file, and reads what is
-// recorded from one.
+// Uses SDL drivers without a device: `disk` plays to a file and records from one.
 #include <sound/device.h>
 
 #include <unistd.h>
@@ -44,7 +43,7 @@ TEST_F(Device, what_is_played_arrives) {
   playback->put(samples);
   EXPECT_GT(playback->waiting(), 0);
   while (playback->waiting() > 0) std::this_thread::yield();
-  playback.reset();  // writes what the device has
+  playback.reset();  // flushes the device
   const std::string bytes = hc::bytes_of(path);
   const std::string sent(reinterpret_cast<const char*>(samples.data()), 2 * samples.size());
   EXPECT_NE(bytes.find(sent), std::string::npos) << bytes.size();
@@ -108,7 +107,7 @@ TEST(FrameClock, counts_frames_and_starts_over_after_a_gap) {
   FrameClock clock(16000);
   constexpr std::int64_t kStart = 1'763'683'200'000'000'000, kPiece = 20'000'000;
   EXPECT_EQ(clock.stamp(320, kStart), kStart - kPiece);
-  // The machine is a little late and early; the sound is not.
+  // The wake-ups jitter, but the sound does not.
   EXPECT_EQ(clock.stamp(320, kStart + kPiece + 3'000'000), kStart);
   EXPECT_EQ(clock.stamp(320, kStart + 2 * kPiece - 3'000'000), kStart + kPiece);
   EXPECT_EQ(clock.stamp(320, kStart + 10 * kPiece), kStart + 9 * kPiece);

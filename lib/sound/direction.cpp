@@ -10,7 +10,7 @@ namespace hc::audio {
 namespace {
 
 constexpr double kSpeedOfSound = 343;  // in air of 20 °C [m/s]
-constexpr double kAlike = 0.5;         // least correlation of one source at both ears
+constexpr double kAlike = 0.5;         // minimum correlation of one source at both ears
 
 }  // namespace
 
@@ -25,7 +25,7 @@ Direction hear(std::span<const std::int16_t> stereo, int rate, double base) {
   for (const double sample : stereo) energy += sample * sample;
   heard.level = std::sqrt(energy / static_cast<double>(stereo.size())) / 32768;
 
-  // By how many frames the right ear is later: as far as the base allows, and one for the parabola.
+  // Maximum lag of the right ear in frames: that of the base, and one for the parabola.
   const auto most = static_cast<std::ptrdiff_t>(std::ceil(base / kSpeedOfSound * rate)) + 1;
   if (energy <= 0 || frames < 4 * most) return heard;
   std::vector<double> likeness;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How loud a piece of stereo sound is, and from which side it comes. Pure.
+// Level and direction of stereo sound. Pure.
 
 #include <cstdint>
 #include <optional>
@@ -10,14 +10,14 @@ namespace hc::audio {
 
 struct Direction {
   double level = 0;           ///< root of the mean square, both ears; 1 is full scale
-  std::optional<double> pan;  ///< > 0: from the left; nothing for what both ears hear differently
-                              ///< [rad, −π/2 … π/2]
+  std::optional<double> pan;  ///< > 0: from the left [rad, −π/2 … π/2]; nothing if
+                              ///< the ears hear different sounds
 };
 
-/// The level of a piece of sound, and its direction by the time between the ears. A source behind
-/// the head cannot be distinguished from one in front of it.
+/// The level of a piece of sound, and its direction from the delay between the ears. Cannot
+/// distinguish front and back.
 ///
-/// @param stereo  left and right in turns. @param rate  frames a second [Hz].
+/// @param stereo  left and right interleaved. @param rate  of frames [Hz].
 /// @param base  distance between the ears [m].
 /// Source: Knapp and Carter, The generalized correlation method for estimation of time delay, 1976
 /// (without weights).

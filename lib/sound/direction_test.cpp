@@ -14,7 +14,7 @@ namespace {
 constexpr int kRate = 16000;
 constexpr double kBase = 0.18;
 
-/// A chirp from a direction, as two ears get it.
+/// A chirp from a direction, as received by two ears.
 std::vector<std::int16_t> from(double pan, double loudness, double noise = 0) {
   std::mt19937 random(4);
   std::normal_distribution<double> hiss(0, noise + 1e-9);

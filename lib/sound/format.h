@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a sound is: so many sample frames a second of so many channels; and the coordinate systems
-// that say so (spec/mtp-1.md, R44). Pure.
+// Format of sound: sample rate and channels; and the coordinate systems of sample rates
+// (spec/mtp-1.md, R44). Pure.
 
 #include <array>
 #include <cstdint>
@@ -13,12 +13,12 @@ namespace hc::audio {
 inline constexpr int kMostChannels = 8;
 
 struct Format {
-  int rate = 0;      ///< sample frames a second [Hz]
+  int rate = 0;      ///< sample rate [Hz]
   int channels = 0;  ///< 1 … kMostChannels
   bool operator==(const Format&) const = default;
 };
 
-/// How long so many frames last [ns]: split, so that no product is too large within a century.
+/// Duration of a number of frames [ns]; split, so that no product overflows within a century.
 constexpr std::int64_t duration_of(std::int64_t frames, std::int64_t rate) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   return frames / rate * kSecond + frames % rate * kSecond / rate;
@@ -30,18 +30,18 @@ inline std::string text(const Format& format) {
          (format.channels == 1 ? " channel" : " channels");
 }
 
-/// The rates that have a coordinate system, 20, 21, … [Hz]
+/// The rates with a coordinate system, 20, 21, … [Hz].
 inline constexpr std::array<int, 5> kRates = {8000, 16000, 22050, 44100, 48000};
 inline constexpr std::int32_t kFirstCoord = 20;
 
-/// The rate of a coordinate system [Hz]; nothing of one that is no sound's.
+/// The rate of a coordinate system [Hz]; nothing if it is not one of sound.
 constexpr std::optional<int> rate_of(std::int32_t coord) {
   if (coord < kFirstCoord || coord >= kFirstCoord + static_cast<std::int32_t>(kRates.size()))
     return std::nullopt;
   return kRates[static_cast<std::size_t>(coord - kFirstCoord)];
 }
 
-/// The coordinate system of a rate; nothing where it has none.
+/// The coordinate system of a rate; nothing if it has none.
 constexpr std::optional<std::int32_t> coord_of(int rate) {
   for (std::size_t i = 0; i < kRates.size(); ++i)
     if (kRates[i] == rate) return kFirstCoord + static_cast<std::int32_t>(i);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Sound as messages, whose coordinate system gives the sample rate (spec/mtp-1.md, R44), and back.
-// Header only. Pure.
+// Converts sound to messages, whose coordinate system is the sample rate (spec/mtp-1.md, R44), and
+// back. Header only. Pure.
 
 #include <span>
 #include <string>
@@ -12,17 +12,17 @@
 
 namespace hc::audio {
 
-/// Sound of a rate that has a coordinate system; another one is a bug.
+/// A message of sound; its rate must have a coordinate system.
 inline MessageOf<SoundKind<std::int16_t>> message_of(std::span<const std::int16_t> samples,
                                                      const Format& format) {
   const auto coord = coord_of(format.rate);
   HC_CHECK(coord, format.rate);
-  return sound<std::int16_t>(format.channels, samples).in(*coord);
+  return sound(format.channels).in(*coord).message(samples);
 }
 
 /// The format of a message of sound.
 ///
-/// Errors: Unsupported (a coordinate system that has no sample rate).
+/// Errors: Unsupported (a coordinate system without a sample rate).
 inline Result<Format> format_of(const Message& message) {
   const auto rate = rate_of(message.header.coord);
   if (!rate)
@@ -31,11 +31,11 @@ inline Result<Format> format_of(const Message& message) {
   return Format{*rate, message.header.info.components};
 }
 
-/// Sound of i16 and f32 in up to as many channels as can be played.
+/// Sound of i16 and f32 in up to kMostChannels channels.
 inline AnyKind any_sound() {
   AnyKind any;
   for (int channels = 1; channels <= kMostChannels; ++channels) {
-    any.types.push_back(sound<std::int16_t>(channels).type);
+    any.types.push_back(sound(channels).type);
     any.types.push_back(sound<float>(channels).type);
   }
   return any;

@@ -31,7 +31,7 @@ TEST(SoundMessage, has_the_format_that_it_was_made_of) {
 }
 
 TEST(SoundMessage, of_no_sounds_coordinate_system_has_no_format) {
-  auto found = format_of(message_of(kSome, {8000, 1}).in(hc::Coord::kText));
+  auto found = format_of(hc::sound(1).in(hc::Coord::kText).message(kSome));
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, hc::Code::Unsupported);
   EXPECT_EQ(found.error().detail, "coordinate system text has no sample rate");
@@ -44,7 +44,7 @@ TEST(SoundMessage, of_a_rate_without_a_coordinate_system_is_a_bug) {
 TEST(SoundMessage, any_is_of_either_scalar_and_of_as_many_channels_as_can_be_played) {
   const auto any = hc::audio::any_sound();
   ASSERT_EQ(any.types.size(), 16);
-  EXPECT_EQ(any.types.front().info, hc::sound<std::int16_t>(1).type.info);
+  EXPECT_EQ(any.types.front().info, hc::sound(1).type.info);
   EXPECT_EQ(any.types.back().info, hc::sound<float>(8).type.info);
 }
 

@@ -6,7 +6,7 @@
 namespace hc::audio {
 namespace {
 
-constexpr int kBuffersPerSecond = 100;  // 10 ms: how late what is put in is heard at least
+constexpr int kBuffersPerSecond = 100;  // minimum latency of 10 ms
 
 }  // namespace
 

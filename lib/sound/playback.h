@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A loudspeaker, by SDL2.
+// A loudspeaker, with SDL2.
 
 #include <cstdint>
 #include <memory>
@@ -13,24 +13,23 @@
 
 namespace hc::audio {
 
-/// Plays what it is given, one after the other, and silence between. For one thread.
+/// Plays consecutive sounds, with silence when there is none. For one thread.
 class Playback {
  public:
-  /// @param device  its name as SDL gives it; "" the default one.
+  /// @param device  SDL's name; "": the default.
   ///
-  /// Errors: System (no such device, no sound here).
+  /// Errors: System (no such device, no sound system).
   static Result<std::unique_ptr<Playback>> open(const std::string& device, const Format& format);
   Playback(const Playback&) = delete;
   Playback& operator=(const Playback&) = delete;
-  /// Plays no more than what the device has already.
+  /// Drops the queue; the device plays only the frames it already has.
   ~Playback();
 
-  /// Takes samples, channels next to one another. Never waits: who looks at waiting()
-  /// before keeps the queue short.
+  /// Queues samples, interleaved channels. Never blocks: check waiting() to keep the queue short.
   void put(std::span<const std::int16_t> samples);
-  /// Frames that have not been sent to the device yet.
+  /// Frames not yet sent to the device.
   [[nodiscard]] std::int64_t waiting() const;
-  /// False once the device is disconnected; nothing is played any more then.
+  /// False once the device is disconnected; then nothing is played.
   [[nodiscard]] bool is_there() const;
   [[nodiscard]] const Format& format() const { return format_; }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Sound in WAV files (RIFF, "Multimedia Programming Interface and Data Specifications 1.0", 1991).
-// A file is not trusted: no size in it is believed beyond the file's own.
+// Files are not trusted: sizes are checked against the file's size.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,18 +18,18 @@
 
 namespace hc::audio {
 
-/// Reads integer samples of 8, 16, 24 or 32 bits and floats of 32, plain or "extensible", as i16.
+/// Reads integer samples of 8, 16, 24 or 32 bits and 32-bit floats, plain or "extensible", as i16.
 class WavReader {
  public:
   /// Errors: NotFound (no such file), Malformed, Unsupported (another kind of samples), System.
   static Result<WavReader> open(const std::string& path);
 
   [[nodiscard]] const Format& format() const { return format_; }
-  /// Sample frames in all: those that are there, whatever the file says.
+  /// Sample frames actually in the file, whatever its header says.
   [[nodiscard]] std::int64_t frames() const { return frames_; }
 
-  /// Reads the next sample frames; their number, which is 0 at the end.
-  /// @param[out] samples  channels next to one another; room for whole frames.
+  /// Reads the next sample frames; returns their number, 0 at the end.
+  /// @param[out] samples  interleaved channels; room for whole frames.
   ///
   /// Errors: System.
   Result<std::size_t> read(std::span<std::int16_t> samples);
@@ -51,11 +51,10 @@ class WavReader {
   std::vector<std::byte> bytes_;
 };
 
-/// Writes i16. After every write() the file is a whole one, so that nothing is lost when the
-/// program dies.
+/// Writes i16. The file is valid after every write(), so nothing is lost if the program crashes.
 class WavWriter {
  public:
-  /// Begins a file as begin_file() does: never over an existing one. Errors: of begin_file().
+  /// Creates a file with begin_file(), which never overwrites one. Errors: as begin_file().
   static Result<WavWriter> create(const std::string& path, const Format& format);
 
   /// Errors: TooLarge (4 GiB are full), System.
@@ -73,7 +72,7 @@ class WavWriter {
 
   NewFile file_;
   Format format_;
-  std::int64_t begin_ = 0;  // of the sound in the file
+  std::int64_t begin_ = 0;  // offset of the header in the file
   std::int64_t data_bytes_ = 0;
 };
 

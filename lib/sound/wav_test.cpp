@@ -76,10 +76,10 @@ TEST_F(Wav, what_was_written_is_read) {
   auto writer = hc::must(WavWriter::create(path, {22050, 2}));
   EXPECT_TRUE(samples().empty());
   ASSERT_TRUE(writer.write(std::span(some).first(600)));
-  // Whole at this moment too, with the writer still at it.
+  // Also complete while the writer is still open.
   EXPECT_EQ(samples(), std::vector<std::int16_t>(some.begin(), some.begin() + 600));
   ASSERT_TRUE(writer.write(std::span(some).subspan(600)));
-  EXPECT_EQ(samples(7), some);  // three frames at once, and half a frame of room
+  EXPECT_EQ(samples(7), some);  // room for three and a half frames
   EXPECT_EQ(WavReader::open(path)->format(), (Format{22050, 2}));
   EXPECT_EQ(WavReader::open(path)->frames(), 1000);
 }
@@ -152,14 +152,14 @@ TEST_F(Wav, sizes_are_not_believed) {
 }
 
 TEST_F(Wav, refuses_what_is_none) {
-  EXPECT_EQ(why_not(""), "no WAV file");
-  EXPECT_EQ(why_not("RIFF"), "no WAV file");
-  EXPECT_EQ(why_not("RIFX" + riff("").substr(4)), "no WAV file");
+  EXPECT_EQ(why_not(""), "not a WAV file");
+  EXPECT_EQ(why_not("RIFF"), "not a WAV file");
+  EXPECT_EQ(why_not("RIFX" + riff("").substr(4)), "not a WAV file");
   EXPECT_EQ(why_not(riff("")), "has no samples");
   EXPECT_EQ(why_not(riff(format(1, 1, 8000, 16))), "has no samples");
   EXPECT_EQ(why_not(riff(chunk("data", "abcd"))), "samples before their format");
-  EXPECT_EQ(why_not(riff("LIST" + le(0xFFFFFFFF, 4))), "a part is larger than the file");
-  EXPECT_EQ(why_not(riff(chunk("fmt ", "short") + chunk("data", ""))), "its format is cut");
+  EXPECT_EQ(why_not(riff("LIST" + le(0xFFFFFFFF, 4))), "a chunk is larger than the file");
+  EXPECT_EQ(why_not(riff(chunk("fmt ", "short") + chunk("data", ""))), "the format is truncated");
   EXPECT_EQ(why_not(riff(format(1, 0, 8000, 16) + chunk("data", ""))), "0 channels, not 1 to 8");
   EXPECT_EQ(why_not(riff(format(1, 65535, 8000, 16))), "65535 channels, not 1 to 8");
   EXPECT_EQ(why_not(riff(format(1, 1, 0, 16))), "a rate of 0 Hz");
@@ -199,7 +199,7 @@ TEST_F(Wav, no_cut_and_no_flipped_bit_does_harm) {
 TEST_F(Wav, says_what_cannot_be_opened) {
   EXPECT_EQ(WavReader::open("/no/such.wav").error().text(),
             "NotFound: /no/such.wav: No such file or directory");
-  EXPECT_EQ(WavReader::open("/tmp").error().detail, "/tmp: no regular file");
+  EXPECT_EQ(WavReader::open("/tmp").error().detail, "/tmp: not a regular file");
   EXPECT_EQ(WavWriter::create("/no/such.wav", {8000, 1}).error().text(),
             "NotFound: open(/no/such.wav): No such file or directory");
 }

@@ -52,8 +52,8 @@ Header header_of(const Format& format, std::int64_t data_bytes) {
 Result<WavWriter> WavWriter::create(const std::string& path, const Format& format) {
   auto file = HC_TRY(begin_file(path));
   WavWriter writer(std::move(file), format);
-  // One that is written in place, as /dev/stdout, is open for appending, and its header is
-  // rewritten.
+  // A file written in place, such as /dev/stdout, is open for appending, which would prevent
+  // rewriting the header.
   const int descriptor = writer.file_.descriptor.get();
   ::fcntl(descriptor, F_SETFL, 0);
   writer.begin_ = std::max<std::int64_t>(0, ::lseek(descriptor, 0, SEEK_END));
@@ -81,8 +81,8 @@ Status WavWriter::write(std::span<const std::int16_t> samples) {
   const auto bytes = std::as_bytes(samples);
   const auto size = static_cast<std::int64_t>(bytes.size());
   if (size > kMostBytes - data_bytes_)
-    return Error{Code::TooLarge, path() + ": a WAV file has room for 4 GiB"};
-  // The samples first: a header that counts them is valid at every moment.
+    return Error{Code::TooLarge, path() + ": a WAV file is limited to 4 GiB"};
+  // The samples first, so that the header is valid at any time.
   HC_TRY(put(bytes, kHeaderBytes + data_bytes_));
   data_bytes_ += size;
   return put_header();

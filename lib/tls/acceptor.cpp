@@ -48,11 +48,11 @@ ConnectedSocket Acceptor::take(const LogSink& log) {
   ConnectedSocket peer;
   {
     std::lock_guard lock(mutex_);
-    if (!agreed_.empty()) {
-      peer = std::move(agreed_.front());
-      agreed_.pop_front();
+    if (!accepted_.empty()) {
+      peer = std::move(accepted_.front());
+      accepted_.pop_front();
     }
-    if (agreed_.empty()) ::eventfd_read(event_, &count);
+    if (accepted_.empty()) ::eventfd_read(event_, &count);
   }
   remarks_.flush(log);
   return peer;
@@ -61,28 +61,29 @@ ConnectedSocket Acceptor::take(const LogSink& log) {
 void Acceptor::accept_all() {
   auto has_room = [this] {
     std::lock_guard lock(mutex_);
-    return agreed_.size() < kMostAgreed;
+    return accepted_.size() < kMaxAccepted;
   };
   socket_.accept_all(
       listening_, [this](Level, std::string_view line) { say(std::string(line)); }, has_room,
-      [this](ConnectedSocket accepted) { return let_in(std::move(accepted)); });
+      [this](ConnectedSocket accepted) { return begin_handshake(std::move(accepted)); });
 }
 
-Status Acceptor::let_in(ConnectedSocket accepted) {
-  if (half_open_.size() >= kMostHalfOpen) {
-    half_open_.pop_front();
+Status Acceptor::begin_handshake(ConnectedSocket accepted) {
+  if (handshakes_.size() >= kMaxHandshakes) {
+    handshakes_.pop_front();
     if (!std::exchange(is_crowded_, true))
-      say("more than " + std::to_string(kMostHalfOpen) +
+      say("more than " + std::to_string(kMaxHandshakes) +
           " peers are in a TLS handshake; closing the oldest of them");
   }
   const int number = accepted.get();
   accepted.channel = std::make_unique<TlsChannel>(context_, number, TlsChannel::Side::Listens);
-  const auto peer = half_open_.insert(half_open_.end(),
-                                      {std::move(accepted), name_of_peer(number), Loop::Handle()});
-  auto watched = loop_->watch(number, EPOLLIN,
-                              [this, peer](std::uint32_t events) { go_on(peer, events == 0); });
+  const auto peer = handshakes_.insert(handshakes_.end(),
+                                       {std::move(accepted), name_of_peer(number), Loop::Handle()});
+  auto watched = loop_->watch(number, EPOLLIN, [this, peer](std::uint32_t events) {
+    continue_handshake(peer, events == 0);
+  });
   if (!watched) {
-    half_open_.erase(peer);
+    handshakes_.erase(peer);
     return watched.error();
   }
   peer->watch = std::move(*watched);
@@ -90,8 +91,8 @@ Status Acceptor::let_in(ConnectedSocket accepted) {
   return {};
 }
 
-/// Continues a handshake.
-void Acceptor::go_on(Peer peer, bool is_late) {
+/// Continues a handshake; ends it if it is late.
+void Acceptor::continue_handshake(Peer peer, bool is_late) {
   auto awaited = peer->socket.channel->agree();
   if (awaited && *awaited != 0 && !is_late) {
     static_cast<void>(peer->watch.want(static_cast<std::uint32_t>(*awaited)));
@@ -102,16 +103,16 @@ void Acceptor::go_on(Peer peer, bool is_late) {
     say("refused " + peer->name + ": " + awaited.error().detail);
   } else if (*awaited == 0) {
     std::lock_guard lock(mutex_);
-    agreed_.push_back(std::move(peer->socket));
+    accepted_.push_back(std::move(peer->socket));
     raise();
-    // The peer hears that it is let in, and who is asked then finds it here.
-    static_cast<void>(agreed_.back().channel->write({}));
+    // Sends the acceptance after the peer has been queued, so that take() finds it.
+    static_cast<void>(accepted_.back().channel->write({}));
   } else if (!is_crowded_) {
     say("refused " + peer->name + ": no TLS handshake within " + std::to_string(kPatience.count()) +
         " s");
   }
-  half_open_.erase(peer);
-  is_crowded_ = is_crowded_ && !half_open_.empty();
+  handshakes_.erase(peer);
+  is_crowded_ = is_crowded_ && !handshakes_.empty();
 }
 
 void Acceptor::say(std::string line) {

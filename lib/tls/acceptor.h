@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Shakes hands with those who connect to a TLS link's listening end. Internal.
+// Performs the TLS handshakes of a listening link. Internal.
 
 #include <sys/eventfd.h>
 
@@ -19,14 +19,14 @@
 
 namespace hc::tls {
 
-/// Accepts connections and agrees with their peers on TLS, in the reactor's thread: also while the
-/// link's own thread does other things. Peers that are refused, or too slow, are logged.
+/// Accepts connections and performs TLS handshakes on the reactor's thread, independent of the
+/// link's thread. Peers that are refused or too slow are logged.
 class Acceptor {
  public:
-  /// How many peers may be in a handshake; the oldest makes room for another.
-  static constexpr std::size_t kMostHalfOpen = 256;
-  /// How many may wait to be taken; others wait outside.
-  static constexpr std::size_t kMostAgreed = 64;
+  /// Maximum number of handshakes in progress; a new one replaces the oldest.
+  static constexpr std::size_t kMaxHandshakes = 256;
+  /// Maximum number of accepted peers; further ones wait in the kernel's backlog.
+  static constexpr std::size_t kMaxAccepted = 64;
   /// How long a handshake may take.
   static constexpr std::chrono::seconds kPatience{4};
 
@@ -36,39 +36,39 @@ class Acceptor {
   Acceptor(const Acceptor&) = delete;
   Acceptor& operator=(const Acceptor&) = delete;
 
-  /// Begins; gives a descriptor that is readable when take() has something to do. Errors: System.
+  /// Starts; returns a descriptor that is readable when take() has work. Errors: System.
   Result<Descriptor> start();
-  /// The next peer that has been agreed with; none (-1) when there is none. On any thread.
+  /// The next accepted peer; none (-1) if there is none. May be called on any thread.
   ConnectedSocket take(const LogSink& log);
 
  private:
-  struct HalfOpen {
+  struct Handshake {
     ConnectedSocket socket;
     std::string name;  // "192.168.1.7:40312"
     Loop::Handle watch;
   };
-  using Peer = std::list<HalfOpen>::iterator;
+  using Peer = std::list<Handshake>::iterator;
 
   void accept_all();
-  Status let_in(ConnectedSocket accepted);
-  void go_on(Peer peer, bool is_late);
+  Status begin_handshake(ConnectedSocket accepted);
+  void continue_handshake(Peer peer, bool is_late);
   void say(std::string line);
   void raise() const { ::eventfd_write(event_, 1); }
 
   ListeningSocket socket_;
   std::shared_ptr<const Context> context_;
-  std::unique_ptr<Loop> loop_;  // of the listening socket and the half-open connections
+  std::unique_ptr<Loop> loop_;  // for the listening socket and the handshakes
   Loop::Handle listening_;
-  std::list<HalfOpen> half_open_;
+  std::list<Handshake> handshakes_;
   bool is_crowded_ = false;
   internal::Remarks remarks_;
   std::mutex mutex_;
-  std::deque<ConnectedSocket> agreed_;  // with the mutex
+  std::deque<ConnectedSocket> accepted_;  // guarded by mutex_
   int event_ = -1;
   Watch watch_;
 };
 
-/// The listener at `tls:HOST:PORT`, and a socket that listens at `tls-listen:[HOST:]PORT`.
+/// Resolves `tls:HOST:PORT`, and listens at `tls-listen:[HOST:]PORT`.
 /// Errors: Invalid, NotFound, System.
 Result<internal::Peer> find_peer(const Uri& uri);
 Result<ListeningSocket> listen(const Uri& uri);

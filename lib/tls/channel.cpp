@@ -16,9 +16,9 @@ namespace hc::tls {
 namespace {
 
 constexpr std::size_t kRecordBytes = SSL3_RT_MAX_PLAIN_LENGTH;
-/// With one key at most so many records are written. AES-GCM allows 2^24.5 (RFC 8446, 5.5).
+/// Records written before the key is updated. AES-GCM allows 2^24.5 (RFC 8446, 5.5).
 constexpr std::uint64_t kRecordsOfAKey = 1 << 12;
-/// More is not kept of what a peer makes us answer while it reads nothing.
+/// Limit on replies kept for a peer that makes us answer but does not read.
 constexpr std::size_t kMostUnsent = 256 << 10;
 
 int write_bytes(BIO* bio, const char* data, int size) {
@@ -33,7 +33,7 @@ long control(BIO*, int command, long, void*) {
   return command == BIO_CTRL_FLUSH ? 1 : 0;
 }
 
-/// The way of what OpenSSL has encrypted.
+/// A BIO that passes OpenSSL's encrypted output to the channel.
 BIO* make_writing_end(TlsChannel* channel) {
   static BIO_METHOD* const kMethod = [] {
     auto* method = BIO_meth_new(BIO_get_new_index() | BIO_TYPE_SOURCE_SINK, "hypercolumn");
@@ -48,16 +48,16 @@ BIO* make_writing_end(TlsChannel* channel) {
   return bio;
 }
 
-/// Of OpenSSL's reasons, those that say that the peer has refused our key, and that it is no TLS.
+/// OpenSSL's errors when the peer has refused our key, and when it does not speak TLS.
 constexpr int kRefusals[] = {
     SSL_R_SSLV3_ALERT_BAD_CERTIFICATE,      SSL_R_SSLV3_ALERT_CERTIFICATE_UNKNOWN,
     SSL_R_SSLV3_ALERT_HANDSHAKE_FAILURE,    SSL_R_SSLV3_ALERT_UNSUPPORTED_CERTIFICATE,
     SSL_R_TLSV1_ALERT_ACCESS_DENIED,        SSL_R_TLSV1_ALERT_UNKNOWN_CA,
     SSL_R_TLSV13_ALERT_CERTIFICATE_REQUIRED};
-constexpr int kNoTls[] = {SSL_R_WRONG_VERSION_NUMBER,     SSL_R_HTTP_REQUEST,
-                          SSL_R_HTTPS_PROXY_REQUEST,      SSL_R_BAD_RECORD_TYPE,
-                          SSL_R_RECORD_LENGTH_MISMATCH,   SSL_R_PACKET_LENGTH_TOO_LONG,
-                          SSL_R_ENCRYPTED_LENGTH_TOO_LONG};
+constexpr int kNotTls[] = {SSL_R_WRONG_VERSION_NUMBER,     SSL_R_HTTP_REQUEST,
+                           SSL_R_HTTPS_PROXY_REQUEST,      SSL_R_BAD_RECORD_TYPE,
+                           SSL_R_RECORD_LENGTH_MISMATCH,   SSL_R_PACKET_LENGTH_TOO_LONG,
+                           SSL_R_ENCRYPTED_LENGTH_TOO_LONG};
 
 }  // namespace
 
@@ -69,7 +69,7 @@ TlsChannel::TlsChannel(std::shared_ptr<const Context> context, int socket, Side 
   HC_CHECK(reading_end != nullptr);
   SSL_set0_rbio(ssl_.get(), reading_end);
   SSL_set0_wbio(ssl_.get(), make_writing_end(this));
-  // Whoever asks for a ticket sees it come, and not what comes behind it.
+  // SSL_peek_ex() shall return after the server's ticket, before any data that follows it.
   SSL_clear_mode(ssl_.get(), SSL_MODE_AUTO_RETRY);
   if (side == Side::Dials)
     SSL_set_connect_state(ssl_.get());
@@ -87,30 +87,30 @@ TlsChannel& TlsChannel::of(const SSL* ssl) {
 
 Result<short> TlsChannel::agree() {
   ERR_clear_error();
-  if (state_ == State::Greets) {
+  if (state_ == State::Handshaking) {
     const int done = SSL_do_handshake(ssl_.get());
     if (done != 1) return awaited(done);
-    state_ = State::AwaitsAnswer;
+    state_ = State::AwaitingTicket;
   }
-  if (state_ == State::AwaitsAnswer) {
+  if (state_ == State::AwaitingTicket) {
     char byte = 0;
     std::size_t size = 0;
     if (side_ == Side::Dials && !is_confirmed_) {
       const int got = SSL_peek_ex(ssl_.get(), &byte, 1, &size);
       if (!is_confirmed_) {
-        if (got == 1) fail(got);  // it sends before it has accepted us
+        if (got == 1) fail(got);  // data before the ticket
         return awaited(got);
       }
     }
     SSL_set_mode(ssl_.get(), SSL_MODE_AUTO_RETRY);
-    SSL_set_read_ahead(ssl_.get(), 1);  // from here on: so that nothing is unread by now
-    state_ = State::Agreed;
+    SSL_set_read_ahead(ssl_.get(), 1);  // only now, so that no data has been read yet
+    state_ = State::Open;
   }
   if (failure_) return *failure_;
   return static_cast<short>(0);
 }
 
-/// What the handshake waits for, or why it has failed.
+/// The poll events that the handshake waits for, or the reason why it failed.
 Result<short> TlsChannel::awaited(int result) {
   const int error = SSL_get_error(ssl_.get(), result);
   if (error != SSL_ERROR_WANT_READ && error != SSL_ERROR_WANT_WRITE) fail(result);
@@ -122,24 +122,24 @@ Result<short> TlsChannel::awaited(int result) {
 std::string TlsChannel::why_refused(int result) const {
   const int reason = ERR_GET_REASON(ERR_peek_error());
   const bool is_silent = ERR_peek_error() == 0;
-  if (refused_ && !refused_->empty())
-    return "the peer's key is " + *refused_ + ", which is not the one of peer=";
-  if (reason == SSL_R_PEER_DID_NOT_RETURN_A_CERTIFICATE) return "the peer has shown no key";
+  if (refused_key_ && !refused_key_->empty())
+    return "the peer's key is " + *refused_key_ + ", not one of peer=";
+  if (reason == SSL_R_PEER_DID_NOT_RETURN_A_CERTIFICATE) return "the peer has sent no key";
   if (std::ranges::count(kRefusals, reason) > 0)
-    return "the peer has refused our key; its peer= has to name it";
+    return "the peer has refused our key; add it to the peer's peer=";
   if (reason == SSL_R_UNSUPPORTED_PROTOCOL || reason == SSL_R_TLSV1_ALERT_PROTOCOL_VERSION)
-    return "the peer does not know TLS 1.3";
-  if (std::ranges::count(kNoTls, reason) > 0) return "the peer does not speak TLS";
+    return "the peer does not support TLS 1.3";
+  if (std::ranges::count(kNotTls, reason) > 0) return "the peer does not speak TLS";
   if (is_silent || reason == SSL_R_UNEXPECTED_EOF_WHILE_READING ||
       SSL_get_error(ssl_.get(), result) == SSL_ERROR_ZERO_RETURN)
-    return "the peer disconnected during the TLS handshake; does it listen by tls-listen?";
+    return "the peer disconnected during the TLS handshake; is it a tls-listen link?";
   const char* text = ERR_reason_error_string(ERR_peek_error());
   return std::string("the TLS handshake failed: ") + (text != nullptr ? text : "unknown error");
 }
 
 void TlsChannel::fail(int result) {
   if (failure_) return;
-  if (state_ != State::Agreed) {
+  if (state_ != State::Open) {
     failure_ = Error{Code::Closed, why_refused(result)};
   } else if (send_errno_ != 0) {
     failure_ = system_error("write", "", send_errno_);
@@ -178,7 +178,7 @@ ssize_t TlsChannel::read(std::span<std::byte> space) {
   return -1;
 }
 
-/// What goes into the next record: of one part, where that fills it, else gathered.
+/// The data of the next record: in place if a part fills it, else gathered.
 std::span<const std::byte> TlsChannel::next_record(std::span<const iovec> parts, std::size_t skip) {
   record_.clear();
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -222,8 +222,9 @@ int TlsChannel::send(std::span<const char> bytes) {
     return -1;
   }
   std::size_t sent = 0;
-  // What a server says last is for whoever calls agree() to send, once it is ready for the client.
-  const bool is_held = side_ == Side::Listens && state_ == State::Greets;
+  // A server's last handshake record is held back; after agree(), write() sends it when the link is
+  // ready for the client.
+  const bool is_held = side_ == Side::Listens && state_ == State::Handshaking;
   if (!is_held && !has_unsent()) {
     const auto size = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (size < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) {
@@ -236,7 +237,7 @@ int TlsChannel::send(std::span<const char> bytes) {
   return static_cast<int>(bytes.size());
 }
 
-/// Sends what is kept; whether that was all.
+/// Sends pending bytes; returns whether all were sent.
 bool TlsChannel::flush() {
   while (has_unsent() && send_errno_ == 0) {
     const auto size = ::send(socket_, unsent_.data() + sent_, unsent_.size() - sent_,
@@ -260,7 +261,7 @@ bool TlsChannel::has_unread() const {
 }
 
 void TlsChannel::end() {
-  if (state_ != State::Agreed || std::exchange(has_ended_, true)) return;
+  if (state_ != State::Open || std::exchange(has_ended_, true)) return;
   ERR_clear_error();
   SSL_shutdown(ssl_.get());
   static_cast<void>(flush());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The bytes of one connection, encrypted by TLS. Internal; from one thread at a time.
+// A TLS-encrypted connection. Internal. Used by one thread at a time.
 
 #include <cstdint>
 #include <memory>
@@ -15,14 +15,14 @@
 
 namespace hc::tls {
 
-/// TLS over a socket. A client has agreed once the server has said that it accepts the client's
-/// key, so that one that is refused hears of it before it sends anything; the server says it by its
-/// next write(), of nothing at least.
+/// TLS over a socket. A client's handshake completes only when the server has accepted its key, so
+/// that a refused client learns of it before it sends anything. The server sends the acceptance
+/// with its next write(), which may be empty.
 class TlsChannel final : public SecureChannel {
  public:
   enum class Side { Dials, Listens };
 
-  /// @param socket  stays open as long as this; its calls do not wait.
+  /// @param socket  non-blocking, stays open as long as the channel.
   TlsChannel(std::shared_ptr<const Context> context, int socket, Side side);
   ~TlsChannel() override;
   TlsChannel(const TlsChannel&) = delete;
@@ -36,15 +36,15 @@ class TlsChannel final : public SecureChannel {
   [[nodiscard]] bool has_unsent() const override { return sent_ < unsent_.size(); }
   void end() override;
 
-  // OpenSSL calls.
+  // Callbacks from OpenSSL.
   static TlsChannel& of(const SSL* ssl);
-  void refuse(std::string fingerprint) { refused_ = std::move(fingerprint); }
+  void refuse(std::string fingerprint) { refused_key_ = std::move(fingerprint); }
   void confirm() { is_confirmed_ = true; }
-  /// Sends encrypted bytes, or keeps them; -1: there is no room, or errno says why not.
+  /// Sends or queues encrypted bytes; -1: no room, or errno has the reason.
   int send(std::span<const char> bytes);
 
  private:
-  enum class State { Greets, AwaitsAnswer, Agreed, Failed };
+  enum class State { Handshaking, AwaitingTicket, Open, Failed };
 
   Result<short> awaited(int result);
   bool flush();
@@ -55,16 +55,16 @@ class TlsChannel final : public SecureChannel {
   std::shared_ptr<const Context> context_;
   int socket_;
   Side side_;
-  State state_ = State::Greets;
+  State state_ = State::Handshaking;
   std::unique_ptr<SSL, Free<SSL_free>> ssl_;
-  std::optional<std::string> refused_;  // the key that the peer has shown
+  std::optional<std::string> refused_key_;  // fingerprint of the peer's key
   bool is_confirmed_ = false, has_ended_ = false;
   std::optional<Error> failure_;
   int send_errno_ = 0;
-  std::vector<char> unsent_;  // encrypted, from sent_ on
+  std::vector<char> unsent_;  // encrypted bytes, pending from sent_ on
   std::size_t sent_ = 0;
-  std::vector<std::byte> record_;  // what is gathered of several parts
-  std::uint64_t records_ = 0;      // written with the key there is
+  std::vector<std::byte> record_;  // gathered from several parts
+  std::uint64_t records_ = 0;      // number of records written
 };
 
 }  // namespace hc::tls

@@ -22,7 +22,7 @@ namespace hc::tls {
 namespace {
 
 constexpr std::size_t kFingerprintDigits = 64;
-/// TLS reads as much at once; a record has 16 KiB at most.
+/// Read-ahead; a TLS record has at most 16 KiB.
 constexpr std::size_t kReadBytes = 64 << 10;
 
 bool is_fingerprint(const std::string& text) {
@@ -30,8 +30,8 @@ bool is_fingerprint(const std::string& text) {
          text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
-/// In place of a chain of signatures: the peer's key is one that is known. That the peer has its
-/// private half the handshake proves.
+/// Accepts known keys in place of a chain of signatures. The handshake proves that the peer has the
+/// private key.
 int verify(X509_STORE_CTX* store, void* context) {
   const auto* certificate = X509_STORE_CTX_get0_cert(store);
   const auto* ssl = static_cast<const SSL*>(
@@ -52,7 +52,7 @@ int make_ticket(SSL*, void*) {
   return 1;
 }
 
-/// A connection is not resumed: each has a handshake of its own.
+/// Sessions are not resumed; each connection has a complete handshake.
 SSL_TICKET_RETURN ignore_ticket(SSL*, SSL_SESSION*, const unsigned char*, size_t, SSL_TICKET_STATUS,
                                 void*) {
   return SSL_TICKET_RETURN_IGNORE;
@@ -108,7 +108,8 @@ Status Context::set_up() {
   SSL_CTX_set_default_read_buffer_len(context, kReadBytes);
   SSL_CTX_set_verify(context, SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT, nullptr);
   SSL_CTX_set_cert_verify_callback(context, verify, this);
-  // A session's ticket is what a server sends last, once it has accepted the client.
+  // The session ticket is the last handshake record of a server, sent once it has accepted a
+  // client.
   SSL_CTX_set_session_cache_mode(context, SSL_SESS_CACHE_CLIENT | SSL_SESS_CACHE_NO_INTERNAL);
   SSL_CTX_sess_set_new_cb(context, note_ticket);
   SSL_CTX_set_num_tickets(context, 1);
@@ -128,9 +129,9 @@ Status Context::use_key(const std::string& path) {
       SSL_CTX_use_PrivateKey_file(get(), path.c_str(), SSL_FILETYPE_PEM) != 1 ||
       SSL_CTX_check_private_key(get()) != 1)
     return openssl_error(Code::Invalid, "key " + path +
-                                            ": no key with its certificate in PEM (remove it, and "
+                                            ": no key and certificate in PEM (remove it, and "
                                             "hc key " +
-                                            path + " makes another)");
+                                            path + " creates a new one)");
   return {};
 }
 
@@ -142,7 +143,7 @@ Status Context::add_peers(const std::string& peer) {
   auto file = open_file(peer);
   if (!file && file.error().code == Code::NotFound)
     return Error{Code::Invalid, "peer " + peer + ": neither a file nor a fingerprint, which has " +
-                                    std::to_string(kFingerprintDigits) + " digits of base 16"};
+                                    std::to_string(kFingerprintDigits) + " hexadecimal digits"};
   if (!file) return file.error();
   while (true) {
     Certificate certificate(PEM_read_bio_X509(file->get(), nullptr, nullptr, nullptr));

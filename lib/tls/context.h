@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Who one end of a TLS link is, and whom it lets in: what all its connections share. Internal.
+// The identity of one end of a TLS link and the keys it accepts, for all its connections. Internal.
 
 #include <memory>
 #include <set>
@@ -13,7 +13,6 @@
 
 namespace hc::tls {
 
-/// Deletes what OpenSSL has made.
 template <auto free>
 struct Free {
   template <typename Object>
@@ -24,25 +23,25 @@ struct Free {
 using Certificate = std::unique_ptr<X509, Free<X509_free>>;
 using File = std::unique_ptr<BIO, Free<BIO_free>>;
 
-/// "hc key eyes.pem: no start line", from what OpenSSL last complained of.
+/// "hc key eyes.pem: no start line", from OpenSSL's last error.
 Error openssl_error(Code code, const std::string& what);
 
 /// The fingerprint of a certificate's key; see fingerprint_of().
 std::string fingerprint(const X509& certificate);
 
-/// Opens a file to be read. Errors: NotFound, System.
+/// Opens a file for reading. Errors: NotFound, System.
 Result<File> open_file(const std::string& path);
 
-/// Whether a URI has the options `key` and `peer`. Errors: Invalid.
+/// Checks that a URI has the options `key` and `peer`. Errors: Invalid.
 Status check_keys(const Uri& uri);
 
-/// An end's own key, and the fingerprints of the keys that it accepts.
+/// The key of an end, and the fingerprints of the keys that it accepts.
 class Context {
  public:
-  /// By the options `key=FILE` and `peer=FINGERPRINT` or `peer=FILE` of certificates.
+  /// From the options `key=FILE`, and `peer=FINGERPRINT` or `peer=FILE` with certificates.
   ///
-  /// Errors: Invalid (an option is missing; a file has no key or certificate; others may read the
-  /// key), NotFound, System.
+  /// Errors: Invalid (an option is missing; a file has no key or certificate; the key is readable
+  /// by other users), NotFound, System.
   static Result<std::shared_ptr<const Context>> make(const Uri& uri);
 
   [[nodiscard]] SSL_CTX* get() const { return context_.get(); }

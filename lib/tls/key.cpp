@@ -16,7 +16,7 @@ namespace {
 
 using Key = std::unique_ptr<EVP_PKEY, Free<EVP_PKEY_free>>;
 
-/// A certificate for a key, signed by itself: TLS wants one.
+/// A self-signed certificate of a key, as TLS requires one.
 Certificate certificate_for(EVP_PKEY& key) {
   Certificate certificate(X509_new());
   constexpr long kVersion3 = 2;
@@ -48,7 +48,7 @@ Result<std::string> make_key_text() {
   if (!certificate || !pem ||
       PEM_write_bio_PrivateKey(pem.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr) != 1 ||
       PEM_write_bio_X509(pem.get(), certificate.get()) != 1)
-    return openssl_error(Code::System, "no key could be made");
+    return openssl_error(Code::System, "cannot create a key");
   char* text = nullptr;
   const auto size = BIO_get_mem_data(pem.get(), &text);
   return std::string(text, static_cast<std::size_t>(size));

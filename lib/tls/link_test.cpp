@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// TLS links do what all links do, and those of sockets.
+// TLS links: the conformance suite, and that of sockets.
 #include <hc/testing/socket_link.h>
 #include <tls/acceptor.h>
 #include <tls/peer_test.h>
@@ -7,7 +7,7 @@
 namespace hc::testing {
 namespace {
 
-/// A plain socket whose bytes go over TLS to a place, and come from there.
+/// A plain socket that is relayed to a place over TLS.
 Descriptor connect(const std::string& place) {
   static const Context kContext = make_context("b");
   auto socket = connect_plainly(place);
@@ -18,7 +18,7 @@ Descriptor connect(const std::string& place) {
   return std::move(ours);
 }
 
-/// Both ends have the same two keys, so that each lets the other in.
+/// Both ends have the same two keys, so that each accepts the other.
 const SocketScheme& scheme() {
   static const SocketScheme kTls{
       "tls",   free_port,      "tls:",      "tls-listen:",
@@ -30,7 +30,7 @@ const SocketScheme& scheme() {
 INSTANTIATE_TEST_SUITE_P(Tls, LinkConformance, ::testing::ValuesIn(both_ways(scheme())));
 INSTANTIATE_TEST_SUITE_P(Tls, SocketLink, ::testing::Values(scheme()));
 
-// With one key no more than 2^12 records are written.
+// A key is used for at most 2^12 records.
 TEST(Tls, TheKeyIsChangedInTime) {
   constexpr int kCount = 3;
   constexpr std::int32_t kSize = 100 << 20;  // 6,400 records

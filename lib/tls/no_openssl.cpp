@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// In place of all else here where OpenSSL was not found.
+// Compiled instead of the other files if OpenSSL was not found.
 #include <tls/key.h>
 #include <tls/transport.h>
 
@@ -8,8 +8,8 @@ namespace {
 
 Error no_openssl() {
   return {Code::Unsupported,
-          "keys need OpenSSL, which this program was built without; install libssl-dev and build "
-          "it again"};
+          "keys need OpenSSL, which this program was built without; install libssl-dev and rebuild "
+          "it"};
 }
 
 }  // namespace

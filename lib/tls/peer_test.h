@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The other side of a TLS link, made with OpenSSL alone; and keys, for tests.
+// For tests: a peer of a TLS link, implemented with OpenSSL only, and keys.
 
 #include <netinet/in.h>
 #include <poll.h>
@@ -33,7 +33,7 @@ inline const bool kHasTls = [] {
   return true;
 }();
 
-/// A key in a folder of this process, made when it is first asked for.
+/// The path of a key in a folder of this process, created on first use.
 inline std::string key_file(const std::string& name) {
   static const Folder kKeys;
   std::string path = kKeys / (name + ".pem");
@@ -43,7 +43,7 @@ inline std::string key_file(const std::string& name) {
   return path;
 }
 
-/// Options of an end that has one key, and lets in who has the other.
+/// Options of an end with one key that accepts the other.
 inline std::string options(const std::string& own, const std::string& peer) {
   return "?key=" + key_file(own) + "&peer=" + *tls::fingerprint_of(key_file(peer));
 }
@@ -51,7 +51,7 @@ inline std::string options(const std::string& own, const std::string& peer) {
 using Context = std::unique_ptr<SSL_CTX, tls::Free<SSL_CTX_free>>;
 using Session = std::unique_ptr<SSL, tls::Free<SSL_free>>;
 
-/// OpenSSL's side, with a key or without (empty), that takes whoever is there.
+/// An OpenSSL context with a key, or without one (empty), that accepts any peer.
 inline Context make_context(const std::string& key) {
   Context context(SSL_CTX_new(TLS_method()));
   SSL_CTX_set_verify(context.get(), SSL_VERIFY_PEER, nullptr);
@@ -66,7 +66,7 @@ inline Context make_context(const std::string& key) {
   return context;
 }
 
-/// A TCP socket that is connected to a place.
+/// A TCP socket connected to a place.
 inline Descriptor connect_plainly(const std::string& place) {
   Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in address = loopback(parse_host_port(place)->port);
@@ -74,13 +74,13 @@ inline Descriptor connect_plainly(const std::string& place) {
   return socket;
 }
 
-/// What OpenSSL last complained of.
+/// OpenSSL's last error.
 inline std::string complaint() {
   const char* text = ERR_reason_error_string(ERR_peek_last_error());
   return text == nullptr ? "" : text;
 }
 
-/// Carries bytes between a plain socket and TLS until one of them has ended, in a thread.
+/// Relays bytes between a plain socket and TLS on a thread, until one of them has ended.
 inline void relay(Session session, Descriptor secure, Descriptor plain) {
   std::thread([session = std::move(session), secure = std::move(secure), plain = std::move(plain)] {
     std::array<char, 1 << 14> bytes{};
@@ -95,7 +95,7 @@ inline void relay(Session session, Descriptor secure, Descriptor plain) {
           SSL_shutdown(ssl);
           ::shutdown(secure.get(), SHUT_WR);
           if ((polled[0].revents & POLLHUP) != 0) break;
-          polled[0].fd = -1;  // reads on
+          polled[0].fd = -1;  // only reads from now on
           polled[0].revents = 0;
         }
       }
@@ -109,21 +109,21 @@ inline void relay(Session session, Descriptor secure, Descriptor plain) {
   }).detach();
 }
 
-/// The two ends of a pair of sockets.
+/// A pair of connected sockets.
 inline std::pair<Descriptor, Descriptor> make_pair() {
   std::array<int, 2> ends{};
   EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
   return {Descriptor(ends[0]), Descriptor(ends[1])};
 }
 
-/// Shakes hands over a socket, whose calls wait, as a client; null where that was in vain.
+/// Performs a handshake as a client over a blocking socket; null if it fails.
 inline Session shake_hands(SSL_CTX* context, const Descriptor& socket) {
   ERR_clear_error();
   Session session(SSL_new(context));
   SSL_set_fd(session.get(), socket.get());
   if (SSL_connect(session.get()) != 1) return nullptr;
   char byte = 0;
-  const int size = SSL_peek(session.get(), &byte, 1);  // the ticket, or that it refuses
+  const int size = SSL_peek(session.get(), &byte, 1);  // receives the ticket or the refusal
   if (size <= 0 && SSL_get_error(session.get(), size) != SSL_ERROR_WANT_READ) return nullptr;
   return session;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whom a TLS link does not let in, and what is said of it: one line, and not a byte of a message.
+// Peers that a TLS link refuses: each is logged in one line and receives no data.
 #include <sys/stat.h>
 
 #include <hc/mtp/codec.h>
@@ -10,10 +10,10 @@
 namespace hc::testing {
 namespace {
 
-/// A source that listens with the key a for who has the key b.
+/// A listening source with key a, which accepts key b.
 class TlsRefusal : public ::testing::Test {
  protected:
-  /// Waits for the next line of the log, without the URI before it, and the peer's address in it.
+  /// The reason in the next log line, without the URI and the peer's address.
   std::string await_line() {
     const auto before = warnings_.lines.size();
     Message message;
@@ -28,7 +28,7 @@ class TlsRefusal : public ::testing::Test {
     return line.substr(std::min(line.size(), line.find(": ", begin.size()) + 2));
   }
 
-  /// Whoever has been refused, the right one is let in.
+  /// After a refusal, an accepted peer can still connect.
   void serves_others() {
     auto sink = sink_of("tls:" + place_ + options("b", "a"));
     ASSERT_TRUE(sink->send(numbered(7, 10)));
@@ -41,7 +41,7 @@ class TlsRefusal : public ::testing::Test {
   std::unique_ptr<Source> source_ = source_of(uri_, warnings_.options());
 };
 
-/// Why a link cannot be opened.
+/// The error of opening a link.
 std::string refusal(const std::string& uri) {
   auto source = open_source(*parse_uri(uri));
   EXPECT_FALSE(source);
@@ -53,19 +53,19 @@ TEST_F(TlsRefusal, NoKey) {
   const auto context = make_context("");
   EXPECT_FALSE(shake_hands(context.get(), socket));
   EXPECT_EQ(complaint(), "tlsv13 alert certificate required");
-  EXPECT_EQ(await_line(), "the peer has shown no key");
+  EXPECT_EQ(await_line(), "the peer has sent no key");
   serves_others();
 }
 
 TEST_F(TlsRefusal, TheWrongKey) {
   const auto uri = *parse_uri("tls:" + place_ + options("c", "a"));
-  const std::string line = "the peer's key is " + *tls::fingerprint_of(key_file("c")) +
-                           ", which is not the one of peer=";
+  const std::string line =
+      "the peer's key is " + *tls::fingerprint_of(key_file("c")) + ", not one of peer=";
   const std::string why =
-      "Closed: connect(" + place_ + "): the peer has refused our key; its peer= has to name it";
+      "Closed: connect(" + place_ + "): the peer has refused our key; add it to the peer's peer=";
   EXPECT_EQ(refused(open_source(uri)).text(), why);
   EXPECT_EQ(await_line(), line);
-  EXPECT_EQ(refused(open_sink(uri)).text(), why);  // before it sends
+  EXPECT_EQ(refused(open_sink(uri)).text(), why);  // before anything is sent
   EXPECT_EQ(await_line(), line);
   serves_others();
 }
@@ -73,8 +73,8 @@ TEST_F(TlsRefusal, TheWrongKey) {
 TEST_F(TlsRefusal, AListenerWithTheWrongKey) {
   EXPECT_EQ(refusal("tls:" + place_ + options("b", "c")),
             "Closed: connect(" + place_ + "): the peer's key is " +
-                *tls::fingerprint_of(key_file("a")) + ", which is not the one of peer=");
-  EXPECT_EQ(await_line(), "the peer has refused our key; its peer= has to name it");
+                *tls::fingerprint_of(key_file("a")) + ", not one of peer=");
+  EXPECT_EQ(await_line(), "the peer has refused our key; add it to the peer's peer=");
   serves_others();
 }
 
@@ -84,7 +84,7 @@ TEST_F(TlsRefusal, Tls12) {
   SSL_CTX_set_max_proto_version(context.get(), TLS1_2_VERSION);
   EXPECT_FALSE(shake_hands(context.get(), socket));
   EXPECT_EQ(complaint(), "tlsv1 alert protocol version");
-  EXPECT_EQ(await_line(), "the peer does not know TLS 1.3");
+  EXPECT_EQ(await_line(), "the peer does not support TLS 1.3");
   serves_others();
 }
 
@@ -101,7 +101,7 @@ TEST_F(TlsRefusal, PlainText) {
 TEST_F(TlsRefusal, APlainClientThatLeaves) {
   connect_plainly(place_).reset();
   EXPECT_EQ(await_line(),
-            "the peer disconnected during the TLS handshake; does it listen by tls-listen?");
+            "the peer disconnected during the TLS handshake; is it a tls-listen link?");
   serves_others();
 }
 
@@ -113,7 +113,7 @@ TEST_F(TlsRefusal, AClientThatSaysNothing) {
   serves_others();
 }
 
-// A plain link's sink sends at once, to whoever it takes for its reader.
+// The sink of a plain link sends at once, whatever the peer is.
 TEST_F(TlsRefusal, APlainLinkAtATlsPort) {
   auto sink = sink_of("tcp:" + place_);
   Status sent;
@@ -132,30 +132,30 @@ TEST(Tls, AtAPlainPort) {
   await_warning(*source, warnings);
   client.join();
   EXPECT_EQ(why, "Closed: connect(" + place +
-                     "): the peer disconnected during the TLS handshake; does it listen by "
-                     "tls-listen?");
+                     "): the peer disconnected during the TLS handshake; is it a "
+                     "tls-listen link?");
   EXPECT_NE(warnings.lines[0].find("closed a connection: Malformed: R5"), std::string::npos)
       << warnings.lines[0];
 }
 
-// Bounded, and others are served meanwhile.
+// Their number is bounded, and other peers are served.
 TEST_F(TlsRefusal, AThousandThatStartAndSayNoMore) {
   constexpr std::size_t kCount = 1000;
   const auto before = open_descriptors();
   std::vector<Descriptor> sockets;
-  constexpr char kBegin[] = {22, 3, 1, 2};  // of a client's first record
+  constexpr char kBegin[] = {22, 3, 1, 2};  // start of a client's first record
   for (std::size_t i = 0; i < kCount; ++i) {
     sockets.push_back(connect_plainly(place_));
     ASSERT_EQ(::send(sockets.back().get(), kBegin, sizeof kBegin, MSG_NOSIGNAL), 4);
   }
   serves_others();
-  EXPECT_LE(open_descriptors(), before + kCount + tls::Acceptor::kMostHalfOpen + 10);
+  EXPECT_LE(open_descriptors(), before + kCount + tls::Acceptor::kMaxHandshakes + 10);
   ASSERT_EQ(warnings_.lines.size(), 1U);
   EXPECT_EQ(warnings_.lines[0],
             uri_ + ": more than 256 peers are in a TLS handshake; closing the oldest of them");
 }
 
-// A relay between two ends that know each other, with a key of its own.
+// A relay with its own key between two ends that accept each other's.
 TEST_F(TlsRefusal, AManInTheMiddle) {
   const auto listening = *listen_on(loopback_address(0), "relay");
   sockaddr_in address{};
@@ -174,8 +174,8 @@ TEST_F(TlsRefusal, AManInTheMiddle) {
   char byte = 0;
   EXPECT_FALSE(SSL_accept(session.get()) == 1 && SSL_read(session.get(), &byte, 1) == 1);
   client.join();
-  const std::string wrong = "the peer's key is " + *tls::fingerprint_of(key_file("c")) +
-                            ", which is not the one of peer=";
+  const std::string wrong =
+      "the peer's key is " + *tls::fingerprint_of(key_file("c")) + ", not one of peer=";
   EXPECT_EQ(why, "Closed: connect(" + middle + "): " + wrong);
 
   const auto onward = connect_plainly(place_);
@@ -184,7 +184,7 @@ TEST_F(TlsRefusal, AManInTheMiddle) {
   serves_others();
 }
 
-// What is changed on the way, or ends without the sender's word, is not taken for the stream's end.
+// Modified data, and an end without close_notify, are not taken for the end of the stream.
 TEST_F(TlsRefusal, AConnectionThatIsCut) {
   const auto context = make_context("b");
   auto socket = connect_plainly(place_);
@@ -236,8 +236,9 @@ TEST(TlsKey, OptionsThatMakeNoSenseAreRefused) {
   EXPECT_EQ(refusal(place + "?key=no.pem&peer=b.pem"),
             "NotFound: open(no.pem): No such file or directory");
   const auto own = "?key=" + key_file("a") + "&peer=";
-  EXPECT_EQ(refusal(place + own + "beef"),
-            "Invalid: peer beef: neither a file nor a fingerprint, which has 64 digits of base 16");
+  EXPECT_EQ(
+      refusal(place + own + "beef"),
+      "Invalid: peer beef: neither a file nor a fingerprint, which has 64 hexadecimal digits");
   EXPECT_EQ(refusal(place + own + "/dev/null"), "Invalid: peer /dev/null: no certificate in PEM");
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// All transports of links, for a program's main().
+// All link transports, for main().
 
 #include <dds/transport.h>
 #include <tls/transport.h>
 
 namespace hc {
 
-/// Adds `tls`, `tls-listen` and `dds` to the transports that every program has, as far as OpenSSL
-/// and Cyclone DDS were found when Hypercolumn was built. To be called first in main():
+/// Adds `tls`, `tls-listen` and `dds` to the built-in transports, if Hypercolumn was built with
+/// OpenSSL and Cyclone DDS. Call first in main():
 ///
 ///     int main(int argc, char** argv) {
 ///       hc::add_all_transports();

@@ -15,7 +15,7 @@ struct AprilTagFinder::Detector {
   apriltag_detector_t* detector = apriltag_detector_create();
 
   Detector() {
-    constexpr int kBitsCorrected = 1;  // of 36; more finds what is none
+    constexpr int kBitsCorrected = 1;  // of 36; more gives false detections
     apriltag_detector_add_family_bits(detector, family, kBitsCorrected);
     detector->nthreads = 1;
   }
@@ -33,7 +33,7 @@ AprilTagFinder::AprilTagFinder(double decimate) : detector_(std::make_shared<Det
 
 std::vector<Marker> AprilTagFinder::find(const cv::Mat& grey) const {
   std::vector<Marker> markers;
-  constexpr int kLeastSide = 16;  // the library does not take images of no size
+  constexpr int kLeastSide = 16;  // the library refuses smaller images
   if (grey.cols < kLeastSide || grey.rows < kLeastSide) return markers;
   const cv::Mat plain = grey.isContinuous() ? grey : grey.clone();
   image_u8_t image = {plain.cols, plain.rows, plain.cols, plain.data};
@@ -41,10 +41,10 @@ std::vector<Marker> AprilTagFinder::find(const cv::Mat& grey) const {
   for (int i = 0; i < zarray_size(found); ++i) {
     apriltag_detection_t* tag = nullptr;
     zarray_get(found, i, static_cast<void*>(&tag));
-    constexpr float kLeastMargin = 15;  // grey levels between the bits; what is no tag has less
+    constexpr float kLeastMargin = 15;  // grey levels between bits; false tags have less
     if (tag->decision_margin < kLeastMargin) continue;
     Marker marker{MarkerKind::AprilTag, tag->id, {}};
-    // The library begins at the bottom left, and has (0.5, 0.5) in the middle of the first pixel.
+    // The library starts at the bottom left; the centre of its first pixel is (0.5, 0.5).
     for (std::size_t corner = 0; corner < 4; ++corner)
       marker.corners[corner] = {tag->p[3 - corner][0] - 0.5, tag->p[3 - corner][1] - 0.5};
     refine_corners(plain, marker.corners);

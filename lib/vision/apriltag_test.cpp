@@ -18,7 +18,7 @@
 namespace hc::vision {
 namespace {
 
-/// The package as it is installed, or as ./dev test unpacks it.
+/// The package as installed, or as unpacked by ./dev test.
 std::string folder() {
   for (const std::string root : {"/usr", HC_SOURCE_DIR "/build/data/usr"})
     if (const auto path = root + "/share/visp-images-data/ViSP-images/AprilTag/";
@@ -59,7 +59,7 @@ TEST(AprilTag, RenderedPosesAreKnown) {
       cv::imread(data + "benchmark/640x480/tag36_11_640x480.png", cv::IMREAD_GRAYSCALE);
   ASSERT_FALSE(grey.empty());
   // The tags are 0.25 and 0.125 m wide with their margins; 8 of their 10 cells are the tag. The
-  // camera is as ViSP has it, whose pixels begin half a pixel earlier.
+  // camera follows ViSP, whose pixels begin half a pixel earlier.
   const Camera camera{{700, 700, 319.5, 239.5}, {}};
   Errors errors;
   const auto tags = AprilTagFinder(1).find(grey);
@@ -78,12 +78,12 @@ TEST(AprilTag, RenderedPosesAreKnown) {
   EXPECT_LE(Errors::median(errors.turned), 2) << "degrees";
 }
 
-// Here the truth is what ViSP itself found, in the photograph of a cube of tags.
+// The reference is ViSP's own result on the photograph of a cube of tags.
 TEST(AprilTag, APhotographAgreesWithViSP) {
   const auto data = folder();
   if (data.empty()) GTEST_SKIP() << "visp-images-data is not there: ./dev test unpacks it";
   cv::Mat grey;
-  for (const char* name : {"AprilTag.pgm", "AprilTag.png"})  // as Debian 12 and 13 have it
+  for (const char* name : {"AprilTag.pgm", "AprilTag.png"})  // in Debian 12 and 13
     if (std::filesystem::exists(data + name)) grey = cv::imread(data + name, cv::IMREAD_GRAYSCALE);
   ASSERT_FALSE(grey.empty());
   std::map<int, Truth> truths;

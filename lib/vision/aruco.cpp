@@ -22,7 +22,7 @@ constexpr std::string_view kDictionaries[] = {
 static_assert(kDictionaries[aruco::DICT_6X6_250] == "6X6_250" &&
               kDictionaries[aruco::DICT_ARUCO_ORIGINAL] == "ARUCO_ORIGINAL");
 
-/// A dictionary as detectMarkers takes it: OpenCV 4.6 gives a cv::Ptr, 4.7 and later a value.
+/// A dictionary for detectMarkers: a cv::Ptr in OpenCV 4.6, a value since 4.7.
 template <typename Given>
 cv::Ptr<aruco::Dictionary> pointer_to(const Given& given) {
   if constexpr (requires { given.get(); })
@@ -31,8 +31,8 @@ cv::Ptr<aruco::Dictionary> pointer_to(const Given& given) {
     return cv::makePtr<aruco::Dictionary>(given);
 }
 
-/// Of outlines closer than `minMarkerDistanceRate`, OpenCV 4.6 keeps the outermost. With 0.05, the
-/// default, that is the edge of a white margin, which is no marker. Versions with
+/// OpenCV 4.6 keeps only the outermost of outlines closer than `minMarkerDistanceRate`. With the
+/// default of 0.05 this is the edge of a white margin instead of the marker. Versions with
 /// `minGroupDistance` (seen: 4.10) try the others too.
 template <typename Parameters>
 void keep_inner_outlines(Parameters& parameters) {
@@ -49,7 +49,7 @@ struct ArucoFinder::Detector {
 Result<ArucoFinder> ArucoFinder::make(const std::string& dictionary) {
   const auto* named = std::ranges::find(kDictionaries, dictionary);
   if (named == std::end(kDictionaries))
-    return Error{Code::NotFound, "there is no ArUco dictionary \"" + dictionary + "\""};
+    return Error{Code::NotFound, "unknown ArUco dictionary \"" + dictionary + "\""};
   auto detector = std::make_shared<Detector>();
   keep_inner_outlines(*detector->parameters);
   detector->dictionary = pointer_to(aruco::getPredefinedDictionary(
@@ -65,7 +65,7 @@ std::vector<Marker> ArucoFinder::find(const cv::Mat& grey) const {
   for (std::size_t i = 0; i < ids.size(); ++i) {
     Marker marker{MarkerKind::Aruco, ids[i], {}};
     std::copy_n(corners[i].begin(), 4, marker.corners.begin());
-    // The rim is read by its outer and by its inner edge where it is wide: the outer one counts.
+    // A wide rim is detected by its outer and its inner edge: keep the outer one.
     const auto known = std::find_if(markers.begin(), markers.end(), [&](const Marker& other) {
       return other.id == marker.id &&
              cv::norm(other.middle() - marker.middle()) < marker.mean_side() / 4;
@@ -75,8 +75,8 @@ std::vector<Marker> ArucoFinder::find(const cv::Mat& grey) const {
     else if (marker.mean_side() > known->mean_side())
       *known = marker;
   }
-  // Not as far as the inner edge of the rim, a cell of eight or so away; the edges of a large
-  // marker that is not in focus are many pixels wide.
+  // Short of the rim's inner edge, about a cell (1/8) away; edges of a large marker out of focus
+  // are many pixels wide.
   for (auto& marker : markers)
     refine_corners(grey, marker.corners, std::clamp(0.06 * marker.mean_side(), 1.5, 10.0));
   return markers;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Balls in real videos, compared with where a person sees them.
+// Balls in real videos, compared with positions marked by hand.
 #include <vision/blob.h>
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@
 namespace hc::vision {
 namespace {
 
-/// The package as it is installed, or as ./dev test unpacks it.
+/// The package as installed, or as unpacked by ./dev test.
 std::string video(const std::string& name) {
   for (const std::string root : {"/usr", HC_SOURCE_DIR "/build/data/usr"})
     if (const auto path = root + "/share/pymecavideo/data/video/" + name;
@@ -30,7 +30,7 @@ std::string video(const std::string& name) {
   return {};
 }
 
-/// Where the ball is, between the frames that were looked at.
+/// The position of the ball, interpolated between the marked frames.
 class Labels {
  public:
   explicit Labels(const std::string& name) {
@@ -58,12 +58,12 @@ class Labels {
 };
 
 struct VideoScore {
-  int in_view = 0, found = 0, astray = 0;  // frames; astray: something else was found
+  int in_view = 0, found = 0, astray = 0;  // frames; astray: with a wrong blob
   double mean_error = 0;                   // of those found [px]
 };
 
 /// @param far  a blob farther away is not the ball [px].
-/// @param change  is done to each image; is given where the ball is.
+/// @param change  applied to each image; takes the position of the ball.
 VideoScore score_video(const std::string& path, const Labels& labels, const BlobColour& colour,
                        double min_area, double far,
                        const std::function<void(cv::Mat&, cv::Point2d)>& change = {}) {
@@ -116,7 +116,7 @@ TEST(BallVideo, TheRedBallInAClassroom) {
   const auto score = score_video(path, labels, red, 40, 8);
   EXPECT_GE(score.in_view, 240);
   EXPECT_GE(score.found, 0.98 * score.in_view);
-  // A red band at the edge that is many times as large.
+  // A much larger red band at the edge.
   const auto beside = score_video(path, labels, red, 40, 8, [](cv::Mat& rgb, cv::Point2d at) {
     const int wide = rgb.cols / 8;
     rgb(cv::Rect(at.x > rgb.cols / 2.0 ? 0 : rgb.cols - wide, 0, wide, rgb.rows)) =

@@ -11,7 +11,7 @@
 namespace hc::vision {
 namespace {
 
-/// How far two hues are from one another, the shorter way round.
+/// Distance of two hues, the shorter way round.
 double hue_distance(double a, double b) {
   const double d = std::abs(a - b);
   return std::min(d, 1 - d);
@@ -34,7 +34,7 @@ cv::Vec3d hue_saturation_value(const cv::Vec3d& rgb) {
 }
 
 std::optional<BlobColour> colour_at(const cv::Mat& rgb, cv::Point at) {
-  constexpr int kHalf = 2;  // of the square whose mean is taken [px]
+  constexpr int kHalf = 2;  // of the averaged square [px]
   const cv::Rect near(at.x - kHalf, at.y - kHalf, 2 * kHalf + 1, 2 * kHalf + 1);
   const cv::Scalar mean = cv::mean(rgb(near & cv::Rect(0, 0, rgb.cols, rgb.rows)));
   const cv::Vec3d hsv = hue_saturation_value({mean[0], mean[1], mean[2]});
@@ -105,8 +105,7 @@ std::vector<BlobFinder::Region> BlobFinder::regions(const cv::Mat& rgb, const Ta
                   sizes_.at<int>(label, cv::CC_STAT_WIDTH),
                   sizes_.at<int>(label, cv::CC_STAT_HEIGHT)};
 
-    // A highlight is a hole: it counts, unless it is what makes the most of the blob, as in a
-    // frame.
+    // Holes such as highlights are filled, unless they are most of the blob, as in a frame.
     cv::Mat filled = cv::Mat::zeros(region.box.size(), CV_8U);
     std::vector<std::vector<cv::Point>> outlines;
     cv::findContours(labels_(region.box) == label, outlines, cv::RETR_EXTERNAL,
@@ -122,7 +121,7 @@ std::vector<BlobFinder::Region> BlobFinder::regions(const cv::Mat& rgb, const Ta
     cv::Point2f middle;
     float radius = 0;
     cv::minEnclosingCircle(outlines.front(), middle, radius);
-    // Of the pixels' squares, of which the outline has the middles.
+    // The outline runs through the centres of the pixels; the radius reaches their outer edges.
     region.fit = std::min(1.0, region.area / (std::numbers::pi * std::pow(radius + 0.5, 2)));
     found.push_back(region);
   }
@@ -138,7 +137,7 @@ const cv::Mat& BlobFinder::shrink(const cv::Mat& rgb, int scale) {
 }
 
 double BlobFinder::score(const Region& region, int scale) const {
-  // A square fills 0.64 of its circle; it would have to have 14 times the area of a disc.
+  // A square fills 0.64 of its circle; it needs 14 times the area of a disc to win.
   const double likely = std::sqrt(region.area) * std::pow(region.fit, 6);
   if (!last_) return likely;
   const double reach = 3 * last_->radius * (1 + missed_);
@@ -146,7 +145,7 @@ double BlobFinder::score(const Region& region, int scale) const {
       cv::Point2d(last_->x, last_->y) + (1 + std::min(missed_, 5)) * velocity_;
   const double off = cv::norm(scale * cv::Point2d(region.x, region.y) - expected) / reach;
   const double larger = std::log(scale * std::sqrt(region.area / last_->area)) / 0.7;
-  // One that was elsewhere is possible too: eyes turn fast.
+  // Blobs far from the prediction remain possible: eyes turn fast.
   return likely * (0.02 + std::exp(-(off * off + larger * larger) / 2));
 }
 
@@ -165,7 +164,7 @@ void BlobFinder::remember(const std::optional<Blob>& blob) {
 std::optional<Blob> BlobFinder::find(const cv::Mat& rgb, double min_area) {
   if (rgb.empty()) return std::nullopt;
   CV_Assert(rgb.type() == CV_8UC3);
-  // About 400 pixels wide: less to do, and less noise.
+  // About 400 pixels wide: faster, and less noise.
   const int scale = std::max(1, static_cast<int>(std::lround(rgb.cols / 400.0)));
   if (rgb.cols / scale == 0 || rgb.rows / scale == 0) return std::nullopt;
   const auto all = regions(shrink(rgb, scale), table_);
@@ -179,7 +178,7 @@ std::optional<Blob> BlobFinder::find(const cv::Mat& rgb, double min_area) {
     return std::nullopt;
   }
   Region region = *best;
-  // What is darker or paler beside it is it too, if it is rounder with that.
+  // Adjacent darker or paler pixels are included if they make the blob rounder.
   const int grown = static_cast<int>(2 * std::sqrt(region.area)) + 3;
   const cv::Rect small_all({0, 0}, cv::Size(rgb.cols / scale, rgb.rows / scale));
   const auto around = [](const cv::Rect& box, int margin) {
@@ -200,11 +199,11 @@ std::optional<Blob> BlobFinder::find(const cv::Mat& rgb, double min_area) {
     const int margin = 3;  // [small px]
     cv::Rect about = around(region.box, margin);
     about = cv::Rect(about.tl() * scale, about.size() * scale) & cv::Rect({0, 0}, rgb.size());
-    const double offset = (scale - 1) / 2.0;  // of the middle of a small pixel
+    const double offset = (scale - 1) / 2.0;  // of the centre of a small pixel
     region.x = scale * region.x + offset;
     region.y = scale * region.y + offset;
     region.area *= scale * scale;
-    // One that is small is looked at once more, where it is, in full.
+    // A small blob is measured again at full resolution.
     constexpr int kLargest = 160 * 160;
     if (about.area() <= kLargest) {
       const auto fine = regions(rgb(about), *table);

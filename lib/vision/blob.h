@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The blob of a colour in images: the roundest and largest, or the one that was seen before. No
-// messages; plain cv::Mat in.
+// Finds blobs of a colour in images and follows the best one. No messages; plain cv::Mat in.
 
 #include <cstdint>
 #include <optional>
@@ -11,11 +10,11 @@
 
 namespace hc::vision {
 
-/// Which pixels are of a colour, by hue, saturation and value, all from 0 to 1; hue 0 is red, 1/3
-/// green, 2/3 blue, and 1 red again.
+/// A colour as ranges of hue, saturation and value, all from 0 to 1; hue 0 is red, 1/3 green, 2/3
+/// blue, and 1 red again.
 struct BlobColour {
   double hue = 0;           ///< 0 … 1
-  double hue_width = 0.05;  ///< how far a pixel's hue may be from it, on either side
+  double hue_width = 0.05;  ///< largest deviation of a pixel's hue, on either side
   double min_saturation = 0.5;
   double min_value = 0.2;
 
@@ -26,22 +25,22 @@ struct BlobColour {
 /// 1978. @param rgb  0 … 255.
 cv::Vec3d hue_saturation_value(const cv::Vec3d& rgb);
 
-/// The colour about a pixel, as what a blob is to be looked for by: its hue, and somewhat more than
-/// half its saturation and value, since a thing has shades.
+/// The colour to look for, from the surroundings of a pixel: their hue, and somewhat more than half
+/// of their saturation and value, to allow for shading.
 ///
-/// @param rgb  (H, W, 3) u8.  @param at  [px], inside of the image.
-/// @returns  nothing where there is hardly any colour.
+/// @param rgb  (H, W, 3) u8. @param at  [px], inside the image.
+/// @returns  nothing where the image is almost grey.
 std::optional<BlobColour> colour_at(const cv::Mat& rgb, cv::Point at);
 
-/// What was found. [px]
+/// A blob in an image [px].
 struct Blob {
-  double x = 0, y = 0;  ///< its middle, (0, 0) being the middle of the top left pixel
+  double x = 0, y = 0;  ///< centre; (0, 0) is the centre of the top left pixel
   double radius = 0;    ///< of the disc of the same area
   double area = 0;      ///< [px²], holes filled
 };
 
-/// Finds the blob of a colour, and follows it: of several, the one that is round and large, and
-/// near and of the size of the last one. What is in shadow belongs to it where it makes it rounder.
+/// Finds the blob of a colour and follows it. Prefers round and large blobs that are close to the
+/// last one in position and size. Includes shaded parts if they make the blob rounder.
 class BlobFinder {
  public:
   explicit BlobFinder(const BlobColour& colour);
@@ -49,24 +48,24 @@ class BlobFinder {
   [[nodiscard]] const BlobColour& colour() const { return colour_; }
 
   /// @param rgb  (H, W, 3) u8, the next of a sequence.
-  /// @param min_area  of what counts as found [px²].
-  /// @returns  nothing where no blob is as large, or for a second of 20 images, only one of more
-  ///     than four times the last one's area.
+  /// @param min_area  of a blob [px²].
+  /// @returns  nothing if all blobs are smaller; also, for up to 20 images, if the best blob has
+  ///     more than four times the area of the last one.
   /// Cost: 1 ms at 800×600.
   std::optional<Blob> find(const cv::Mat& rgb, double min_area);
 
-  /// What a blob of the hue is like that is too dark or too pale to be found: its mean saturation
-  /// and value; nothing where there is none.
+  /// The mean saturation and value of a blob of the right hue that is too dark or too pale to be
+  /// found; nothing if there is none.
   std::optional<BlobColour> find_faint(const cv::Mat& rgb, double min_area);
 
  private:
-  /// [px] of the image that it was found in.
+  /// In pixels of the image that was searched.
   struct Region {
     double x = 0, y = 0, area = 0;
-    double fit = 0;  // share of the circle around it that it fills
+    double fit = 0;  // filled share of the enclosing circle
     cv::Rect box;
   };
-  using Table = std::vector<std::uint8_t>;  // 255 where a colour is the one looked for
+  using Table = std::vector<std::uint8_t>;  // 255 for the colours searched
 
   static Table table_of(const BlobColour& colour);
   void mark(const cv::Mat& rgb, const Table& table);  // in mask_
@@ -75,7 +74,7 @@ class BlobFinder {
   [[nodiscard]] double score(const Region& region, int scale) const;
   void remember(const std::optional<Blob>& blob);
 
-  static constexpr int kBits = 6;  // of each of red, green, blue that the table distinguishes
+  static constexpr int kBits = 6;  // of red, green and blue each, in the table
   BlobColour colour_, faint_;
   Table table_, faint_table_;
   cv::Mat small_, smooth_, mask_, labels_, sizes_, middles_;

@@ -17,7 +17,7 @@
 namespace hc::vision {
 namespace {
 
-/// A disc whose rim is mixed, as a camera sees it.
+/// A disc with an anti-aliased rim, as in a camera image.
 void draw_disc(cv::Mat& image, cv::Point2d at, double radius, const cv::Scalar& rgb) {
   constexpr int kShift = 8;
   const double scale = 1 << kShift;
@@ -125,7 +125,7 @@ TEST(Blob, AreaHueAndSmallImagesCount) {
   EXPECT_FALSE(BlobFinder{green}.find(image, 2 * blob.area));
 }
 
-/// How many of some images of a ball that rolls have it found where it is.
+/// The number of images of a rolling ball in which it is found at its position.
 int follow(const std::function<void(cv::Mat&)>& behind,
            const std::function<void(cv::Mat&, cv::Point2d)>& before) {
   BlobFinder finder{BlobColour{}};

@@ -7,8 +7,7 @@
 namespace hc::vision {
 
 Result<BoardViews> BoardViews::make(const Board& board) {
-  if (board.columns == board.rows)
-    return Error{Code::Invalid, "columns and rows are the same number"};
+  if (board.columns == board.rows) return Error{Code::Invalid, "columns and rows are equal"};
   return BoardViews(board);
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr Board kPrinted{9, 6, 0.025};
 
-/// A board whose top left square is there.
+/// A board with its top left square there.
 cv::Mat board_at(cv::Point at, cv::Size size = {640, 480}) {
   cv::Mat image(size, CV_8U, cv::Scalar(255));
   for (int row = 0; row < 7; ++row)

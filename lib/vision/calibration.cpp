@@ -13,23 +13,23 @@ namespace {
 
 using Corners = std::vector<cv::Point2f>;
 
-/// A board that is small in its image is found in one of twice the size.
+/// Enlarges the image twofold if the board is too small to be found.
 bool find_corners(const cv::Mat& image, const Board& board, Corners& corners) {
   if (image.empty()) return false;
   cv::Mat grey = image;
   if (image.channels() == 3) cv::cvtColor(image, grey, cv::COLOR_RGB2GRAY);
   const cv::Size size(board.columns, board.rows);
-  // Where there is surely no board, this says so in a tenth of the time.
+  // The fast check rejects images without a board in a tenth of the time.
   constexpr int kHow = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
   if (!cv::findChessboardCorners(grey, size, corners, kHow | cv::CALIB_CB_FAST_CHECK)) {
     cv::Mat larger;
     cv::resize(grey, larger, {}, 2, 2, cv::INTER_LINEAR);
     if (!cv::findChessboardCorners(larger, size, corners, kHow | cv::CALIB_CB_FAST_CHECK))
       return false;
-    // The middle of the top left pixel is at (0.5, 0.5) in the larger one.
+    // The centre of the top left pixel is at (0.5, 0.5) in the larger image.
     for (auto& corner : corners) corner = (corner - cv::Point2f(0.5F, 0.5F)) * 0.5F;
   }
-  // The window reaches half a square, so that no other corner is in it.
+  // A window of half a square contains only one corner.
   double least = grey.cols;
   const auto columns = static_cast<std::size_t>(board.columns);
   for (std::size_t at = 0; at + 1 < corners.size(); ++at)
@@ -83,7 +83,7 @@ Calibrated solve(const Points& points, cv::Size size, std::vector<double>& error
   return result;
 }
 
-/// Mean difference of the rows of corresponding corners, rectified.
+/// Mean row difference of corresponding corners after rectification.
 double epipolar_error(const StereoCalibration& c, const Points& points) {
   double sum = 0, count = 0;
   for (std::size_t view = 0; view < points.left.size(); ++view) {
@@ -124,7 +124,7 @@ void rectify(StereoCalibration& c) {
 }
 
 Eigen::Matrix3d StereoCalibration::R_left_right() const {
-  // By rows it is R, read by columns what R is transposed.
+  // OpenCV is row-major, Eigen column-major: this transposes R.
   return Eigen::Map<const Eigen::Matrix3d>(R.val);
 }
 
@@ -132,7 +132,7 @@ void turn(StereoCalibration& c, const Eigen::Matrix3d& R_left_right) {
   constexpr double kSame = 1e-9;
   const cv::Matx33d R(R_left_right.data());
   if (cv::norm(R, c.R, cv::NORM_INF) < kSame) return;
-  const cv::Vec3d right = -(c.R.t() * c.T);  // its middle, in the left camera's frame
+  const cv::Vec3d right = -(c.R.t() * c.T);  // its centre, in the left camera's frame
   c.R = R;
   c.T = -(R * right);
   rectify(c);
@@ -149,7 +149,7 @@ std::optional<BoardView> find_board(const cv::Mat& left, const cv::Mat& right, c
   BoardView view;
   if (!find_corners(left, board, view.left) || !find_corners(right, board, view.right))
     return std::nullopt;
-  // Either end of a board may come first: the same one in both images.
+  // Detection may start at either end of a board; make it the same one in both images.
   const cv::Point2f along_left = view.left.back() - view.left.front();
   const cv::Point2f along_right = view.right.back() - view.right.front();
   if (along_left.dot(along_right) < 0) std::reverse(view.right.begin(), view.right.end());
@@ -166,7 +166,7 @@ double difference(const BoardView& a, const BoardView& b) {
 Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& board, cv::Size size) {
   if (board.columns < 3 || board.rows < 3 || board.columns == board.rows || !(board.square > 0))
     return Error{Code::Invalid,
-                 "a board has 3 corners a row and a column at least, and not the same number"};
+                 "board: columns and rows must differ and be at least 3, square above 0"};
   if (views.size() < kLeastViews)
     return Error{Code::NotFound, std::to_string(views.size()) + " views of the board, at least " +
                                      std::to_string(kLeastViews) + " are needed"};
@@ -193,7 +193,7 @@ Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& boar
       result = solve(points, size, errors);
     }
     rectify(result.calibration);
-    // What is written has to be what can be read.
+    // Ensure that the result can be read again.
     HC_TRY(calibration_of(text_of(result.calibration)));
     result.rms_all = rms_all;
     result.given = views.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The file of a calibration. It may come from anywhere: nothing in it is believed.
+// Calibration files. They are untrusted: everything is checked.
 #include <vision/calibration.h>
 
 #include <algorithm>
@@ -28,25 +28,27 @@ Error malformed(const std::string& what) {
   return {Code::Malformed, "calibration: " + what};
 }
 
-/// The numbers of a matrix, without making one as large as the file says.
+/// The numbers of a matrix, without allocating the size that the file claims.
 Result<std::vector<double>> numbers_of(const cv::FileNode& root, const std::string& key) {
   const cv::FileNode node = root[key];
-  if (node.empty()) return malformed("there is no " + key);
-  if (!node.isMap()) return malformed(key + " is no matrix");
+  if (node.empty()) return malformed(key + " is missing");
+  if (!node.isMap()) return malformed(key + " is not a matrix");
   const cv::FileNode data = node["data"], dt = node["dt"];
   if (!data.isSeq() || !node["rows"].isInt() || !node["cols"].isInt() || !dt.isString())
-    return malformed(key + " is no matrix");
+    return malformed(key + " is not a matrix");
   const std::string scalar = dt;
   if (scalar != "d" && scalar != "f")
     return malformed(key + " has elements \"" + scalar + "\", not d or f");
   const double cells = node["rows"].real() * node["cols"].real();
   if (node["rows"].real() < 1 || cells != static_cast<double>(data.size()) || cells > 64)
-    return malformed(key + " has another shape than it says");
+    return malformed(key + " does not have the stated shape");
   std::vector<double> numbers;
   for (const auto& each : data) {
-    if (!each.isReal() && !each.isInt()) return malformed(key + " holds what is no number");
+    if (!each.isReal() && !each.isInt())
+      return malformed(key + " contains a value that is not a number");
     numbers.push_back(each.real());
-    if (!std::isfinite(numbers.back())) return malformed(key + " holds what is not finite");
+    if (!std::isfinite(numbers.back()))
+      return malformed(key + " contains a value that is not finite");
   }
   return numbers;
 }
@@ -55,7 +57,7 @@ template <int kRows, int kColumns>
 Status read(const cv::FileNode& root, const std::string& key,
             cv::Matx<double, kRows, kColumns>& matrix) {
   auto numbers = HC_TRY(numbers_of(root, key));
-  // A column may have been written as a row.
+  // Accept a column vector written as a row.
   const bool is_vector = kColumns == 1;
   if (numbers.size() != std::size_t{kRows} * std::size_t{kColumns} ||
       (!is_vector && (root[key]["rows"].real() != kRows)))
@@ -78,13 +80,14 @@ Status read_size(const cv::FileNode& root, cv::Size& size) {
   for (auto [key, side] : {std::pair{"image_width", &size.width}, {"image_height", &size.height}}) {
     const cv::FileNode node = root[key];
     if (node.empty()) continue;
-    if (!node.isInt()) return malformed(std::string(key) + " is no whole number");
+    if (!node.isInt()) return malformed(std::string(key) + " is not an integer");
     const double value = node.real();
     if (value < 1 || value > kLargestSide)
       return Error{Code::TooLarge, "calibration: " + std::string(key) + " is not from 1 to 65535"};
     *side = static_cast<int>(value);
   }
-  if ((size.width == 0) != (size.height == 0)) return malformed("the size has one side alone");
+  if ((size.width == 0) != (size.height == 0))
+    return malformed("image_width or image_height is missing");
   return {};
 }
 
@@ -93,7 +96,7 @@ bool is_camera(const double fx, const double fy, const double skew) {
 }
 
 bool is_rotation(const cv::Matx33d& R) {
-  constexpr double kTolerance = 1e-3;  // numbers of four decimals pass
+  constexpr double kTolerance = 1e-3;  // accepts four decimals
   return cv::norm(R * R.t(), cv::Matx33d::eye(), cv::NORM_INF) < kTolerance &&
          cv::determinant(R) > 0;
 }
@@ -102,19 +105,19 @@ Status check(const StereoCalibration& c) {
   for (auto [name, M] : {std::pair{"M1", &c.M1}, {"M2", &c.M2}})
     if (!is_camera((*M)(0, 0), (*M)(1, 1), (*M)(1, 0)) || (*M)(2, 0) != 0 || (*M)(2, 1) != 0 ||
         (*M)(2, 2) != 1)
-      return malformed(std::string(name) + " is no camera matrix");
+      return malformed(std::string(name) + " is not a camera matrix");
   for (auto [name, R] : {std::pair{"R", &c.R}, {"R1", &c.R1}, {"R2", &c.R2}})
-    if (!is_rotation(*R)) return malformed(std::string(name) + " is no rotation");
+    if (!is_rotation(*R)) return malformed(std::string(name) + " is not a rotation");
   for (auto [name, P] : {std::pair{"P1", &c.P1}, {"P2", &c.P2}})
     if (!is_camera((*P)(0, 0), (*P)(1, 1), (*P)(1, 0)) || (*P)(2, 2) != 1)
-      return malformed(std::string(name) + " is no projection of a camera");
+      return malformed(std::string(name) + " is not a projection matrix");
   if (c.P1(0, 0) != c.P2(0, 0) || c.P1(1, 1) != c.P2(1, 1) || c.P1(1, 2) != c.P2(1, 2))
-    return malformed("P1 and P2 do not have the same rows");
+    return malformed("P1 and P2 differ in focal length or cy");
   if (!(cv::norm(c.T) > 0) || cv::norm(c.T) > kMostBaseline)
-    return malformed("T is no distance of two cameras");
-  if (c.P2(1, 3) != 0) return malformed("the cameras are one above the other");
-  if (c.baseline() < 0) return malformed("the left camera is at the right (P2)");
-  if (!(c.baseline() > 0)) return malformed("P2 has no distance of the cameras");
+    return malformed("T is not a valid baseline");
+  if (c.P2(1, 3) != 0) return malformed("the cameras are above one another");
+  if (c.baseline() < 0) return malformed("the left camera is on the right (P2)");
+  if (!(c.baseline() > 0)) return malformed("P2 has no baseline");
   if (!(c.rms >= 0)) return malformed("rms is below 0");
   return {};
 }
@@ -139,13 +142,13 @@ Result<StereoCalibration> calibration_of(const std::string& text) {
     return Error{Code::TooLarge, "calibration: more than 65536 bytes"};
   if (!text.starts_with("%YAML")) return malformed("does not begin with %YAML");
   if (text.find('\0') != std::string::npos) return malformed("holds a zero byte");
-  // OpenCV's parser calls itself for what is nested, as deep as a file says.
+  // OpenCV's parser recurses without a limit on the depth.
   std::ptrdiff_t nested =
       std::count(text.begin(), text.end(), '[') + std::count(text.begin(), text.end(), '{');
   for (std::size_t i = 0; i + 1 < text.size(); ++i)
     nested += text[i] == '-' && (text[i + 1] == ' ' || text[i + 1] == '\n');
-  if (nested > kMostNested) return malformed("holds more lists than a calibration has");
-  // Files that were put together: what begins the second one is not part of the first.
+  if (nested > kMostNested) return malformed("contains too many lists");
+  // In concatenated files, drop the header of the second one.
   std::string joined, line;
   std::istringstream lines(text);
   for (bool is_first = true; std::getline(lines, line); is_first = false)
@@ -155,7 +158,7 @@ Result<StereoCalibration> calibration_of(const std::string& text) {
     cv::FileStorage file(
         joined, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML);
     const cv::FileNode root = file.root();
-    if (!root.isMap()) return malformed("holds no names");
+    if (!root.isMap()) return malformed("is not a map");
     StereoCalibration c;
     HC_TRY(read_size(root, c.size));
     HC_TRY(read(root, "M1", c.M1));
@@ -175,8 +178,8 @@ Result<StereoCalibration> calibration_of(const std::string& text) {
     }
     HC_TRY(check(c));
     return c;
-  } catch (const std::exception&) {  // cv::Exception, or one that its parser lets through
-    return malformed("is no file of cv::FileStorage");
+  } catch (const std::exception&) {  // cv::Exception, or another from its parser
+    return malformed("is not a cv::FileStorage file");
   }
 }
 

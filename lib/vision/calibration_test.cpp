@@ -31,7 +31,7 @@ struct Pairs {
   cv::Size size;
 };
 
-/// Corners as OpenCV's sample stereo_calib finds them.
+/// Corners found as in OpenCV's sample stereo_calib.
 BoardView view_of_sample(const cv::Mat& left, const cv::Mat& right) {
   BoardView view;
   for (auto [image, corners] : {std::pair{&left, &view.left}, {&right, &view.right}}) {
@@ -65,7 +65,7 @@ Pairs photographs(bool as_sample) {
   return pairs;
 }
 
-/// Views of a board by two cameras that are known, with noise [px].
+/// Views of a board by two known cameras, with noise [px].
 Pairs made_up(const StereoCalibration& truth, int count, double noise) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> spread(-1, 1);
@@ -136,7 +136,7 @@ TEST(Calibration, CamerasThatAreMixedUpAreReported) {
   auto pairs = made_up(squinting(), 6, 0.1);
   for (auto& view : pairs.views) std::swap(view.left, view.right);
   EXPECT_NE(refused(calibrate(pairs.views, {9, 6, 0.04}, pairs.size))
-                .detail.find("the left camera is at the right"),
+                .detail.find("the left camera is on the right"),
             std::string::npos);
 }
 
@@ -219,7 +219,7 @@ TEST(StereoCalibration, TheRightCameraTurnsAboutItsOwnMiddle) {
   turn(c, R);
   EXPECT_NEAR((c.R_left_right() - R).norm(), 0, 1e-12);
   EXPECT_NEAR(cv::norm(-(c.R.t() * c.T) - middle), 0, 1e-12);
-  // Forward of the right camera, as the left one has it.
+  // Forward of the right camera in the left camera's frame.
   const cv::Vec3d forward = c.R.t() * cv::Vec3d(0, 0, 1);
   EXPECT_NEAR((Eigen::Vector3d(forward[0], forward[1], forward[2]) - R.col(2)).norm(), 0, 1e-12);
   EXPECT_NE(c.R1, as_it_is.R1);
@@ -261,7 +261,7 @@ TEST(CalibrationFile, ComesBackAsItWas) {
   EXPECT_EQ(write_calibration("/no/such/folder/c.yml", truth).error().code, Code::NotFound);
 }
 
-// As OpenCV's sample writes them: two files, without a size and an rms, T in squares.
+// In the format of OpenCV's sample: two files, without size and rms, T in squares.
 TEST(CalibrationFile, OpenCvsOwnFilesAreRead) {
   const auto truth = squinting();
   cv::FileStorage intrinsics("i.yml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
@@ -276,7 +276,7 @@ TEST(CalibrationFile, OpenCvsOwnFilesAreRead) {
   EXPECT_EQ(read.size, cv::Size());
   EXPECT_EQ(read.M2, truth.M2);
   const auto half = refused(calibration_of(first));
-  EXPECT_NE(half.detail.find("there is no R"), std::string::npos) << half.detail;
+  EXPECT_NE(half.detail.find("R is missing"), std::string::npos) << half.detail;
 }
 
 TEST(CalibrationFile, WhatIsHostileIsRefused) {
@@ -296,37 +296,38 @@ TEST(CalibrationFile, WhatIsHostileIsRefused) {
       {"<?xml version=\"1.0\"?><opencv_storage/>", "does not begin"},
       {"%YAML:1.0\n---\n", "calibration:"},
       {"%YAML:1.0\n---\nM1: [", "calibration:"},
-      {"%YAML:1.0\n---\nM1: " + std::string(30000, '['), "more lists"},
-      {"%YAML:1.0\n---\nM1: " + std::string(30000, '{'), "more lists"},
+      {"%YAML:1.0\n---\nM1: " + std::string(30000, '['), "too many lists"},
+      {"%YAML:1.0\n---\nM1: " + std::string(30000, '{'), "too many lists"},
       {[] {
          std::string dashes = "%YAML:1.0\n---\nM1:\n   ";
          for (int i = 0; i < 20000; ++i) dashes += "- ";
          return dashes;
        }(),
-       "more lists"},
+       "too many lists"},
       {good + std::string(70000, ' '), "more than 65536 bytes"},
       {good.substr(0, good.size() / 2), "calibration:"},
       {good + std::string(1, '\0'), "zero byte"},
-      {changed("M1:", "N1:"), "there is no M1"},
-      {changed("Q:", "q:"), "there is no Q"},
-      {changed("rows: 3", "rows: 2"), "M1 has another shape"},
-      {changed("rows: 3", "rows: 1000000000"), "M1 has another shape"},
-      {changed("rows: 3", "rows: -3"), "M1 has another shape"},
+      {changed("M1:", "N1:"), "M1 is missing"},
+      {changed("Q:", "q:"), "Q is missing"},
+      {changed("rows: 3", "rows: 2"), "M1 does not have the stated shape"},
+      {changed("rows: 3", "rows: 1000000000"), "M1 does not have the stated shape"},
+      {changed("rows: 3", "rows: -3"), "M1 does not have the stated shape"},
       {changed("dt: d", "dt: u"), "M1 has elements"},
       {changed("dt: d", "dt: \"2000000000d\""), "M1 has elements"},
-      {changed("M1: !!opencv-matrix[^\\]]*\\]", "M1: 5"), "M1 is no matrix"},
-      {changed("data: \\[ [^,]*,", "data: [ .Nan,"), "M1 holds what is not finite"},
-      {changed("data: \\[ [^,]*,", "data: [ .Inf,"), "M1 holds what is not finite"},
-      {changed("data: \\[ [^,]*,", "data: [ word,"), "M1 holds what is no number"},
-      {changed("data: \\[ [^,]*,", "data: [ -5.,"), "M1 is no camera"},
-      {changed("data: \\[ [^,]*,", "data: [ 1e30,"), "M1 is no camera"},
+      {changed("M1: !!opencv-matrix[^\\]]*\\]", "M1: 5"), "M1 is not a matrix"},
+      {changed("data: \\[ [^,]*,", "data: [ .Nan,"), "M1 contains a value that is not finite"},
+      {changed("data: \\[ [^,]*,", "data: [ .Inf,"), "M1 contains a value that is not finite"},
+      {changed("data: \\[ [^,]*,", "data: [ word,"), "M1 contains a value that is not a number"},
+      {changed("data: \\[ [^,]*,", "data: [ -5.,"), "M1 is not a camera"},
+      {changed("data: \\[ [^,]*,", "data: [ 1e30,"), "M1 is not a camera"},
       {changed("image_width: 800", "image_width: 800000000"), "from 1 to 65535"},
       {changed("image_width: 800", "image_width: -1"), "from 1 to 65535"},
-      {changed("image_width: 800", "image_width: wide"), "no whole number"},
-      {changed("image_width: 800\n", ""), "one side alone"},
+      {changed("image_width: 800", "image_width: wide"), "not an integer"},
+      {changed("image_width: 800\n", ""), "image_width or image_height is missing"},
       {changed("R: !!opencv-matrix([^\\[]*)\\[ [^,]*,", "R: !!opencv-matrix$1[ 0.5,"),
-       "R is no rotation"},
-      {changed("T: !!opencv-matrix([^\\[]*)\\[ [^,]*,", "T: !!opencv-matrix$1[ 1e9,"), "T is no"},
+       "R is not a rotation"},
+      {changed("T: !!opencv-matrix([^\\[]*)\\[ [^,]*,", "T: !!opencv-matrix$1[ 1e9,"),
+       "T is not a valid baseline"},
       {changed("D1: !!opencv-matrix([^\\[]*)cols: 5([^\\[]*)\\[ [^,]*,",
                "D1: !!opencv-matrix$1cols: 4$2["),
        ""},
@@ -334,7 +335,7 @@ TEST(CalibrationFile, WhatIsHostileIsRefused) {
   for (const auto& each : cases) {
     auto read = calibration_of(each.text);
     if (each.says.empty()) {
-      EXPECT_TRUE(read) << "four numbers of distortion are well";
+      EXPECT_TRUE(read) << "four distortion coefficients are valid";
       continue;
     }
     ASSERT_FALSE(read) << each.says;
@@ -343,7 +344,7 @@ TEST(CalibrationFile, WhatIsHostileIsRefused) {
   }
   auto swapped = squinting();
   swapped.P2(0, 3) = -swapped.P2(0, 3);
-  EXPECT_NE(calibration_of(text_of(swapped)).error().detail.find("is at the right"),
+  EXPECT_NE(calibration_of(text_of(swapped)).error().detail.find("is on the right"),
             std::string::npos);
 }
 

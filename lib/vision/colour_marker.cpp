@@ -17,7 +17,7 @@ constexpr double kLeastValue = 0.2;
 
 using Quad = std::array<cv::Point2d, 4>;
 
-/// The minimum of red, green and blue: dark in what is coloured, light in what is white.
+/// The minimum of red, green and blue: dark where coloured, light where white.
 cv::Mat min_channel(const cv::Mat& rgb) {
   cv::Mat channels[3], least;
   cv::split(rgb, channels);
@@ -26,7 +26,7 @@ cv::Mat min_channel(const cv::Mat& rgb) {
   return least;
 }
 
-/// Which pixels are saturated.
+/// A mask of the saturated pixels.
 cv::Mat saturated(const cv::Mat& rgb) {
   cv::Mat mask(rgb.size(), CV_8U);
   for (int y = 0; y < rgb.rows; ++y) {
@@ -43,7 +43,7 @@ cv::Mat saturated(const cv::Mat& rgb) {
   return mask;
 }
 
-/// The square that an outline is, in perspective; clockwise.
+/// The perspective view of a square that matches an outline; clockwise.
 std::optional<Quad> quad_of(const std::vector<cv::Point>& outline, double min_side) {
   const double area = cv::contourArea(outline);
   if (area < 0.6 * min_side * min_side) return std::nullopt;
@@ -55,7 +55,7 @@ std::optional<Quad> quad_of(const std::vector<cv::Point>& outline, double min_si
     if (corners.size() <= 4) break;
   }
   if (corners.size() != 4 || !cv::isContourConvex(corners)) return std::nullopt;
-  // Its corners are nearly all of it; four on the rim of a disc are 0.64 of that.
+  // The corners must enclose nearly all of it; a square in a disc encloses 0.64.
   const double inside = cv::contourArea(corners);
   if (inside < 0.8 * cv::contourArea(hull)) return std::nullopt;
   Quad quad;
@@ -73,12 +73,12 @@ std::optional<Quad> quad_of(const std::vector<cv::Point>& outline, double min_si
   return quad;
 }
 
-/// The turn for which the upper side goes most to the right.
+/// Rotates the corners so that the upper side points to the right as much as possible.
 void turn_upright(Quad& quad) {
   std::size_t first = 0;
   double best = -2;
   for (std::size_t i = 0; i < 4; ++i) {
-    // Both the upper and the lower side count, as the square is in perspective.
+    // Use both the upper and the lower side because of the perspective.
     const cv::Point2d along =
         (quad[(i + 1) % 4] - quad[i]) + (quad[(i + 2) % 4] - quad[(i + 3) % 4]);
     if (const double right = along.x / cv::norm(along); right > best) {
@@ -102,7 +102,7 @@ cv::Vec3d mean_colour(const cv::Mat& rgb, const std::vector<cv::Point2d>& places
   return inside > 0 ? sum / inside : sum;
 }
 
-/// Its hue where a square is of one colour, with white about it; [degree].
+/// The hue of a square of one colour surrounded by white [degree].
 std::optional<int> hue_of(const cv::Mat& rgb, const Quad& quad) {
   const cv::Point2d middle = (quad[0] + quad[1] + quad[2] + quad[3]) / 4;
   std::vector<cv::Point2d> within, about;
@@ -114,7 +114,7 @@ std::optional<int> hue_of(const cv::Mat& rgb, const Quad& quad) {
     }
   int seen = 0;
   const cv::Vec3d white = mean_colour(rgb, about, seen);
-  // Half of the rim may be outside of the image, or hidden.
+  // Half of the surroundings may be outside the image or hidden.
   if (2 * seen < static_cast<int>(about.size())) return std::nullopt;
   const cv::Vec3d colour = mean_colour(rgb, within, seen);
   const cv::Vec3d hsv = hue_saturation_value(colour), hsv_white = hue_saturation_value(white);
@@ -143,7 +143,7 @@ std::vector<Marker> find_colour_markers(const cv::Mat& rgb) {
   cv::blur(small, smooth, {3, 3});
   std::vector<std::vector<cv::Point>> outlines;
   cv::findContours(saturated(smooth), outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
-  cv::Mat least;  // made once it is needed
+  cv::Mat least;  // made when needed
   for (const auto& outline : outlines) {
     auto quad = quad_of(outline, kLeastSide / kHalf);
     if (!quad) continue;
@@ -155,7 +155,7 @@ std::vector<Marker> find_colour_markers(const cv::Mat& rgb) {
       least = min_channel(rgb);
       cv::GaussianBlur(least, least, {3, 3}, 0);
     }
-    // The first time from the corners of an image of half the size.
+    // The first pass is coarse: its corners were found at half the size.
     constexpr double kFar = 5;  // [px]
     if (!refine_corners(least, *quad, kFar) || !refine_corners(least, *quad)) continue;
     Marker marker{MarkerKind::Colour, *hue, *quad};

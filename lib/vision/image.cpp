@@ -12,7 +12,7 @@
 namespace hc::vision {
 namespace {
 
-/// The value below which `share` of the values lie.
+/// The percentile of the values at `share`.
 float percentile(std::vector<float>& values, double share) {
   auto nth =
       values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -62,7 +62,7 @@ Span span_of(const cv::Mat& values) {
 cv::Mat colour_coded(const cv::Mat& values, double least, double most) {
   cv::Mat numbers;
   values.convertTo(numbers, CV_32F);
-  // The scale's own end is nearly as black as what is unknown; from here on it is a clear blue.
+  // Below this the colour map is nearly black, like unknown values; from here on it is blue.
   constexpr long kLowest = 28;
   double span = most > least ? most - least : 1;
   cv::Mat levels(numbers.size(), CV_8U), unknown(numbers.size(), CV_8U);

@@ -6,20 +6,20 @@
 
 namespace hc::vision {
 
-/// Scales an image so that it covers width × height and crops what protrudes, equally on both
-/// sides. Where one of them is 0, it follows from the other; where both are, nothing changes.
+/// Scales an image to cover width × height and crops the excess equally on both sides. If one of
+/// them is 0, it follows from the other; if both are, nothing changes.
 ///
-/// @param smooth  average over the pixels (area) when shrinking; false takes the nearest pixel,
-///     for images whose values must not be mixed, as disparities.
+/// @param smooth  average over the area when shrinking; false takes the nearest pixel, for images
+///     whose values must not be mixed, such as disparities.
 cv::Mat fit(const cv::Mat& image, int width, int height, bool smooth = true);
 
-/// By how much fit() scales. [1]
+/// The scale factor of fit() [1].
 double fit_scale(const cv::Size& size, int width, int height);
 
-/// Red, green, blue to grey, as bright as it looks; (H, W) u8. A grey image is given as it is.
+/// Luminance of a red, green, blue image, (H, W) u8; a grey image is returned unchanged.
 cv::Mat grey_of(const cv::Mat& image);
 
-/// The ends of a scale of colours.
+/// The ends of a colour scale.
 struct Span {
   double least = 0, most = 0;
 };
@@ -27,10 +27,10 @@ struct Span {
 /// The 2nd and the 98th percentile of the known values of an image, (H, W) of any scalar.
 Span span_of(const cv::Mat& values);
 
-/// An image of one channel of any depth in colours, from blue (small) over green to red (large).
+/// Colour-codes a single-channel image, from blue (small) through green to red (large).
 ///
 /// @param values  (H, W) of any scalar; 0, nan and inf are unknown and become black.
-/// @param least, most  the values that are bluest and reddest.
+/// @param least, most  the values at the blue and the red end.
 /// @returns  (H, W, 3) u8, red, green, blue.
 cv::Mat colour_coded(const cv::Mat& values, double least, double most);
 

@@ -13,32 +13,31 @@ namespace hc::vision {
 
 namespace {
 
-// As measured of Liberation Sans, Sans Narrow and Serif, DejaVu Sans and Serif, condensed and bold
-// ones too, and OpenCV's four Hershey fonts with strokes of several widths, sharp and blurred.
-// Width by height of the middle of the stroke: 0 up to 0.69, O from 0.73, seen from the side by
-// some degrees. Between these limits it is left. An O of a typewriter's font is as narrow as a 0.
+// Measured with Liberation Sans, Sans Narrow and Serif, DejaVu Sans and Serif, also condensed and
+// bold, and OpenCV's four Hershey fonts with several stroke widths, sharp and blurred. Width /
+// height of the stroke's centre line: 0 up to 0.69, O from 0.73, seen from a few degrees to the
+// side. Unchanged between these limits. An O of a monospaced font is as narrow as a 0.
 constexpr double kNarrow = 0.695, kRound = 0.72;
-// How far the left side protrudes in the middle of its upper part, by the width: 5 up to 0.03, S
-// from 0.07.
+// Bulge of the left side in the middle of its upper half / width: 5 up to 0.03, S from 0.07.
 constexpr double kStraight = 0.045, kBulging = 0.06;
-// Where the middle of the hole is, from the top: of a 9 at 0.33 at most, of a Q from 0.40.
+// Centre of the hole from the top / height: 9 up to 0.33, Q from 0.40.
 constexpr double kUpper = 0.355, kMiddle = 0.375;
-// How far the upper right corner is cut off: of a Z 0.05 at most, of a 2 from 0.14.
+// Cut-off of the upper right corner / width: Z up to 0.05, 2 from 0.14.
 constexpr double kCorner = 0.08, kRoundCorner = 0.11;
-constexpr double kEven = 0.14;        // what differs less from its mirror image is an I, not a 1
-constexpr double kOpen = -0.2;        // what is open there is a 3
-constexpr double kBar = 0.28;         // width by height of an I without serifs at most; 1 from 0.33
-constexpr double kGap = 1.6;          // by the median of those in words; a space is wider
-constexpr double kSpace = 0.75;       // by the narrowest space that was read; a gap so wide is one
-constexpr double kLeastSpace = 0.25;  // by the height of capital letters; no space is narrower
-// By the median, and by the height: a gap so wide is a space although none was read anywhere.
+constexpr double kEven = 0.14;        // asymmetry below which it is an I, not a 1
+constexpr double kOpen = -0.2;        // bulge of the open left side of a 3
+constexpr double kBar = 0.28;         // width / height of an I without serifs, at most; 1 from 0.33
+constexpr double kGap = 1.6;          // / median gap in words; spaces are wider
+constexpr double kSpace = 0.75;       // / narrowest space read; wider gaps are spaces
+constexpr double kLeastSpace = 0.25;  // / height of capital letters; spaces are wider
+// Gaps / median and / height that are a space even if no space was read anywhere.
 constexpr double kWideGap = 2.5, kWideSpace = 0.36;
-// An L has no more ink in the upper right than this part, and a C none where a G has its bar.
+// Maximum share of ink in the upper right of an L, and in a C at the place of a G's bar.
 constexpr double kNoInk = 0.03;
-// What it costs that no letter was read of a glyph, and that a letter shares one, by the height.
+// Costs of an unread glyph and of a letter that shares its glyph / height.
 constexpr double kUnread = 1, kShared = 1;
-// How wide letters that touch are together at least, by the sum of their widths; how wide slim ones
-// are by the usual width, and this by the height, where it cannot be measured.
+// Minimum width of touching letters / sum of their widths; width of slim letters / usual width;
+// usual width / height where it cannot be measured.
 constexpr double kTouching = 0.75, kSlimWidth = 0.4, kWidth = 0.7;
 constexpr std::string_view kSlim = "I1!|.,-'ijlftr";
 
@@ -50,12 +49,12 @@ bool are_alike(char a, char b) {
          });
 }
 
-/// The holes of a glyph, in it [px].
+/// The holes of a glyph [px].
 std::vector<cv::Rect> holes_of(const cv::Mat& glyph) {
   cv::Mat ground, labels, stats, middles;
   cv::copyMakeBorder(glyph >= 128, ground, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(255));
   const int count = cv::connectedComponentsWithStats(ground, labels, stats, middles, 4);
-  // The holes are what is not connected with the ground outside; specks are none.
+  // Holes are not connected with the ground outside; specks are ignored.
   const int outside = labels.at<std::int32_t>(0, 0);
   std::vector<cv::Rect> holes;
   for (int label = 1; label < count; ++label) {
@@ -67,12 +66,12 @@ std::vector<cv::Rect> holes_of(const cv::Mat& glyph) {
   return holes;
 }
 
-/// Where the middle of a hole is, from the top, by the glyph's height.
+/// Centre of a hole from the top / height of the glyph.
 double middle_of(const cv::Rect& hole, const cv::Mat& glyph) {
   return (hole.y + hole.height / 2.0) / glyph.rows;
 }
 
-/// Where the ink begins, from the left, in rows given as parts of the height: the median [px].
+/// Median left edge of the ink in a range of rows, given as shares of the height [px].
 double left_side(const cv::Mat& glyph, double from, double to) {
   const int first = cvRound(from * glyph.rows);
   const int last = std::min(glyph.rows, std::max(first + 1, cvRound(to * glyph.rows)));
@@ -81,7 +80,7 @@ double left_side(const cv::Mat& glyph, double from, double to) {
     const auto* row = glyph.ptr<std::uint8_t>(y);
     int x = 0;
     while (x < glyph.cols && row[x] >= 128) ++x;
-    // Between the pixels; what is beyond the box is white.
+    // Interpolated; white outside the box.
     const double before = x == 0 ? 255 : row[x - 1];
     sides.push_back(x == glyph.cols ? x : x - (128 - row[x]) / std::max(1.0, before - row[x]));
   }
@@ -90,21 +89,20 @@ double left_side(const cv::Mat& glyph, double from, double to) {
   return *middle;
 }
 
-/// How far an S or 5 protrudes to the left between the top and the middle, by its width.
+/// Bulge of an S or 5 to the left, between the top and the middle / width.
 double bulge(const cv::Mat& glyph) {
   const double ends = (left_side(glyph, 0.02, 0.12) + left_side(glyph, 0.3, 0.4)) / 2;
   return 2 * (ends - left_side(glyph, 0.14, 0.26)) / glyph.cols;
 }
 
-/// How far the upper right corner of a 2 or Z is cut off, by the width.
+/// Cut-off of the upper right corner of a 2 or Z / width.
 double cut_corner(const cv::Mat& glyph) {
   cv::Mat mirrored;
   cv::flip(glyph, mirrored, 1);
   return left_side(mirrored, 0, 0.08) / glyph.cols;
 }
 
-/// Whether a stroke sticks out to the left of the stem at the top and none to the right, as of a 1;
-/// serifs stick out to both.
+/// Whether the stem has a stroke at the top to the left only, as in a 1; serifs are on both sides.
 bool has_flag(const cv::Mat& glyph) {
   cv::Mat mirrored;
   cv::flip(glyph, mirrored, 1);
@@ -114,14 +112,14 @@ bool has_flag(const cv::Mat& glyph) {
   return sticks_out(glyph) > 0.08 && sticks_out(mirrored) < 0.03;
 }
 
-/// How much a glyph differs from its mirror image, by its ink: nothing to twice all.
+/// Difference of a glyph and its mirror image / its ink, 0 … 2.
 double asymmetry(const cv::Mat& glyph) {
   cv::Mat mirrored;
   cv::flip(glyph, mirrored, 1);
   return cv::norm(glyph, mirrored, cv::NORM_L1) / (1 + cv::norm(255 - glyph, cv::NORM_L1));
 }
 
-/// Whether a glyph is one straight stroke from top to bottom, where a ! has a gap above its dot.
+/// Whether a glyph is one straight stroke from top to bottom, without the gap of a !.
 bool is_bar(const cv::Mat& glyph) {
   if (glyph.cols > kBar * glyph.rows) return false;
   cv::Mat rows;
@@ -131,7 +129,7 @@ bool is_bar(const cv::Mat& glyph) {
   return most < 128;
 }
 
-/// The part of a rectangle of a glyph, given as parts of its width and height, that is ink.
+/// The share of ink in a rectangle of a glyph, given as shares of its width and height.
 double ink_in(const cv::Mat& glyph, const cv::Rect2d& part) {
   const cv::Rect box(
       cv::Point(cvRound(part.x * glyph.cols), cvRound(part.y * glyph.rows)),
@@ -148,16 +146,16 @@ std::string text_of(const std::vector<Letter>& letters) {
   return text;
 }
 
-/// About that of capital letters [px].
+/// Approximate height of capital letters [px].
 int height_of(const std::vector<cv::Rect>& boxes) {
   int height = 1;
   for (const auto& box : boxes) height = std::max(height, box.height);
   return height;
 }
 
-/// Which glyph each letter is of. Both stand in the same order, and a letter is where its glyph is,
-/// about: found by dynamic programming is the least sum of the distances, by the height, and of
-/// what glyphs cost that no letter was read of, and letters that share one.
+/// The glyph of each letter. Both are in the same order and at about the same place: dynamic
+/// programming minimises the sum of the distances / height, kUnread for each glyph without a letter
+/// and kShared for each letter that shares a glyph.
 std::vector<std::size_t> glyphs_of(const std::vector<Letter>& letters,
                                    const std::vector<cv::Rect>& boxes) {
   const int height = height_of(boxes);
@@ -165,8 +163,8 @@ std::vector<std::size_t> glyphs_of(const std::vector<Letter>& letters,
     const int x = letters[letter].x, left = boxes[glyph].x, right = boxes[glyph].br().x;
     return static_cast<double>(std::max({left - x, x - right, 0})) / height;
   };
-  // costs[i][k]: least of the first i + 1 letters, the last being of glyph k; from: the one's
-  // before.
+  // costs[i][k]: minimum for the first i + 1 letters with the last one at glyph k; from: the glyph
+  // of the letter before.
   const std::size_t count = boxes.size();
   std::vector<std::vector<double>> costs(letters.size(), std::vector<double>(count));
   std::vector<std::vector<std::size_t>> from(letters.size(), std::vector<std::size_t>(count));
@@ -190,25 +188,25 @@ std::vector<std::size_t> glyphs_of(const std::vector<Letter>& letters,
   return glyphs;
 }
 
-/// The letters of a line and its glyphs, brought together.
+/// The letters of a line, assigned to its glyphs.
 struct Match {
   std::vector<cv::Rect> boxes;
   std::vector<Letter> letters;
   std::vector<std::size_t> glyphs;  // each letter's, in boxes
-  int odd = 0;                      // letters more than there is room for, and glyphs without any
+  int odd = 0;                      // letters without room, and glyphs without a letter
   int touching = 0;                 // letters that share a glyph with the one before
 
   [[nodiscard]] std::size_t sharing(std::size_t glyph) const {
     return static_cast<std::size_t>(std::count(glyphs.begin(), glyphs.end(), glyph));
   }
-  /// Fewer letters that are odd, and then fewer that touch.
+  /// By fewer odd letters, then by fewer touching ones.
   [[nodiscard]] bool is_better_than(const Match& other) const {
     return odd != other.odd ? odd < other.odd : touching < other.touching;
   }
 };
 
-/// The usual width of a letter: the median of those alone in their glyph, of bars none; where there
-/// are none, by the height.
+/// The usual width of a letter: the median of those alone in their glyph, except bars; without any,
+/// derived from the height.
 double usual_width(const Match& match) {
   std::vector<int> widths;
   for (std::size_t k = 0; k < match.boxes.size(); ++k)
@@ -220,7 +218,7 @@ double usual_width(const Match& match) {
   return *middle;
 }
 
-/// Whether letters from `first` to before `end` can be one glyph, because they touch in it.
+/// Whether the letters [first, end) can be one glyph because they touch.
 bool may_touch(const std::vector<Letter>& letters, std::size_t first, std::size_t end,
                const cv::Rect& box, double usual_width) {
   double wide = 0;
@@ -229,8 +227,8 @@ bool may_touch(const std::vector<Letter>& letters, std::size_t first, std::size_
   return box.width > kTouching * wide * usual_width;
 }
 
-/// The one of several letters of a glyph that is to go: the less sure one of two that look alike,
-/// or else the least sure one.
+/// Which of several letters of a glyph to drop: the less confident one of two that look alike,
+/// otherwise the least confident one.
 std::size_t worst_of(const std::vector<Letter>& letters, std::size_t first, std::size_t end) {
   std::size_t worst = first;
   bool is_alike = false;
@@ -244,8 +242,7 @@ std::size_t worst_of(const std::vector<Letter>& letters, std::size_t first, std:
   return worst;
 }
 
-/// Brings letters and glyphs together, what is darker being ink, and drops letters that were read
-/// of the same glyph as others.
+/// Assigns letters to glyphs (ink is below `darker`) and drops letters read twice from one glyph.
 Match match(const cv::Mat& line, const std::vector<Letter>& letters, int darker) {
   Match match{find_letters(line, darker), letters, {}};
   auto& [boxes, left, glyphs, odd, touching] = match;
@@ -274,8 +271,8 @@ Match match(const cv::Mat& line, const std::vector<Letter>& letters, int darker)
   return match;
 }
 
-/// Sets spaces by the gaps: none where it is no wider than those within words, and one where it is
-/// as wide as the others between words.
+/// Corrects spaces by the gaps: removes those no wider than the gaps within words, and adds those
+/// as wide as the gaps between words.
 void set_spaces(Match& match) {
   auto& letters = match.letters;
   const auto& boxes = match.boxes;
@@ -297,7 +294,7 @@ void set_spaces(Match& match) {
     if (gap(i) < least) letters[i].begins_word = false;
     if (letters[i].begins_word) space = std::min<double>(space, gap(i));
   }
-  // Where none was read, a gap has to be clearer.
+  // Without any space read, a gap must be wider.
   const double least_new =
       space < 1e9 ? kSpace * space : std::max(kWideGap * *middle, kWideSpace * height_of(boxes));
   for (std::size_t i = 1; i < letters.size(); ++i)
@@ -382,7 +379,7 @@ char by_shape(const cv::Mat& glyph, char letter) {
 
 Correction by_shape(const cv::Mat& line, const Reading& reading, bool upper_case) {
   if (reading.letters.empty()) return {reading.text, 0};
-  // What is darker is ink; less of it where letters touch.
+  // A lower threshold leaves less ink and separates touching letters.
   auto best = match(line, reading.letters, 128);
   for (const int darker : {96, 64, 32}) {
     if (best.odd == 0 && best.touching == 0) break;
@@ -395,7 +392,7 @@ Correction by_shape(const cv::Mat& line, const Reading& reading, bool upper_case
   for (std::size_t i = 0; i < letters.size(); ++i) {
     const bool is_alone =
         letters[i].begins_word && (i + 1 == letters.size() || letters[i + 1].begins_word);
-    // A word of nothing but an upright stroke is no l.
+    // A word of a single upright stroke is not an l.
     if (upper_case ? !letters[i].is_known : is_alone && letters[i].letter == '1') {
       if (best.sharing(best.glyphs[i]) == 1)
         letters[i].letter = by_shape(line(best.boxes[best.glyphs[i]]), letters[i].letter);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What Tesseract gets wrong in words that are no words, such as codes, set right by the shapes of
-// the letters: where they leave no doubt, in any common font, and nowhere else. Of the letters of
-// 20 codes on the simulated board 0.0 % are wrong with it and 5.8 % without, at a noise of 20 1.0 %
-// and 13.9 % (tests/pipes/read_test.py).
+// Corrects Tesseract's errors in words outside its dictionary, such as codes, by the shapes of the
+// letters, only where these are unambiguous in all common fonts. Wrong letters in 20 codes on the
+// simulated board: 0.0 % with it and 5.8 % without; at a noise of 20, 1.0 % and 13.9 %
+// (tests/pipes/read_test.py).
 
 #include <string>
 #include <vector>
@@ -12,42 +12,41 @@
 
 namespace hc::vision {
 
-/// A letter of ASCII that was read.
+/// An ASCII letter as read.
 struct Letter {
   char letter = ' ';
   double confidence = 0;     ///< [%]
-  bool begins_word = false;  ///< preceded by a space, or nothing
+  bool begins_word = false;  ///< after a space, or first
   bool is_known = false;     ///< its word is in a dictionary
-  int x = 0;                 ///< its middle, about [px]
+  int x = 0;                 ///< its centre, about [px]
 };
 
 struct Reading {
   std::string text;             ///< UTF-8, without space around it; may be empty
   double confidence = 0;        ///< 0 … 1
-  std::vector<Letter> letters;  ///< of the text; none where one is not ASCII
+  std::vector<Letter> letters;  ///< of the text; empty if one is not ASCII
 };
 
-/// The boxes of the letters of a straight line, from left to right; parts above one
-/// another, as the parts of a !, is one. @param line (H, W) u8, black on white.
-/// @param darker  what is darker is ink.
+/// The boxes of the letters of a straight line, from left to right; parts above one another, as in
+/// a !, are one box.
+/// @param line  (H, W) u8, black on white. @param darker  pixels below this are ink.
 std::vector<cv::Rect> find_letters(const cv::Mat& line, int darker = 128);
 
-/// What a glyph is that was read as `letter`: O or 0 by how round it is, 5, S or 3 by whether it
-/// is straight, protrudes or is open on its left, Q or 9 by how low its hole is, I where it is
-/// nothing but a bar, 1 where an I has a flag; otherwise `letter`.
+/// The letter of a glyph that was read as `letter`: O or 0 by its roundness; 5, S or 3 if its left
+/// side is straight, bulges or is open; Q or 9 by the height of its hole; I for a bar; 1 for an I
+/// with a flag; otherwise `letter`.
 /// @param glyph  cut out, (H, W) u8, black on white.
 char by_shape(const cv::Mat& glyph, char letter);
 
-/// A reading, set right.
+/// A corrected reading.
 struct Correction {
   std::string text;
-  int odd = 0;  ///< letters without a glyph of their own, and glyphs of which no letter was read
+  int odd = 0;  ///< letters without their own glyph, and glyphs without a letter
 };
 
-/// Sets a reading right: of two letters that look alike and were read of one glyph, the less sure
-/// one is dropped; spaces are where gaps are wide; and in upper case, each letter of a word that is
-/// in no dictionary is by its shape.
-/// @param line  what was read, (H, W) u8, black on white.
+/// Corrects a reading: drops the less confident of two similar letters read from one glyph; puts
+/// spaces at wide gaps; in upper case, decides letters of words outside the dictionary by shape.
+/// @param line  the image that was read, (H, W) u8, black on white.
 Correction by_shape(const cv::Mat& line, const Reading& reading, bool upper_case = true);
 
 }  // namespace hc::vision

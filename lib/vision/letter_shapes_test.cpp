@@ -17,7 +17,7 @@ cv::Mat written(const std::string& text, int font, int stroke, double blur) {
   return line;
 }
 
-/// Where letters of about the same width are, one after the other [px].
+/// Positions of consecutive letters of about the same width [px].
 std::vector<int> middles_of(const cv::Mat& line, std::size_t letters) {
   // Some touch; there is less ink between them.
   auto boxes = find_letters(line);
@@ -35,8 +35,8 @@ std::vector<int> middles_of(const cv::Mat& line, std::size_t letters) {
   return middles;
 }
 
-/// What was read of a line, the letters where its glyphs are: a letter each, unless it is said
-/// which glyph each one is of.
+/// A reading of a line with the letters at its glyphs: one letter per glyph unless the glyph of
+/// each is given.
 Reading reading(const cv::Mat& line, const std::string& text,
                 const std::vector<std::size_t>& glyphs = {}, bool is_known = false) {
   Reading reading{text, 0.9, {}};
@@ -109,7 +109,7 @@ TEST(Shapes, both_for_one_letter_are_told_from_letters_that_touch) {
   auto twice = reading(line, "LAVS56X", {0, 0, 1, 2, 2, 3, 4});
   twice.letters[3].confidence = 97;
   EXPECT_EQ(by_shape(line, twice).text, "LAV56X");
-  // Where letters touch, the others are set right all the same.
+  // Touching letters do not prevent the correction of the others.
   EXPECT_EQ(by_shape(line, reading(line, "LAVS6X", {0, 0, 1, 2, 3, 4})).text, "LAV56X");
 }
 

@@ -14,22 +14,22 @@
 namespace hc::vision {
 namespace {
 
-// Of letters, in pixels of the level of the pyramid that they are looked for at.
+// Of letters, in pixels of the searched pyramid level.
 constexpr int kLeastHeight = 8, kMostHeight = 40, kWindow = 35;
-constexpr int kMostPieces = 1500;  // an image of nothing but grains
+constexpr int kMostPieces = 1500;  // limits the cost of grainy images
 constexpr int kLevels = 3;
-// Of lines that are not level: from what slope and how like a line of how many letters they are
-// searched again as level ones, and how many.
+// Lines of at least this slope, score and number of letters are searched again after levelling, at
+// most kMostTurned of them.
 constexpr double kTurned = 0.08, kTurnedScore = 0.2;
 constexpr int kTurnedLetters = 4;
 constexpr std::size_t kMostTurned = 3;
 
-/// Something dark that is connected.
+/// A connected dark region.
 struct Piece {
   cv::Rect box;
-  double ink = 0, ground = 0;  // mean grey of it, and of what is around it
-  bool is_letter = false;      // by its size; otherwise perhaps a stop, a comma or a dash
-  bool is_bar = false;         // full of ink, as an I and the gap beside a book
+  double ink = 0, ground = 0;  // mean grey inside and around it
+  bool is_letter = false;      // by its size; otherwise perhaps punctuation
+  bool is_bar = false;         // full of ink, such as an I or the gap beside a book
   [[nodiscard]] float left() const { return static_cast<float>(box.x); }
   [[nodiscard]] float right() const { return static_cast<float>(box.x + box.width); }
   [[nodiscard]] float top() const { return static_cast<float>(box.y); }
@@ -51,7 +51,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Measures what is in a piece's box and around it; nothing for what is too faint for a letter.
+/// Measures a piece inside and around its box; nothing if it is too faint for a letter.
 std::optional<Piece> look_at(const cv::Mat& grey, const cv::Mat& labels, const cv::Mat& dark,
                              int label, const cv::Rect& box, double min_contrast) {
   const cv::Rect around =
@@ -73,7 +73,7 @@ std::optional<Piece> look_at(const cv::Mat& grey, const cv::Mat& labels, const c
   return piece;
 }
 
-/// The dark pieces of an image that may be letters or stops.
+/// The dark pieces of an image that may be letters or punctuation.
 std::vector<Piece> find_pieces(const cv::Mat& grey, double noise, cv::Mat& dark) {
   const double least = std::max(6.0, 3 * noise);
   cv::adaptiveThreshold(grey, dark, 255, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY_INV, kWindow,
@@ -91,7 +91,7 @@ std::vector<Piece> find_pieces(const cv::Mat& grey, double noise, cv::Mat& dark)
     const bool is_solid = filled > 0.85 && 10 * box.width > 6 * box.height;
     const bool is_letter = box.height >= kLeastHeight && box.width <= 6 * box.height &&
                            filled > 0.12 && area >= 10 && !is_solid;
-    // Specks that noise makes are smaller than stops beside the least of letters.
+    // Specks of noise are smaller than the full stops of the smallest letters.
     if (!is_letter && (box.height > kMostHeight / 2 || box.width > kMostHeight)) continue;
     auto piece = look_at(grey, labels, dark, label, box, 2 * least);
     if (!piece) continue;
@@ -106,7 +106,7 @@ std::vector<Piece> find_pieces(const cv::Mat& grey, double noise, cv::Mat& dark)
 bool are_neighbours(const Piece& a, const Piece& b) {
   const float high = std::max(a.height(), b.height()), low = std::min(a.height(), b.height());
   if (high > 1.8F * low) return false;
-  // The further they are apart, the more a line that is not level rises between them.
+  // An inclined line rises more between distant letters.
   const float apart = std::abs(a.middle_x() - b.middle_x());
   if (std::abs(a.middle_y() - b.middle_y()) > 0.35F * high + 0.15F * apart) return false;
   const float gap = std::max(a.left(), b.left()) - std::min(a.right(), b.right());
@@ -116,7 +116,7 @@ bool are_neighbours(const Piece& a, const Piece& b) {
          std::abs(a.ink - b.ink) < 0.5 * contrast;
 }
 
-/// Whether something dark stands across what is between two columns, as the frame of a board.
+/// Whether something dark, such as the frame of a board, separates two columns.
 bool is_parted(const cv::Mat& dark, double left, double right, double top, double bottom) {
   const cv::Rect gap =
       cv::Rect(cv::Point(cvRound(left), cvRound(top)), cv::Point(cvRound(right), cvRound(bottom))) &
@@ -132,7 +132,7 @@ bool is_parted(const cv::Mat& dark, const Piece& a, const Piece& b) {
                    std::max(a.top(), b.top()), std::min(a.bottom(), b.bottom()));
 }
 
-/// Letters by their line.
+/// Groups letters into lines.
 std::vector<std::vector<Piece>> group(const std::vector<Piece>& pieces, const cv::Mat& dark) {
   std::vector<Piece> letters;
   for (const auto& piece : pieces)
@@ -157,7 +157,7 @@ std::vector<std::vector<Piece>> group(const std::vector<Piece>& pieces, const cv
   return groups;
 }
 
-/// The slope that most pairs of points agree with (Theil and Sen).
+/// The median slope of pairs of points (Theil-Sen).
 double slope_of(const std::vector<cv::Point2d>& points) {
   std::vector<double> slopes;
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -181,7 +181,7 @@ double spread_of(const std::vector<cv::Point2d>& points, const Slant& line) {
   return sum / static_cast<double>(points.size());
 }
 
-/// Stops, commas and dashes that belong to a line reach beyond its letters.
+/// Extends a line by the punctuation beyond its letters.
 void reach_for_stops(const std::vector<Piece>& pieces, const cv::Mat& dark, const Slant& top,
                      const Slant& base, double height, double ground, double& left, double& right) {
   bool any = true;
@@ -206,7 +206,7 @@ void reach_for_stops(const std::vector<Piece>& pieces, const cv::Mat& dark, cons
 /// Mean and standard deviation of the ground between a line's letters.
 std::pair<double, double> ground_of(const cv::Mat& grey, const cv::Mat& dark, const cv::Rect& box) {
   cv::Mat ink, mean, deviation;
-  // The letters' soft edges are not the ground.
+  // Exclude the soft edges of letters.
   cv::dilate(dark(box), ink, cv::Mat());
   cv::meanStdDev(grey(box), mean, deviation, ink == 0);
   return {mean.at<double>(0), deviation.at<double>(0)};
@@ -214,7 +214,7 @@ std::pair<double, double> ground_of(const cv::Mat& grey, const cv::Mat& dark, co
 
 std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::vector<Piece>& pieces,
                                 const cv::Mat& grey, const cv::Mat& dark, double noise) {
-  // Slots, books and stripes make rows too; of letters, few are bars.
+  // Slots, books and stripes form rows of bars; few letters are bars.
   const auto bars = std::count_if(letters.begin(), letters.end(),
                                   [](const auto& letter) { return letter.is_bar; });
   if (4 * static_cast<std::size_t>(bars) > 3 * letters.size()) return {};
@@ -234,7 +234,7 @@ std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::ve
     inks.push_back(letter.ink);
     grounds.push_back(letter.ground);
   }
-  // Few letters say too little of a perspective, and so do tops of which some are of small letters.
+  // Few letters do not determine the perspective, nor do tops of mixed small and capital letters.
   double top_slope = slope_of(tops), base_slope = slope_of(bottoms);
   if (tops.size() < 5)
     top_slope = base_slope = (top_slope + base_slope) / 2;
@@ -245,7 +245,7 @@ std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::ve
   const double middle_x = (left + right) / 2, height = base.at(middle_x) - top.at(middle_x);
   if (height < kLeastHeight - 1) return {};
   const double ink = median(inks), ground = median(grounds);
-  std::vector<double> unevenness;  // letters stand on the base line, or hang from the top one
+  std::vector<double> unevenness;  // letters are aligned to the base line or the top line
   unevenness.reserve(letters.size());
   for (const auto& letter : letters)
     unevenness.push_back(std::min(std::abs(letter.bottom() - base.at(letter.middle_x())),
@@ -259,11 +259,11 @@ std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::ve
   };
   line.corners = {corner(left, top.at(left)), corner(right, top.at(right)),
                   corner(right, base.at(right)), corner(left, base.at(left))};
-  // Letters that touch are one wide piece.
+  // Touching letters are one wide piece.
   for (const auto& letter : letters)
     line.letters += std::max(1, static_cast<int>(letter.box.width / height));
   line.height = height;
-  // A margin of a third of the height is to be clean too.
+  // A margin of a third of the height must be clean too.
   const int margin = static_cast<int>(height / 3);
   cv::Rect box =
       cv::boundingRect(std::vector<cv::Point2f>(line.corners.begin(), line.corners.end()));
@@ -281,7 +281,7 @@ std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::ve
   return line;
 }
 
-/// Whether one line stands right above or below another, as on the same board.
+/// Whether one line is directly above or below another, as on the same board.
 bool are_above_each_other(const TextLine& a, const TextLine& b) {
   const auto [low, high] = std::minmax(a.height, b.height);
   const cv::Rect2f one = a.box(), other = b.box();
@@ -291,13 +291,13 @@ bool are_above_each_other(const TextLine& a, const TextLine& b) {
 }
 
 void scale(TextLine& line, double by) {
-  // The middle of the first pixel of the larger image is not that of the smaller one's.
+  // The first pixels of the two images have different centres.
   for (auto& corner : line.corners)
     corner = (corner + cv::Point2f(0.5F, 0.5F)) * by - cv::Point2f(0.5F, 0.5F);
   line.height *= by;
 }
 
-/// The lines of letters that are about level, from large to small.
+/// The approximately level lines of letters, from large to small.
 std::vector<TextLine> search(cv::Mat grey, double noise, double min_score) {
   std::vector<TextLine> found;
   double by = 1;
@@ -332,7 +332,7 @@ bool overlap(const TextLine& a, const TextLine& b) {
   return cv::intersectConvexConvex(a.corners, b.corners, shared) > 0;
 }
 
-/// The best first, none of which overlaps a better one.
+/// Sorts lines, best first, and drops those that overlap a better one.
 std::vector<TextLine> best_of(std::vector<TextLine> lines) {
   std::stable_sort(lines.begin(), lines.end(),
                    [](const auto& a, const auto& b) { return a.score > b.score; });
@@ -344,8 +344,8 @@ std::vector<TextLine> best_of(std::vector<TextLine> lines) {
   return kept;
 }
 
-/// Lines, or parts of some, that are so far from level that their letters' boxes say little of
-/// them; none where a line that is level is better than they are.
+/// Lines, or parts of lines, too inclined for the boxes of their letters to be reliable; none if a
+/// level line is better.
 std::vector<TextLine> turned_of(const std::vector<TextLine>& lines, double min_score) {
   auto best = best_of(lines);
   const auto is_level = [](const auto& line) { return std::abs(std::tan(line.angle())) < kTurned; };
@@ -356,7 +356,7 @@ std::vector<TextLine> turned_of(const std::vector<TextLine>& lines, double min_s
   return best;
 }
 
-/// Searches again around a line, where it is level.
+/// Searches again around a line after levelling it.
 void search_turned(const cv::Mat& grey, double noise, const TextLine& line, double min_score,
                    std::vector<TextLine>& found) {
   const double width = line.width(), height = line.height;
@@ -431,7 +431,7 @@ std::vector<TextLine> block_of_best(const std::vector<TextLine>& lines) {
     if (!is_next) continue;
     block.push_back(lines[i]);
     is_taken[i] = true;
-    i = 0;  // the best is taken; a line passed over may stand beside the one just added
+    i = 0;  // start over: a skipped line may be next to the one just added
   }
   if (block.empty()) return block;
   const double angle = block.front().angle();

@@ -45,7 +45,7 @@ cv::Rect text_box(const std::string& text, cv::Point at = {300, 200}, double sca
   return {at.x, at.y - size.height, size.width, size.height};
 }
 
-/// The best of the lines that are found.
+/// The best line found.
 TextLine best_line(const cv::Mat& image) {
   const auto lines = find_text_lines(image);
   EXPECT_FALSE(lines.empty());
@@ -136,7 +136,7 @@ TEST(Letters, a_dash_and_a_stop_belong_to_the_line) {
 TEST(Letters, a_line_ends_at_the_frame_of_its_board) {
   cv::Mat image = scene("HELLO ROBOT");
   const auto box = text_box("HELLO ROBOT");
-  // Behind the board, near its frame, hangs what could be a letter.
+  // Behind the board, near its frame, is an object that resembles a letter.
   const int x = box.br().x + box.height + 6;
   cv::rectangle(image, {x - 3, box.y - 10, 60, 45}, {240, 240, 235}, cv::FILLED);
   cv::putText(image, "S", {x, box.br().y}, cv::FONT_HERSHEY_DUPLEX, 1, {20, 20, 25}, 2,

@@ -12,7 +12,7 @@
 namespace hc::vision {
 namespace {
 
-/// The grey level between pixels; what is outside is as the rim.
+/// The interpolated grey level; outside the image that of the border.
 double level(const cv::Mat& grey, double x, double y) {
   x = std::clamp(x, 0.0, grey.cols - 1.001);
   y = std::clamp(y, 0.0, grey.rows - 1.001);
@@ -28,23 +28,23 @@ struct Line {
   cv::Point2d at, along;
 };
 
-/// The edge near a side: the steepest places of rays across it, and a line through them.
+/// The edge near a side: a line through the steepest points of rays across it.
 std::optional<Line> edge_near(const cv::Mat& grey, cv::Point2d from, cv::Point2d to,
                               double farthest) {
   const cv::Point2d side = to - from;
   const double length = cv::norm(side);
   const cv::Point2d along = side / length, across(-along.y, along.x);
-  // Not as far as what is drawn beside the rim.
+  // Short of anything drawn beside the rim.
   const double reach = std::clamp(0.15 * length, 1.5, farthest);
   const int rays = std::clamp(static_cast<int>(length / 2), 6, 40);
   constexpr double kStep = 0.5;  // along a ray [px]
   const auto steps = static_cast<std::ptrdiff_t>(std::ceil(reach / kStep));
   std::vector<double> slopes(static_cast<std::size_t>(2 * steps + 1));
-  double direction = 0;  // of all slopes: the rim is darker, or lighter, all along
-  std::vector<std::pair<double, double>> found;  // where along the side, and how far across it
+  double direction = 0;  // of all slopes: the rim is darker or lighter everywhere
+  std::vector<std::pair<double, double>> found;  // positions along the side and across it
   for (int pass : {0, 1}) {
     for (int ray = 0; ray < rays; ++ray) {
-      // Where two sides meet an edge is round.
+      // Edges are rounded near the corners.
       const double share = 0.12 + 0.76 * (ray + 0.5) / rays;
       const cv::Point2d middle = from + share * side;
       for (auto i = -steps; i <= steps; ++i) {
@@ -63,7 +63,7 @@ std::optional<Line> edge_near(const cv::Mat& grey, cv::Point2d from, cv::Point2d
       constexpr double kLeastSlope = 8;  // grey levels over two pixels
       if (best == 0 || best == 2 * steps || slopes[static_cast<std::size_t>(best)] < kLeastSlope)
         continue;
-      // The centre of the slope's peak, which noise moves less than its top.
+      // The centroid of the peak, which is less sensitive to noise than its maximum.
       const double half = slopes[static_cast<std::size_t>(best)] / 2;
       double sum = 0, moment = 0;
       for (auto i = best; i >= 0 && slopes[static_cast<std::size_t>(i)] > half; --i) {
@@ -79,7 +79,7 @@ std::optional<Line> edge_near(const cv::Mat& grey, cv::Point2d from, cv::Point2d
     if (pass == 0) direction = direction > 0 ? 1 : -1;
   }
   if (found.size() < 4) return std::nullopt;
-  // Huber's line, by weights; what is far off is another edge.
+  // A line fitted with Huber weights; distant points are of another edge.
   double slope = 0, offset = 0;
   for (int iteration = 0; iteration < 5; ++iteration) {
     double w = 0, x = 0, y = 0, xx = 0, xy = 0;
@@ -128,7 +128,7 @@ bool refine_corners(const cv::Mat& grey, std::array<cv::Point2d, 4>& corners, do
   auto refined = corners;
   for (std::size_t i = 0; i < 4; ++i) {
     auto corner = meet(sides[(i + 3) % 4], sides[i]);
-    // Farther is another corner.
+    // Farther away it is another corner.
     if (!corner || cv::norm(*corner - corners[i]) > 2 * reach) return false;
     refined[i] = *corner;
   }
@@ -140,7 +140,7 @@ std::optional<MarkerPose> pose_of(const Marker& marker, double side, const Camer
   const auto& p = camera.pinhole;
   const cv::Matx33d M(p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1);
   const double half = side / 2;
-  // OpenCV's order and frame, in which y is up and z comes out of the marker.
+  // OpenCV's order and frame: y up, z out of the marker.
   const std::vector<cv::Point3d> square = {
       {-half, half, 0}, {half, half, 0}, {half, -half, 0}, {-half, -half, 0}};
   const std::vector<cv::Point2d> seen(marker.corners.begin(), marker.corners.end());
@@ -148,7 +148,7 @@ std::optional<MarkerPose> pose_of(const Marker& marker, double side, const Camer
   try {
     cv::solvePnPGeneric(square, seen, M, camera.distortion, turns, shifts, false,
                         cv::SOLVEPNP_IPPE_SQUARE);
-    // OpenCV's IPPE fails on a square that faces the camera: this one is a third candidate.
+    // OpenCV's IPPE fails on a square that faces the camera: add a third candidate.
     cv::Mat turn, shift;
     if (cv::solvePnP(square, seen, M, camera.distortion, turn, shift, false,
                      cv::SOLVEPNP_ITERATIVE)) {

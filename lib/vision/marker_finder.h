@@ -15,7 +15,7 @@ namespace hc::vision {
 /// ArUco markers of one dictionary.
 class ArucoFinder {
  public:
-  /// @param dictionary  as OpenCV names it, without DICT_: "4X4_50", "6X6_250", "ARUCO_ORIGINAL".
+  /// @param dictionary  OpenCV's name without DICT_: "4X4_50", "6X6_250", "ARUCO_ORIGINAL".
   ///
   /// Errors: NotFound.
   static Result<ArucoFinder> make(const std::string& dictionary);
@@ -33,8 +33,8 @@ class ArucoFinder {
 /// AprilTags of the family tag36h11.
 class AprilTagFinder {
  public:
-  /// @param decimate  edges are looked for in an image so many times smaller: 1 finds the most, 2
-  ///     takes a third of the time. [1]
+  /// @param decimate  edges are searched in an image reduced by this factor [1]: 1 finds the most,
+  ///     2 takes a third of the time.
   explicit AprilTagFinder(double decimate);
 
   /// @param grey  (H, W) u8.
@@ -46,8 +46,8 @@ class AprilTagFinder {
   std::shared_ptr<Detector> detector_;
 };
 
-/// Filled squares of one saturated colour on white. The square does not show its rotation, so
-/// that top left is the corner for which the marker is turned least.
+/// Filled squares of one saturated colour on white. The rotation of a square is ambiguous: top left
+/// is the corner that gives the least rotation.
 ///
 /// @param rgb  (H, W, 3) u8.
 /// Cost: 2 to 4 ms at 800×600.

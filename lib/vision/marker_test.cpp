@@ -44,21 +44,21 @@ Face face_of(MarkerKind kind, int id) {
     return {rgb, 80, 320};
   }
   if (kind == MarkerKind::AprilTag) {
-    // As the library of AprilTags has it, which OpenCV turns by 180 degrees; with a margin.
+    // From the AprilTag library, rotated by 180° relative to OpenCV; with a margin.
     apriltag_family_t* family = tag36h11_create();
     image_u8_t* tag = apriltag_to_image(family, id);
     cv::Mat grey, rgb;
     cv::resize(
         cv::Mat(tag->height, tag->width, CV_8U, tag->buf, static_cast<std::size_t>(tag->stride)),
         grey, {400, 400}, 0, 0, cv::INTER_NEAREST);
-    std::free(tag->buf);  // image_u8_destroy() is not there to be linked
+    std::free(tag->buf);  // image_u8_destroy() is not exported
     std::free(tag);
     tag36h11_destroy(family);
     cv::cvtColor(grey, rgb, cv::COLOR_GRAY2RGB);
     return {rgb, 40, 320};
   }
   const auto words = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_6X6_250);
-  // cv::Ptr and drawMarker in OpenCV 4.6, a value and generateImageMarker in 4.7 and later.
+  // cv::Ptr and drawMarker in OpenCV 4.6, a value and generateImageMarker since 4.7.
   cv::Mat code = [&](const auto& dictionary) {
     cv::Mat image;
     if constexpr (requires { dictionary.get(); })
@@ -78,7 +78,7 @@ struct Truth {
   cv::Vec3d t;
 };
 
-/// What a camera sees of a marker, drawn at four times the size and averaged.
+/// A camera's image of a marker, rendered at four times the size and averaged.
 cv::Mat view(const Face& face, const Truth& truth, const Camera& camera, double noise) {
   constexpr int kFine = 4;
   const auto& p = camera.pinhole;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Messages as cv::Mat and back, without a copy. Header only; a target of its own, hc::opencv.
+// Messages as cv::Mat and back, without a copy. Header only; target hc::opencv.
 
 #include <concepts>
 #include <cstring>
@@ -13,7 +13,7 @@ namespace hc {
 
 /// OpenCV's depth of a scalar: CV_8U … CV_64F.
 ///
-/// Errors: Unsupported (u32, u64 and i64, which OpenCV does not have).
+/// Errors: Unsupported (u32, u64 and i64, which OpenCV lacks).
 inline Result<int> cv_depth(Scalar scalar) {
   const int depth = visit_scalar(scalar, [](auto zero) {
     if constexpr (requires { cv::DataType<decltype(zero)>::depth; })
@@ -25,15 +25,14 @@ inline Result<int> cv_depth(Scalar scalar) {
   return Error{Code::Unsupported, "OpenCV has no matrix of " + std::string(name(scalar))};
 }
 
-/// A kind whose scalar OpenCV has.
+/// A kind whose scalar OpenCV supports.
 template <typename K>
 concept OpenCvKind = ScalarType<typename K::Scalar> && cv::DataType<typename K::Scalar>::depth >= 0;
 
-/// The elements as a matrix of the same shape, (height, width, components); a colour image has
-/// its channels in the order of the format, r g b. Views the message, which must live longer, and
-/// must not be written to.
+/// The elements as a matrix of the same shape, (height, width, components), with the channels of
+/// the format, r g b for colour images. Views the message, which must live longer; read-only.
 ///
-/// Errors: Unsupported (compressed; a scalar that OpenCV does not have).
+/// Errors: Unsupported (compressed; a scalar that OpenCV lacks).
 inline Result<cv::Mat> as_mat(const Message& message) {
   if (!message.plain())
     return Error{Code::Unsupported,
@@ -44,13 +43,13 @@ inline Result<cv::Mat> as_mat(const Message& message) {
                  const_cast<std::byte*>(message.elements.data()));
 }
 
-/// The same of a handler's message, which is plain and of its kind.
+/// The same for the typed, uncompressed message of a handler.
 template <OpenCvKind K>
 cv::Mat as_mat(const MessageOf<K>& message) {
   return *as_mat(static_cast<const Message&>(message));
 }
 
-/// The elements of a draft. OpenCV writes there only while shape and type stay: see fill().
+/// The elements of a draft. OpenCV reallocates if shape or type differ: see fill().
 template <OpenCvKind K>
 cv::Mat as_mat(const DraftOf<K>& draft) {
   return {draft.header.height, draft.header.width,
@@ -58,8 +57,8 @@ cv::Mat as_mat(const DraftOf<K>& draft) {
           draft.elements().data()};
 }
 
-/// Has a draft hold the numbers of a matrix; a matrix that views the draft already is not copied.
-/// Another shape or type than the draft's is a bug.
+/// Copies a matrix into a draft, unless it views the draft already. The matrix must have the
+/// draft's shape and type.
 template <OpenCvKind K>
 void fill(const DraftOf<K>& draft, const cv::Mat& mat) {
   cv::Mat own = as_mat(draft);
@@ -67,9 +66,8 @@ void fill(const DraftOf<K>& draft, const cv::Mat& mat) {
   if (mat.data != own.data) mat.copyTo(own);
 }
 
-/// Writes a draft in place. OpenCV's functions reallocate their result where shape or type
-/// differ from what they are given; then it is copied where only the memory differs, and a bug
-/// where shape or type do.
+/// Writes a draft in place. A reallocated result is copied; it must have the draft's shape and
+/// type.
 ///
 ///     hc::fill(draft, [&](cv::Mat& rgb) { cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB); });
 template <OpenCvKind K, std::invocable<cv::Mat&> Write>

@@ -9,7 +9,7 @@ namespace hc {
 namespace {
 
 DraftOf<RgbImageKind<std::uint8_t>> image(std::int32_t width, std::int32_t height) {
-  return {Draft::make(rgb_image<std::uint8_t>().type.info, width, height)};
+  return {Draft::make(rgb_image().type.info, height, width)};
 }
 
 TEST(OpenCv, SharesElementsBothWays) {
@@ -55,12 +55,11 @@ TEST(OpenCv, HasTheDepthOfEachScalarThatItKnows) {
   for (const auto& [scalar, depth] : depths) EXPECT_EQ(*cv_depth(scalar), depth);
   for (Scalar scalar : {Scalar::U32, Scalar::U64, Scalar::I64})
     EXPECT_EQ(cv_depth(scalar).error().code, Code::Unsupported);
-  const std::array<std::uint32_t, 1> number = {1};
-  EXPECT_FALSE(as_mat(Message(table<std::uint32_t>(number))));
+  EXPECT_FALSE(as_mat(Message(table<std::uint32_t>().message({1}))));
 }
 
 TEST(OpenCv, CompressedIsRefused) {
-  Message message = table({1.0});
+  Message message = table().message({1.0});
   message.header.info.encoding = Encoding::Zstd;
   EXPECT_FALSE(as_mat(message));
 }

@@ -41,7 +41,7 @@ Matrix3d turn(const Vector3d& by) {
   return Eigen::AngleAxisd(angle, by / angle).matrix();
 }
 
-/// A movement with five freedoms: three of the rotation, two of the direction of t.
+/// A motion with five degrees of freedom: three of R, two of the direction of t.
 struct State {
   Matrix3d R;
   Vector3d t;
@@ -52,7 +52,7 @@ struct State {
   }
 };
 
-/// Signed distances in pixels, about: Sampson's.
+/// Sampson distances: approximate, signed [px].
 Eigen::VectorXd errors(const State& state, const std::vector<Vector3d>& a,
                        const std::vector<Vector3d>& b, double focal) {
   const Matrix3d E = cross_matrix(state.t) * state.R;
@@ -65,7 +65,7 @@ Eigen::VectorXd errors(const State& state, const std::vector<Vector3d>& a,
   return result;
 }
 
-/// Of how many matches both depths are over 0.
+/// The number of matches with both depths above 0.
 int in_front(const State& state, const std::vector<Vector3d>& a, const std::vector<Vector3d>& b) {
   int count = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -80,7 +80,7 @@ int in_front(const State& state, const std::vector<Vector3d>& a, const std::vect
   return count;
 }
 
-/// Gauss and Newton, by Huber's weights.
+/// Levenberg-Marquardt with Huber weights.
 void refine(State& state, const std::vector<Vector3d>& a, const std::vector<Vector3d>& b,
             double focal, bool is_known) {
   constexpr int kSteps = 12;
@@ -120,7 +120,7 @@ void refine(State& state, const std::vector<Vector3d>& a, const std::vector<Vect
 }  // namespace
 
 Matches match(const cv::Mat& a, const cv::Mat& b, const Intrinsics& camera, const Matrix3d& R_a_b) {
-  // b as it would be without the turn, so that the same things look the same.
+  // Undo the rotation of b, so that the same things look the same.
   const Matrix3d homography = matrix(camera) * R_a_b * matrix(camera).inverse();
   cv::Mat turned;
   cv::warpPerspective(b, turned, as_cv(homography), a.size(), cv::INTER_LINEAR);
@@ -146,7 +146,7 @@ Matches match(const cv::Mat& a, const cv::Mat& b, const Intrinsics& camera, cons
     }
   if (from.empty()) return {};
   cv::perspectiveTransform(to, to, as_cv(homography.inverse()));
-  // What was drawn from outside of b is nothing.
+  // Drop points warped from outside b.
   Matches matches;
   for (std::size_t i = 0; i < to.size(); ++i)
     if (inside.contains(to[i])) {
@@ -167,7 +167,7 @@ std::optional<RelativePose> relative_pose(const Matches& matches, const Intrinsi
     b.push_back(ray(matches.b[i]));
   }
   State state{R_a_b, t.normalized()};
-  // Again without those that do not agree.
+  // Repeat without the outliers.
   for (double within : {8.0, 2.0, kAgrees}) {
     if (a.size() < kLeast) return std::nullopt;
     refine(state, a, b, camera.focal, is_known);

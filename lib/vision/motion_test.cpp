@@ -23,7 +23,7 @@ double angle_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return Eigen::AngleAxisd(a.transpose() * b).angle();
 }
 
-/// Points 1.5 to 5 m away, seen from two places with a little noise; some matched wrongly.
+/// Points 1.5 to 5 m away, seen from two places with a little noise and some wrong matches.
 Matches scene(const Eigen::Matrix3d& R_a_b, const Eigen::Vector3d& t, double noise, int wrong) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> u(0, 800), v(0, 600), depth(1.5, 5);

@@ -15,7 +15,7 @@ Result<Rectifier> Rectifier::make(const StereoCalibration& calibration, Eye eye,
     return Error{Code::Unsupported,
                  hc::format("an image of {} x {}, the calibration is for {} x {}", size.width,
                             size.height, c.size.width, c.size.height)};
-  constexpr int kMostSide = 32766;  // of what cv::remap() takes
+  constexpr int kMostSide = 32766;  // limit of cv::remap()
   if (size.width < 1 || size.height < 1 || size.width > kMostSide || size.height > kMostSide)
     return Error{Code::TooLarge,
                  hc::format("an image of {} x {} cannot be rectified", size.width, size.height)};

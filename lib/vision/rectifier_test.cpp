@@ -31,7 +31,7 @@ TEST(Rectifier, AnIdealPairStaysAsItIs) {
   }
 }
 
-// Discs of a wall are drawn where two squinting cameras with distortion see them.
+// Draws discs on a wall as seen by two squinting cameras with distortion.
 TEST(Rectifier, RowsCorrespondAndDisparityIsDepth) {
   StereoCalibration c = ideal_pair({800, 600}, 600, 0.1);
   c.D1 = {-0.2, 0.05, 0.001, 0, 0};

@@ -27,7 +27,7 @@ double noise_of(const cv::Mat& grey) {
   for (int y = 1; y < rough.rows - 1; y += 4) {
     const auto* row = rough.ptr<std::int16_t>(y);
     for (int x = 1; x < rough.cols - 1; x += 4) {
-      // What is black or white altogether has been cut off, and carries no information.
+      // Saturated pixels are clipped and carry no information.
       const int value = grey.at<std::uint8_t>(y, x);
       if (value < 3 || value > 252) continue;
       ++counts[static_cast<std::size_t>(std::min(2047, std::abs(static_cast<int>(row[x]))))];
@@ -38,7 +38,7 @@ double noise_of(const cv::Mat& grey) {
   int below = 0;
   std::size_t middle = 0;
   while (below + counts[middle] <= all / 2) below += counts[middle++];
-  // Within the bin, so that a little noise is not none.
+  // Interpolate within the bin, so that weak noise is not 0.
   const double part = (all / 2.0 - below) / counts[middle];
   const double value = std::max(0.0, static_cast<double>(middle) - 0.5 + part);
   return value / 0.6745 / 6;  // median of |N(0, 1)|; the kernel's norm is 6
@@ -46,7 +46,7 @@ double noise_of(const cv::Mat& grey) {
 
 namespace {
 
-/// The more upright letters stand, the more do columns of ink differ from those between them.
+/// Largest for upright letters, whose columns of ink differ most from the gaps between them.
 /// Source: A. Vinciarelli, J. Luettin, A new normalization technique for cursive handwritten words,
 /// Pattern Recognition Letters 22(9), 2001, in simpler form.
 double unevenness_of_columns(const cv::Mat& line) {
@@ -60,13 +60,13 @@ double unevenness_of_columns(const cv::Mat& line) {
 
 cv::Mat straighten(const cv::Mat& image, const TextLine& line, int letter_height) {
   const double scale = letter_height / line.height;
-  // Room for what stands out above and below; the end of the board may be near beside a line.
+  // Room for parts above and below; less at the sides, where the edge of the board may be near.
   const auto room = 0.6F * static_cast<float>(letter_height);
   const auto margin = 0.4F * static_cast<float>(letter_height);
   const auto wide = static_cast<float>(line.width() * scale);
   const auto high = static_cast<float>(letter_height);
   const cv::Size size(cvRound(wide + 2 * margin), cvRound(high + 2 * room));
-  // The part of the image that is needed, so that nothing else is worked on.
+  // Only the part of the image that is needed.
   cv::Rect2f around = line.box();
   const auto wider = static_cast<float>(line.height) + 4;
   const cv::Rect part = cv::Rect(cv::Rect2f(around.x - wider, around.y - wider,
@@ -81,13 +81,13 @@ cv::Mat straighten(const cv::Mat& image, const TextLine& line, int letter_height
     cv::GaussianBlur(grey, smooth, {}, 0.7);
     grey = smooth;
   }
-  if (scale < 0.7) {  // an image that is made smaller is to be smooth
+  if (scale < 0.7) {  // smooth before shrinking
     cv::Mat smooth;
     cv::GaussianBlur(grey, smooth, {}, 0.4 / scale);
     grey = smooth;
   }
-  // A line that is not level is on a board that is turned, whose letters lean by as much, or on one
-  // that is seen from the side, whose letters stand upright.
+  // An inclined line is on a rotated board, with letters inclined by the same angle, or on one seen
+  // from the side, with upright letters.
   const auto along = line.corners[1] + line.corners[2] - line.corners[0] - line.corners[3];
   const float lean = along.y / along.x * static_cast<float>(line.height) / 2;
   const std::array<cv::Point2f, 4> to = {
@@ -108,7 +108,7 @@ cv::Mat straighten(const cv::Mat& image, const TextLine& line, int letter_height
       straight = leaning;
     }
   }
-  // The ground is what letters, being narrower, do not reach; it becomes white.
+  // Closing removes the narrow letters and leaves the ground, which becomes white.
   cv::Mat ground;
   const int reach = letter_height | 1;
   cv::morphologyEx(straight, ground, cv::MORPH_CLOSE,

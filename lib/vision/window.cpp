@@ -28,7 +28,7 @@ Error unsupported(const std::string& what) {
 
 }  // namespace
 
-/// A window that a person has closed has no parts any more.
+/// Its members are empty after the user closed it.
 struct Display::Window {
   std::unique_ptr<SDL_Window, Destroyer<SDL_DestroyWindow>> window;
   std::unique_ptr<SDL_Renderer, Destroyer<SDL_DestroyRenderer>> renderer;
@@ -52,10 +52,10 @@ Display::~Display() {
 Result<std::unique_ptr<Display>> Display::open(int monitor) {
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
   SDL_SetHint(SDL_HINT_VIDEO_ALLOW_SCREENSAVER, "1");
-  // Only displays that people see; SDL has others. SDL_VIDEODRIVER overrides this.
+  // Only visible displays; SDL has others. SDL_VIDEODRIVER overrides this.
   SDL_SetHint(SDL_HINT_VIDEODRIVER,
               std::getenv("WAYLAND_DISPLAY") != nullptr ? "wayland,x11" : "x11");
-  if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) return unsupported("there is no display");
+  if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) return unsupported("no display");
   cv::Size size;
   SDL_DisplayMode mode;
   if (monitor >= 0) {
@@ -63,8 +63,8 @@ Result<std::unique_ptr<Display>> Display::open(int monitor) {
       const int count = SDL_GetNumVideoDisplays();
       SDL_QuitSubSystem(SDL_INIT_VIDEO);
       return Error{Code::Unsupported,
-                   hc::format("there is no monitor {}, but {}", monitor,
-                              count == 1 ? "0 alone" : hc::format("0 … {}", count - 1))};
+                   hc::format("no monitor {}, only {}", monitor,
+                              count == 1 ? "0" : hc::format("0 … {}", count - 1))};
     }
     size = {mode.w, mode.h};
   }
@@ -91,7 +91,7 @@ void Display::show(const std::string& title, const cv::Mat& bgr) {
     window.size = bgr.size();
     window.texture.reset(SDL_CreateTexture(window.renderer.get(), SDL_PIXELFORMAT_BGR24,
                                            SDL_TEXTUREACCESS_STREAMING, bgr.cols, bgr.rows));
-    // Bars beside an image of another shape than the window.
+    // Adds bars if the aspect ratios of image and window differ.
     SDL_RenderSetLogicalSize(window.renderer.get(), bgr.cols, bgr.rows);
   }
   cv::Mat coloured = bgr;

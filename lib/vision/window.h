@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Where images are shown and saved for people. Blue, green, red, as OpenCV has them.
+// Shows images in windows and saves them as files. Blue, green, red, as in OpenCV.
 
 #include <filesystem>
 #include <map>
@@ -12,25 +12,25 @@
 
 namespace hc::vision {
 
-/// The windows of a program, on the display of its session. For one thread.
+/// The windows of a program on the display of its session. For one thread.
 class Display {
  public:
-  /// @param monitor  windows fill it, 0 the first; below 0 they are windows among others.
-  /// Errors: Unsupported (there is no display, or no such monitor).
+  /// @param monitor  index of the monitor to fill; below 0 the windows are ordinary ones.
+  /// Errors: Unsupported (no display, or no such monitor).
   static Result<std::unique_ptr<Display>> open(int monitor = -1);
   ~Display();
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
 
-  /// Shows an image, (H, W) or (H, W, 3) u8, in the window of that title; opens it if there is
-  /// none, and does nothing after a person has closed it. The image is scaled to the window.
+  /// Shows an image, (H, W) or (H, W, 3) u8, scaled to the window of that title. Opens the window
+  /// if needed, and does nothing after the user closed it.
   /// Cost: waits for the display's next refresh.
   void show(const std::string& title, const cv::Mat& bgr);
 
-  /// Handles what people did. @returns  whether any window is open still; a key closes all.
+  /// Handles events. @returns  whether any window is still open; a key closes all.
   bool any_open();
 
-  /// The size of the monitor that windows fill [px]; empty where they do not.
+  /// The size of the monitor that windows fill [px]; empty for ordinary windows.
   [[nodiscard]] cv::Size monitor_size() const { return monitor_size_; }
 
  private:
@@ -42,8 +42,7 @@ class Display {
   std::map<std::string, Window> windows_;
 };
 
-/// Replaces an image file at once: a reader finds the previous image or this one, whole. Makes its
-/// folder where there is none.
+/// Replaces an image file atomically. Creates its folder if needed.
 /// Errors: System (it cannot be written).
 Status save_image(const std::filesystem::path& path, const cv::Mat& bgr);
 

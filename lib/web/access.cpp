@@ -41,7 +41,7 @@ bool is_address(std::string_view name) {
          ::inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1;
 }
 
-/// Compares in a time that does not say how much of it was right.
+/// Compares in constant time.
 bool is_same(std::string_view a, std::string_view b) {
   return a.size() == b.size() && ::CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What `read` reads of PEM; null where that is not there. @param free  of OpenSSL, for it.
+/// Reads an object from PEM; null if there is none. @param free  OpenSSL's destructor of it.
 template <typename Object, typename Free>
 std::unique_ptr<Object, Free> read_pem(Object* read(BIO*, Object**, pem_password_cb*, void*),
                                        Free free, const std::string& text) {
@@ -52,7 +52,7 @@ Result<std::string> load_identity(const std::string& folder) {
   const auto key = read_pem(PEM_read_bio_PrivateKey, EVP_PKEY_free, text);
   if (!certificate || !key || X509_check_private_key(certificate.get(), key.get()) != 1)
     return Error{Code::Malformed,
-                 path + " holds no certificate with its key; delete it to have new ones made"};
+                 path + " has no certificate with its key; delete the file to make new ones"};
   return text;
 }
 

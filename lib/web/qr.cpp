@@ -11,7 +11,7 @@ std::vector<std::string> qr_lines(const std::string& text) {
   const std::unique_ptr<QRcode, void (*)(QRcode*)> code(
       QRcode_encodeString(text.c_str(), 0, QR_ECLEVEL_L, QR_MODE_8, 1), QRcode_free);
   if (!code) return {};
-  constexpr int kQuiet = 2;  // modules of margin; four are asked for, two are enough in the dark
+  constexpr int kQuiet = 2;  // margin in modules; the standard asks for 4, 2 are enough in practice
   const int size = code->width;
   const auto is_dark = [&](int x, int y) {
     const bool is_inside = x >= 0 && y >= 0 && x < size && y < size;

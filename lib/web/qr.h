@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A URL for a phone's camera.
+// QR codes, to open a URL on a phone.
 
 #include <string>
 #include <vector>
 
 namespace hc::web {
 
-/// A text as a QR code (ISO/IEC 18004, level L) for a terminal: lines of half blocks, dark on
-/// light; nothing where the text is too long.
+/// A QR code (ISO/IEC 18004, level L) for a terminal, as lines of half blocks, dark on light; empty
+/// if the text is too long.
 std::vector<std::string> qr_lines(const std::string& text);
 
 }  // namespace hc::web

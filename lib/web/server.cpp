@@ -43,11 +43,11 @@ using Secure = beast::ssl_stream<beast::tcp_stream>;
 
 constexpr std::size_t kMaxHead = 8192, kMaxMessage = 65536;  // [byte]
 constexpr std::size_t kMaxStrangers = 128, kMaxKnown = 768;
-constexpr std::size_t kPiece = 262144;  // of a file, that is read at a time [byte]
+constexpr std::size_t kPiece = 262144;  // for reading files [byte]
 constexpr std::chrono::seconds kHeadTime{5}, kIdleTime{30};
-constexpr std::chrono::seconds kPongTime{10};  // of a WebSocket from which nothing comes
+constexpr std::chrono::seconds kPongTime{10};  // of a silent WebSocket
 
-/// What has been escaped by %; nothing where that is wrong or hides a zero byte.
+/// Decodes %-escapes; nullopt if they are malformed or encode a zero byte.
 std::optional<std::string> decoded(std::string_view text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -89,16 +89,16 @@ std::optional<Request> request_of(const http::request<http::empty_body, Fields>&
 
 class Visitor;
 
-/// What connections share.
+/// Shared by all connections.
 struct Shared {
   Site* site = nullptr;
   Loop* loop = nullptr;
   LogSink log;
-  std::list<Visitor*> strangers;  // who have shown no session, the oldest first
-  std::size_t known = 0;
-  std::list<Aside> asides;  // that are busy
+  std::list<Visitor*> strangers;  // without a session, oldest first
+  std::size_t known = 0;          // number of visitors with a session
+  std::list<Aside> asides;        // running
 
-  /// Calls what belongs to a site. @returns  whether it threw nothing; else it is logged.
+  /// Calls a function of a site and logs exceptions. @returns  false if it has thrown.
   template <typename Call>
   bool guard(const Call& call) const {
     try {
@@ -131,7 +131,7 @@ struct Shared {
       std::swap(*place, *begun);
       return {};
     }
-    // Not done on this thread: while it waits for a disk, a stop could not arrive.
+    // Never run it on this thread: while it waits for a disk, a stop could not arrive.
     asides.erase(place);
     return Error{Code::System, "the server is too busy for this (" + begun.error().detail +
                                    "); try again in a moment"};
@@ -140,11 +140,11 @@ struct Shared {
 
 /// The other end of a connection.
 struct Peer {
-  std::string name;              ///< the user, on this host; else the host, of IPv6 its network
-  bool is_another_user = false;  ///< of this host, but root
+  std::string name;              ///< local user, IPv4 address, or IPv6 network
+  bool is_another_user = false;  ///< another local user, except root
 };
 
-/// A connection, as long as it lives, and whether it has shown a session.
+/// Counts a connection for its lifetime, as a stranger until it has shown a session.
 class Visitor {
  public:
   Visitor(std::shared_ptr<Shared> shared, Peer peer)
@@ -160,7 +160,7 @@ class Visitor {
       std::erase(shared_->strangers, this);
   }
 
-  /// It has shown a session; whether there is room for it.
+  /// Call this when it has shown a session. @returns  false if there is no room for it.
   bool know() {
     if (is_known_) return true;
     if (shared_->known >= kMaxKnown) return false;
@@ -172,7 +172,7 @@ class Visitor {
   [[nodiscard]] const Peer& peer() const { return peer_; }
   [[nodiscard]] Site& site() const { return *shared_->site; }
 
-  /// Closes the oldest stranger of the source that has most of them. False: there is none.
+  /// Closes the oldest stranger of the peer that has most of them; false: there are none.
   static bool drop_one(Shared& shared) {
     std::map<std::string_view, std::size_t> counts;
     for (const auto* stranger : shared.strangers) ++counts[stranger->peer_.name];
@@ -208,8 +208,7 @@ Peer peer_of(tcp::socket& socket) {
   return {{bytes.begin(), bytes.begin() + kNetwork}};
 }
 
-/// A WebSocket over a stream of either kind. The page's handlers keep it, and it keeps itself while
-/// something is read or written.
+/// A WebSocket over a stream of either kind, kept alive by the page's handlers and by pending I/O.
 template <typename Stream>
 class Socket final : public WebSocket, public std::enable_shared_from_this<Socket<Stream>> {
  public:
@@ -228,7 +227,7 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
         [fields = reply.fields](websocket::response_type& response) {
           for (const auto& [name, value] : fields) response.set(name, value);
         }));
-    // Little waits in the kernel, so that what is sent is new.
+    // A small buffer in the kernel, for low latency.
     beast::error_code ignored;
     beast::get_lowest_layer(stream_).socket().set_option(
         asio::socket_base::send_buffer_size(1 << 17), ignored);
@@ -365,7 +364,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
       return write(refusal(431, "the request is too large"), false);
     if (error == beast::error::timeout || error == http::error::end_of_stream) return;
     if (error.category() == http::make_error_code(http::error::bad_line_ending).category())
-      return write(refusal(400, "no request of HTTP"), false);
+      return write(refusal(400, "not an HTTP request"), false);
     if (error) return;
     auto head = parser_->release();
     auto request = request_of(head);
@@ -409,13 +408,12 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     std::ostringstream head;
     head << response.base();
     piece_ = head.str();
-    // The body is shared by all pages, and not copied.
+    // The body is shared by all pages, so it is not copied.
     left_ = Left(Buffers{asio::buffer(piece_), asio::buffer(body)});
     write_on(keeps);
   }
 
-  /// Writes the next of the reply. Only who takes nothing for a while is given up, however long the
-  /// whole takes.
+  /// Writes the next part of the reply. The timeout applies to each part, not to the whole.
   void write_on(bool keeps) {
     if (beast::buffer_bytes(left_) == 0) {
       if (reply_.size == 0) return keeps ? read() : end();
@@ -430,7 +428,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     });
   }
 
-  /// Nothing else is done with this connection meanwhile.
+  /// Reads the next piece of the file, on another thread.
   void read_piece(bool keeps) {
     const auto begun = visitor_->shared().aside([self = this->shared_from_this(), keeps] {
       self->piece_.resize(std::min<std::uint64_t>(kPiece, self->reply_.size));
@@ -454,12 +452,12 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   std::shared_ptr<Visitor> visitor_;
   beast::flat_buffer buffer_{kMaxHead};
   std::optional<http::request_parser<http::empty_body>> parser_;
-  // What is being written.
+  // While writing:
   Reply reply_;
-  std::string piece_;  // its head, or a piece of the file
+  std::string piece_;  // the head, or a piece of the file
   using Buffers = std::array<asio::const_buffer, 2>;
   using Left = beast::buffers_suffix<Buffers>;
-  Left left_;  // of the piece, and of the body behind the head
+  Left left_;  // unwritten part of the piece and of the body
 };
 
 class BeastServer final : public Server {
@@ -468,12 +466,12 @@ class BeastServer final : public Server {
     shared_->log = std::move(log);
     shared_->loop = loop_.get();
   }
-  ~BeastServer() override { loop_ready_.release(); }  // its descriptor is the loop's
+  ~BeastServer() override { loop_ready_.release(); }  // the loop owns the descriptor
 
   Status open(const std::string& address, std::uint16_t first, int ports) {
     beast::error_code error;
     const auto parsed = asio::ip::make_address(address, error);
-    if (error) return Error{Code::Invalid, "listen: \"" + address + "\" is no IP address"};
+    if (error) return Error{Code::Invalid, "listen: \"" + address + "\" is not an IP address"};
     for (int i = 0; i < ports; ++i) {
       const tcp::endpoint place(parsed, static_cast<std::uint16_t>(first == 0 ? 0 : first + i));
       acceptor_ = tcp::acceptor(context_);
@@ -493,7 +491,7 @@ class BeastServer final : public Server {
   }
 
   Status use(const std::string& identity) {
-    // TLS 1.3 alone.
+    // TLS 1.3 only.
     using Tls = asio::ssl::context;
     secure_.emplace(Tls::tls_server);
     beast::error_code error;
@@ -512,7 +510,7 @@ class BeastServer final : public Server {
     shared_->site = &site;
     accept();
     turn_loop();
-    // What is posted may throw; the others are served on.
+    // Continue after exceptions of posted functions.
     while (!shared_->guard([&] { context_.run(); })) {
     }
     shared_->asides.clear();
@@ -540,12 +538,12 @@ class BeastServer final : public Server {
   }
 
  private:
-  /// Has the loop served whenever it has something to do.
+  /// Turns the loop whenever it is ready.
   void turn_loop() {
     loop_ready_.async_wait(asio::posix::descriptor_base::wait_read,
                            [this](beast::error_code error) {
                              if (error) return;
-                             turn_loop();  // first, since the other may throw
+                             turn_loop();  // first, since turn() may throw
                              static_cast<void>(loop_->turn(std::chrono::milliseconds(0)));
                            });
   }
@@ -553,8 +551,7 @@ class BeastServer final : public Server {
   void accept() {
     acceptor_.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error) {
-        // No descriptors are left, as a rule. Where no stranger can give one back, the next attempt
-        // is not to be at once.
+        // Usually out of descriptors. If closing a stranger cannot free one, retry later.
         if (error != asio::error::no_descriptors || !Visitor::drop_one(*shared_)) {
           shared_->log(Level::Warning, "server: accept: " + error.message());
           auto timer = std::make_shared<asio::steady_timer>(context_, std::chrono::seconds(1));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// HTTP and WebSocket, with TLS or without; what is asked for and who may ask is its Site's affair.
-// All functions are called on the server's thread, except post() and stop(), which any thread may
-// call. Only server.cpp uses Beast.
+// An HTTP and WebSocket server, with or without TLS. Its Site decides about contents and access.
+// All functions are called on the server's thread, except post() and stop(), which are thread-safe.
+// Only server.cpp uses Beast.
 
 #include <chrono>
 #include <cstdint>
@@ -20,52 +20,52 @@
 
 namespace hc::web {
 
-/// Has a function called on the server's thread, soon. From any thread.
+/// Calls a function on the server's thread, soon. Thread-safe.
 using Post = std::function<void(std::function<void()>)>;
 
-/// Work on a thread of its own; the function it returns is called on the server's thread.
+/// Work for another thread; the function it returns is called on the server's thread.
 using Work = std::function<std::function<void()>()>;
 
-/// Bytes that several are sent.
+/// Bytes shared by several recipients.
 using Bytes = std::shared_ptr<const std::string>;
 
 struct Request {
-  std::string path;   ///< "/streams/eyes.left", decoded
-  std::string query;  ///< behind `?`, as it came
+  std::string path;   ///< such as "/streams/eyes.left", decoded
+  std::string query;  ///< behind `?`, not decoded
   std::string host, origin, cookies;
   bool is_socket = false;        ///< asks for a WebSocket
-  std::string protocols;         ///< of WebSockets, those that it offers
-  bool is_another_user = false;  ///< its sender is another user of this machine, other than root
+  std::string protocols;         ///< subprotocols offered for the WebSocket
+  bool is_another_user = false;  ///< sent by another user of this machine, except root
 };
 
-/// The value of an option in a query; empty where there is none.
+/// The value of an option in a query; empty if missing.
 std::string_view option(std::string_view query, std::string_view name);
 
 struct Reply {
-  int status = 200;  ///< below 400: who asks has shown a session
+  int status = 200;  ///< below 400: the client has shown a session
   std::string type = "text/plain; charset=utf-8";
   Bytes body;                                               ///< null: none
-  std::vector<std::pair<std::string, std::string>> fields;  ///< of the head, beside the usual ones
+  std::vector<std::pair<std::string, std::string>> fields;  ///< additional header fields
   Descriptor file;                                          ///< its next bytes follow the body
-  std::uint64_t size = 0;  ///< of these [byte]; a file that is shorter breaks the connection
-  /// Makes what is answered in place of this, as Server::aside() calls it: it waits for a disk.
-  /// Where that cannot be, 503 is answered.
+  std::uint64_t size = 0;  ///< of these [byte]; a shorter file breaks the connection
+  /// Makes the actual reply on another thread, as with Server::aside(), if that needs a disk. If no
+  /// thread is available, the reply is 503.
   std::function<Reply()> aside;
 };
 
-/// A line of words that says why a request is refused.
+/// A reply with a line that says why a request is refused.
 Reply refusal(int status, const std::string& words);
 
-/// One end of a WebSocket. Closes when it is destroyed.
+/// The server's end of a WebSocket; the destructor closes it.
 class WebSocket {
  public:
   virtual ~WebSocket() = default;
   virtual void send_text(std::string text) = 0;
-  /// @param head  bytes of the message before these.
+  /// @param head  bytes to send before `message`, as part of it.
   virtual void send(Bytes message, std::string head = {}) = 0;
-  /// @param code  of RFC 6455, section 7.4, or from 4000 on. Nothing is called afterwards.
+  /// @param code  of RFC 6455, section 7.4, or from 4000 on. No callback follows.
   virtual void close(int code, std::string reason) = 0;
-  /// Messages that have not been written yet.
+  /// The number of queued messages.
   [[nodiscard]] virtual std::size_t waiting() const = 0;
 
   std::function<void(std::string_view)> on_text, on_binary;
@@ -75,17 +75,15 @@ class WebSocket {
   std::function<void()> on_close;
 };
 
-/// What a server serves.
+/// The contents of a server. Exceptions of its functions are logged and end only that connection.
 class Site {
  public:
   virtual ~Site() = default;
-  // What they throw is logged, and ends the connection that it is about alone.
-  /// What is answered to a GET; of a request for a WebSocket, why it is refused, or status 101 and
-  /// the fields of that answer.
+  /// The reply to a GET. For a WebSocket: a refusal, or status 101 and its header fields.
   virtual Reply reply(const Request& request) = 0;
-  /// A WebSocket for which reply() gave 101.
+  /// Takes a WebSocket for which reply() gave 101.
   virtual void open(std::shared_ptr<WebSocket> socket, const Request& request) = 0;
-  /// Disconnects all: what they see has ended.
+  /// Disconnects all clients at the end.
   virtual void close() {}
 };
 
@@ -95,12 +93,13 @@ class Server {
 
   /// Listens; serves once run() is called.
   ///
-  /// @param port  the first that is tried of `ports`; 0: any that is free.
-  /// @param identity  a certificate and its key, PEM; empty: no TLS.
-  /// Errors: Invalid (the address is none), System (no port is free; the identity is of no use).
-  /// Of connections that have not shown a session yet, 128 are served at a time: each further one
-  /// closes the oldest of the user or host that has most of them. Those with a session, at most
-  /// 768, never have to make room.
+  /// Up to 128 connections without a session are open at a time: each further one closes the oldest
+  /// one of the user or host that has most of them. Connections with a session, at most 768, are
+  /// never closed for others.
+  ///
+  /// @param port  the first of `ports` to try; 0: any free one.
+  /// @param identity  a certificate and its key in PEM; empty: no TLS.
+  /// Errors: Invalid (not an IP address), System (no free port; unusable identity).
   static Result<std::unique_ptr<Server>> listen(const std::string& address, std::uint16_t port,
                                                 int ports, const std::string& identity,
                                                 LogSink log);
@@ -108,18 +107,18 @@ class Server {
   [[nodiscard]] virtual std::uint16_t port() const = 0;
   /// Serves a site until stop().
   virtual void run(Site& site) = 0;
-  /// Ends run() in a moment, so that what was sent last arrives. From any thread.
+  /// Ends run() after 0.2 s, so that the last messages arrive. Thread-safe.
   virtual void stop() = 0;
-  /// The loop of the thread of run(), for what else is done there.
+  /// The loop of run()'s thread, for other tasks there.
   [[nodiscard]] virtual Loop& loop() = 0;
-  /// As Loop::post(); what the function throws is logged.
+  /// As Loop::post(); logs exceptions. Thread-safe.
   virtual void post(std::function<void()> call) = 0;
-  /// Has work done that may wait, on a thread of its own (run_aside()). What it holds ends here,
-  /// and it is done before run() ends; what it throws is logged.
+  /// Runs work that may block, on another thread (run_aside()). It is destroyed on the server's
+  /// thread, and finished before run() ends; exceptions are logged.
   ///
-  /// Errors: System (no descriptor or thread to be had; it is not done).
+  /// Errors: System (no descriptor or thread left; the work is not run).
   virtual Status aside(Work work) = 0;
-  /// Calls a function periodically, until it ends. To be called before run().
+  /// Calls a function periodically, until the server ends. Call this before run().
   virtual void every(std::chrono::milliseconds period, std::function<void()> call) = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A server with the thread that runs it, beside a module's own.
+// A server with its own thread, for use in a module.
 
 #include <concepts>
 #include <functional>
@@ -18,30 +18,29 @@ namespace hc::web {
 
 struct Listening {
   std::string address = "127.0.0.1";  ///< IP, or localhost
-  int port = 0;                       ///< the next nine are tried too; 0: any
-  bool tls = false;                   ///< on loopback too; elsewhere always
-  std::string hosts;                  ///< further names of this machine, between commas or blanks
+  int port = 0;                       ///< or one of the next nine; 0: any
+  bool tls = false;                   ///< even on loopback; other addresses always use TLS
+  std::string hosts;                  ///< further names of this machine, comma- or space-separated
 };
 
-/// Listens for HTTP and WebSockets, and serves a site on a thread of its own. For the module's
-/// thread; server().post() from any.
+/// Serves a site over HTTP and WebSockets on its own thread. Used on the module's thread, except
+/// for server().post().
 class Service {
  public:
-  /// Listens, by TLS with the user's own certificate (load_identity()) where others reach it;
-  /// serves once there is something to serve().
+  /// Listens, on other addresses than loopback with TLS and the user's certificate
+  /// (load_identity()). Requests wait until serve() is called.
   ///
-  /// @param loop  of the module's thread; it lives longer.
-  /// @param log  called in the loop with lines of the server.
+  /// @param loop  of the module's thread; must outlive the service.
+  /// @param log  called in the loop with log lines of the server.
   /// Errors: as Server::listen() and load_identity().
   static Result<std::unique_ptr<Service>> open(const Listening& listening, Loop& loop,
                                                std::function<void(std::string_view)> log);
-  /// Closes the site, and waits a moment until what was sent last has arrived.
+  /// Closes the site and stops the server, which takes 0.2 s.
   ~Service();
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
 
-  /// Serves a site until the end, on a thread of its own, to which access() belongs from then on.
-  /// To be called once.
+  /// Serves a site until the end. Call this once; then use access() on the server's thread only.
   template <std::derived_from<Site> S>
   S& serve(std::unique_ptr<S> site) {
     S& kept = *site;
@@ -51,7 +50,7 @@ class Service {
 
   [[nodiscard]] Server& server() { return *server_; }
   [[nodiscard]] Access& access() { return access_; }
-  /// Of the certificate; empty: no TLS.
+  /// The fingerprint of the certificate; empty: no TLS.
   [[nodiscard]] const std::string& fingerprint() const { return fingerprint_; }
 
  private:
@@ -64,7 +63,7 @@ class Service {
   std::unique_ptr<Server> server_;
   Access access_;
   const std::string fingerprint_;
-  std::unique_ptr<Site> site_;  // destroyed before the server, to which it may still post
+  std::unique_ptr<Site> site_;  // may post to the server until it is destroyed
   std::thread thread_;
 };
 

@@ -50,14 +50,14 @@ class Hello final : public Site {
   void open(std::shared_ptr<WebSocket> /*socket*/, const Request& /*request*/) override {}
   void close() override { closed_ += 1, closed_.notify_all(); }
 
-  std::latch waiting{1};  ///< what /aside waits for
+  std::latch waiting{1};  ///< blocks /aside
   Descriptor file;        ///< of /file
 
  private:
   std::atomic<int>& closed_;
 };
 
-/// Asks for a path.
+/// Requests a path.
 Descriptor ask(std::uint16_t port, const std::string& path) {
   Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const auto place = testing::loopback(port);
@@ -100,7 +100,7 @@ class ServiceTest : public ::testing::Test {
 
   const std::unique_ptr<Loop> loop_ = must(Loop::make());
   std::vector<std::string> logged_;
-  std::atomic<int> closed_ = 0;  // when the service ends, too
+  std::atomic<int> closed_ = 0;  // outlives the service
   std::unique_ptr<Service> service_ = must(
       Service::open({}, *loop_, [this](std::string_view line) { logged_.emplace_back(line); }));
 };
@@ -117,7 +117,7 @@ TEST_F(ServiceTest, serves_a_site_and_closes_it_at_the_end) {
 
 constexpr int kSkipped = 77;
 
-/// Gives this process a network of its own, in which it has all addresses 10.….
+/// Puts this process into a new network namespace with all addresses 10.….
 bool move_to_own_network() {
   if (::unshare(CLONE_NEWNET) != 0 && ::unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) return false;
   const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
@@ -131,7 +131,7 @@ bool move_to_own_network() {
   return ::ioctl(socket.get(), SIOCSIFADDR, &lo) == 0;
 }
 
-/// In a process of its own.
+/// Runs in its own process.
 void push_a_crowd_of_one_host_at_another_one() {
   if (!move_to_own_network()) std::exit(kSkipped);
   auto server = Server::listen("::", 0, 1, "", [](Level, std::string_view) {});
@@ -150,7 +150,7 @@ void push_a_crowd_of_one_host_at_another_one() {
   };
   const auto one = connect("10.0.0.2");
   std::vector<Descriptor> crowd;
-  while (crowd.size() < 200) crowd.push_back(connect("10.0.0.1"));  // more than may be strangers
+  while (crowd.size() < 200) crowd.push_back(connect("10.0.0.1"));  // above the limit of strangers
   EXPECT_TRUE(is_readable(crowd.front().get())) << "the crowd's oldest is closed";
   const std::string request = "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
   EXPECT_EQ(::send(one.get(), request.data(), request.size(), MSG_NOSIGNAL), std::ssize(request));
@@ -188,11 +188,11 @@ TEST_F(ServiceTest, a_call_that_throws_is_logged_and_made_again) {
   while (logged_.size() < 2) turn();
   EXPECT_EQ(logged_[1], "server: it fails");
   EXPECT_TRUE(get("/").ends_with("\r\n\r\nhello"));
-  service_.reset();  // which calls
+  service_.reset();  // calls close()
 }
 
 TEST_F(ServiceTest, what_waits_for_a_disk_holds_nobody_up) {
-  std::array<int, 2> ends;  // of a pipe, in the place of a slow disk
+  std::array<int, 2> ends;  // of a pipe that simulates a slow disk
   ASSERT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
   const Descriptor disk(ends[1]);
   auto site = std::make_unique<Hello>(closed_);

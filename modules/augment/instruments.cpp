@@ -13,12 +13,12 @@ namespace {
 const cv::Scalar kWhite(255, 255, 255), kBlack(0, 0, 0), kYellow(255, 220, 0);
 
 cv::Point point(const Eigen::Vector2d& pixel) {
-  constexpr double kMost = 1e5;  // an image is smaller
+  constexpr double kMost = 1e5;  // outside any image
   return {static_cast<int>(std::clamp(pixel.x(), -kMost, kMost)),
           static_cast<int>(std::clamp(pixel.y(), -kMost, kMost))};
 }
 
-/// White on a black rim, which is read on any image.
+/// White with a black outline: legible on any image.
 void write(cv::Mat& image, const std::string& words, const cv::Point& at) {
   constexpr double kSize = 0.5;
   for (const auto& [colour, thick] : {std::pair{kBlack, 3}, std::pair{kWhite, 1}})
@@ -45,7 +45,7 @@ hc::Result<Instruments> read_instruments(const std::string& text) {
     if (found == std::end(known))
       return hc::Error{hc::Code::Invalid,
                        "instruments: \"" + std::string(word) +
-                           "\" is none of gaze, frames, depth, confidence, task"};
+                           "\" is not one of gaze, frames, depth, confidence, task"};
     *found->second = true;
   }
   return shown;

@@ -23,7 +23,7 @@ TEST(Instruments, are_read_by_name) {
 TEST(Instruments, axes_point_where_the_camera_sees_them) {
   const hc::graphics::PinholeCamera camera{160, 120, 100, 100, 80, 60, 0.05, 50};
   cv::Mat image = black();
-  // x right, y down and z ahead: seen are x and y, of 40 px.
+  // x right, y down and z ahead: x and y are visible with 40 px.
   draw_axes(image, camera, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1)), "", 0.4);
   const auto at = [&](int x, int y) { return image.at<cv::Vec3b>(y, x); };
   EXPECT_GT(at(110, 60)[0], 150);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects that are not there, in the images of both eyes.
+// Augmented reality: draws virtual objects into the images of both eyes.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -22,8 +22,8 @@ namespace {
 using hc::Coord;
 
 hc::AnyKind image(std::int32_t rectified, std::int32_t raw) {
-  return hc::any_of(hc::rgb_image<std::uint8_t>().in(rectified),
-                    hc::rgb_image<std::uint8_t>().in(raw));
+  return hc::any_of(hc::rgb_image().in(rectified),
+                    hc::rgb_image().in(raw));
 }
 
 }  // namespace
@@ -31,39 +31,35 @@ hc::AnyKind image(std::int32_t rectified, std::int32_t raw) {
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"augment",
-                    "Draws objects into the images of both eyes, hidden by what is "
-                    "before them."};
+                    "Draws objects into the images of both eyes, with "
+                    "occlusion.", {.background = true}};
   auto left = module.input("left", image(Coord::kLeftRectified, Coord::kLeftImage),
                            "image of the left eye, without distortion");
   auto right = module.input("right", image(Coord::kRightRectified, Coord::kRightImage),
                             "image of the right eye");
   auto depth = module.input("depth", hc::intensity_image<float>().in(Coord::kDepth),
-                            "of the left image [m], 0 unknown");
-  auto intrinsics = module.input("intrinsics", hc::table<double>(),
+                            "depth of the left image [m], 0 unknown");
+  auto intrinsics = module.input("intrinsics", hc::table(),
                                  "fx, fy, cx, cy [px], baseline [m] of the pair, from rectify; "
                                  "until then focal and the frames apply");
-  auto cameras =
-      module.input("cameras", hc::transformation<double>(4, 4),
-                   "how the eyes sit on the head, from rectify; until then as the frames "
-                   "have it");
-  auto poses = module.input("poses", hc::transformation<double>(4, 4),
+  auto cameras = module.input("cameras", hc::transformation(),
+                              "mounting of the eyes on the head, from rectify; until then from the "
+                              "frames");
+  auto poses = module.input("poses", hc::transformation(),
                             "T_eye_marker, from marker: objects in the markers' frames follow");
-  auto target = module.input("target", hc::position<double>().finite(),
-                             "what the gaze follows, for the instrument gaze: x, y in the left (7) "
-                             "or right (8) image [px], or a place in any frame [m]");
-  auto confidence = module.input("confidence", hc::intensity_image<std::uint8_t>(),
-                                 "of the depth, for the instrument confidence");
-  module.keep(target);
-  auto left_out = module.output("left", hc::rgb_image<std::uint8_t>(), "the left image, augmented");
+  auto target = module.input("target", hc::position().finite(),
+                             "target of the gaze, for the instrument gaze: x, y in the left (7) "
+                             "or right (8) image [px], or a position in any frame [m]", {.keep = 1});
+  auto confidence = module.input("confidence", hc::intensity_image(),
+                                 "confidence of the depth, for the instrument confidence");
+  auto left_out = module.output("left", hc::rgb_image(), "the left image, augmented");
   auto right_out =
-      module.output("right", hc::rgb_image<std::uint8_t>(), "the right image, augmented");
-  auto corners = module.output("corners", hc::table<double>(),
+      module.output("right", hc::rgb_image(), "the right image, augmented");
+  auto corners = module.output("corners", hc::table(),
                                "8 rows an object, the corners of the box around it: x, y in the "
-                               "left and x, y in the right image [px], NaN behind the eye");
-  auto mask = module.output("mask", hc::intensity_image<std::uint8_t>(),
-                            "of the left image: 255 where an object alone is seen, 0 none");
-  module.on_demand(corners);
-  module.on_demand(mask);
+                               "left and x, y in the right image [px], NaN behind the eye", {.on_demand = true});
+  auto mask = module.output("mask", hc::intensity_image(),
+                            "of the left image: 255 where an object is visible, else 0", {.on_demand = true});
   auto objects =
       module.parameter("objects", "cube at world 2 0 1.2 size 0.3", "",
                        "MODEL at FRAME [to FRAME] [X Y Z [ROLL PITCH YAW]] [size SIZE|fit], with ; "
@@ -71,12 +67,13 @@ int main(int argc, char** argv) {
                        "frame by name, or the number of a frame or marker; m, degrees");
   auto smoothing = module.parameter("smoothing", 0.2, "s", "time constant of markers' poses",
                                     {.min = 0, .max = 10});
-  auto shown =
-      module.parameter("instruments", "", "", "to be shown: gaze, frames, depth, confidence, task");
+  auto shown = module.parameter("instruments", "", "",
+                                "overlays shown: gaze, frames, depth, confidence, task");
   auto modes = module.parameter(hc::kModeNames, "", "",
                                 "names of modes, e.g. read=5,track=4: set by `hc run`");
-  auto cursor_x = module.parameter("cursor_x", -1.0, "px", "where depth is shown, -1: the middle",
-                                   {.min = -1, .max = 65535});
+  auto cursor_x =
+      module.parameter("cursor_x", -1.0, "px", "pixel whose depth is shown, -1: the middle",
+                       {.min = -1, .max = 65535});
   auto cursor_y =
       module.parameter("cursor_y", -1.0, "px", "the same, from the top", {.min = -1, .max = 65535});
   auto focal = module.parameter("focal", 800.0, "px", "focal length", {.min = 1e-3, .max = 1e6});
@@ -89,9 +86,8 @@ int main(int argc, char** argv) {
   Panel panel;
 
   auto read_parameters = [&] {
-    // They may be set while the module runs.
     if (objects_read != *objects) {
-      scene.reset();  // before another one makes its context current
+      scene.reset();  // releases its OpenGL context before the next is made current
       scene = hc::value_or_end(Scene::make(*(objects_read = *objects)));
     }
     if (shown_read != *shown)
@@ -103,19 +99,19 @@ int main(int argc, char** argv) {
   };
   auto send_corners = [&](const Sight& sight) {
     const auto numbers = scene->corners(sight);
-    auto draft = corners.loan(4, static_cast<std::int32_t>(numbers.size() / 4));
+    auto draft = corners.loan(static_cast<std::int32_t>(numbers.size() / 4), 4);
     draft.header.time = sight.time;
     std::ranges::copy(numbers, draft.numbers().begin());
     corners.send(std::move(draft));
   };
-  /// A message like an image, to be written.
+  /// A draft with the size, time and coordinate system of an image.
   auto like = [](const hc::Message& image, auto& output) {
-    auto draft = output.loan(image.header.width, image.header.height);
+    auto draft = output.loan(image.header.height, image.header.width);
     draft.header.time = image.header.time;
     draft.header.coord = image.header.coord;
     return draft;
   };
-  /// Sends an image with all that is to be seen in it, or as it is.
+  /// Sends an image with the objects and instruments drawn; unchanged if there are none.
   auto send = [&](const Sight& sight, std::size_t eye, const hc::Message& image,
                   const hc::Message& metres, auto& output) {
     const bool masks = eye == 0 && mask.linked();
@@ -146,7 +142,7 @@ int main(int argc, char** argv) {
     pair.set_camera(*pose);
   });
   module.on(poses, [&](const auto& message) {
-    // A marker without a frame has no number by which an object could name it.
+    // Only markers with a frame have a number that objects can refer to.
     const auto pose = hc::pose_of(message);
     if (!pose) return;
     frames.when_known("world", pose->to, pose->time, [&, pose](const auto& T_world_eye) {
@@ -181,6 +177,5 @@ int main(int argc, char** argv) {
                       });
   });
   module.on_end([&] { frames.answer_all(); });
-  module.background();
   return module.run(argc, argv);
 }

@@ -30,10 +30,10 @@ hc::Result<Object> read_object(std::string_view text) {
     return hc::Error{hc::Code::Invalid, "objects: \"" + std::string(text) + "\" " + why};
   };
   auto all = hc::words_of(text);
-  if (all.size() < 3 || all[1] != "at") return wrong("is not as in cube at world 2 0 0.8 size 0.3");
+  if (all.size() < 3 || all[1] != "at") return wrong("is not like cube at world 2 0 0.8 size 0.3");
   Object object;
   object.model = all[0];
-  constexpr const char* kWrongFrame = "is in a frame with a number that is not 1 to 999";
+  constexpr const char* kWrongFrame = "has a frame number outside 1 to 999";
   const auto frame = read_frame(all[2]);
   if (!frame) return wrong(kWrongFrame);
   object.frame = *frame;
@@ -46,17 +46,17 @@ hc::Result<Object> read_object(std::string_view text) {
   if (all.size() >= first + 2 && all[all.size() - 2] == "size") {
     object.fits = object.other && all.back() == "fit";
     if (!object.fits && (!read_number(all.back(), object.size) || object.size <= 0))
-      return wrong("has a size that is no number of metres over 0, nor fit between two frames");
+      return wrong("has a size that is neither a positive number [m] nor fit between two frames");
     all.resize(all.size() - 2);
   }
   std::vector<double> numbers;
   for (std::size_t i = first; i < all.size(); ++i) {
     double number = 0;
-    if (!read_number(all[i], number)) return wrong("has a place that is no numbers");
+    if (!read_number(all[i], number)) return wrong("has a position that is not numeric");
     numbers.push_back(number);
   }
   if (!numbers.empty() && numbers.size() != 3 && numbers.size() != 6)
-    return wrong("has neither a place x y z nor x y z and roll pitch yaw");
+    return wrong("has a position that is neither x y z nor x y z roll pitch yaw");
   numbers.resize(6);
   constexpr double kDegree = std::numbers::pi / 180;
   object.T_frame_object =
@@ -65,7 +65,7 @@ hc::Result<Object> read_object(std::string_view text) {
   return object;
 }
 
-/// Squares, so that it is seen how a surface turns.
+/// A chequered texture, which makes the orientation of a surface visible.
 cv::Mat paint_squares(int columns, int rows, const cv::Vec3b& one, const cv::Vec3b& other) {
   cv::Mat squares(rows, columns, CV_8UC3);
   for (int y = 0; y < rows; ++y)
@@ -88,7 +88,7 @@ hc::Result<std::vector<Object>> read_objects(std::string_view text) {
 }
 
 Eigen::Isometry3d between_points(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  constexpr double kUpright = 1e-6;  // its y axis would be made of rounding
+  constexpr double kUpright = 1e-6;  // below, the y axis is only rounding noise
   const Eigen::Vector3d x = (to - from).normalized();
   Eigen::Vector3d y = Eigen::Vector3d::UnitZ().cross(x);
   if (y.norm() < kUpright) y = Eigen::Vector3d::UnitY();

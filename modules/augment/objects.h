@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What is to be drawn and where, as a parameter says it. Pure, but for reading models.
+// The objects to draw and their poses, parsed from a parameter. Pure, except load().
 //
 //     cube at world 2 0 0.8 size 0.3; robot.glb at 101 0 0 0 90 0 0; stick.obj at 101 to 102
 
@@ -14,32 +14,30 @@
 #include <graphics/model.h>
 #include <hc/base/result.h>
 
-/// A frame of the graph, or a marker's.
+/// A frame of the graph or of a marker.
 struct NamedFrame {
   std::string name;
-  int number = 0;  ///< the same, where it is said by number; 0: by name
+  int number = 0;  ///< if given by number, else 0
 };
 
 /// A model at a place.
 struct Object {
   std::string model;                ///< "cube", "ball", or a file: .obj, .stl, .gltf, .glb
-  NamedFrame frame;                 ///< in which it is
-  std::optional<NamedFrame> other;  ///< of two, it is in the frame of between_points()
+  NamedFrame frame;                 ///< parent frame
+  std::optional<NamedFrame> other;  ///< if given, the parent is between_points() of both frames
   Eigen::Isometry3d T_frame_object = Eigen::Isometry3d::Identity();
-  double size = 0;    ///< of its longest side [m]; 0: as the model has it
-  bool fits = false;  ///< its longest side is as long as the two frames are apart
+  double size = 0;    ///< of its longest side [m]; 0: as in the model
+  bool fits = false;  ///< its longest side spans the distance between the two frames
 };
 
-/// Reads objects with ; between them, each
-/// `MODEL at FRAME [to FRAME] [X Y Z [ROLL PITCH YAW]] [size METRES|fit]`: metres and degrees, as
-/// in a graph's [frames].
-///
-/// Errors: Invalid, with the object that is wrong.
+/// Reads objects separated by ;, each
+/// `MODEL at FRAME [to FRAME] [X Y Z [ROLL PITCH YAW]] [size METRES|fit]`, in metres and degrees as
+/// in a graph's [frames]. Errors: Invalid.
 hc::Result<std::vector<Object>> read_objects(std::string_view text);
 
-/// The frame of what is held at two points: origin in their middle, x from one to the other, y
-/// level, z as far up as that lets it. Where x is upright, y is the world's.
+/// The frame of an object held at two points: origin at their midpoint, x from one to the other, y
+/// horizontal, z up. If x is vertical, y is the world's y axis.
 Eigen::Isometry3d between_points(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-/// A cube or a ball, 1 m wide, or what a file has. Errors: as hc::graphics::read_model().
+/// A cube or ball of 1 m, or the model in a file. Errors: as hc::graphics::read_model().
 hc::Result<std::vector<hc::graphics::Part>> load(const std::string& model);

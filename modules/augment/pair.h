@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The two eyes, as `rectify` describes them, and where they are. Knows no ports.
+// The rectified pair of eyes and its pose, from the messages of `rectify`. No ports.
 
 #include <array>
 #include <optional>
@@ -12,12 +12,12 @@
 
 /// The eyes at the time of an image.
 struct Sight {
-  hc::graphics::PinholeCamera camera;            ///< either eye's
-  std::array<Eigen::Isometry3d, 2> T_world_eye;  ///< left and right, optical
+  hc::graphics::PinholeCamera camera;            ///< of both eyes
+  std::array<Eigen::Isometry3d, 2> T_world_eye;  ///< left, right; optical frames
   double scale = 0;                              ///< focal length · baseline [px · m]
   std::int64_t time = 0;                         ///< [ns]
 
-  /// A point as an eye has it.
+  /// A point in an eye's frame [m].
   [[nodiscard]] Eigen::Vector3d in_eye(std::size_t eye, const Eigen::Vector3d& p_world) const {
     return T_world_eye.at(eye).inverse() * p_world;
   }
@@ -25,16 +25,15 @@ struct Sight {
 
 class Pair {
  public:
-  /// Takes fx, fy, cx, cy [px], baseline [m]; false if that is no pair.
+  /// Takes fx, fy, cx, cy [px], baseline [m]; false if they are invalid.
   bool set_intrinsics(std::span<const double> numbers);
-  /// Takes T_head_left_eye, or from the left camera of the pair to the left eye; others are none
-  /// of its business.
+  /// Takes T_head_left_eye or T_left_eye_left_rectified; ignores other poses.
   void set_camera(const hc::TimedPose& pose);
 
-  /// The eyes as they took an image.
+  /// The eyes at the time of an image.
   ///
-  /// @param focal  what is assumed until intrinsics are known [px]; then the baseline is that of
-  /// the frames, and the optical axis goes through the middle.
+  /// @param focal  until intrinsics are known [px]; the baseline is then that of the frames, and
+  /// the principal point the centre of the image.
   [[nodiscard]] Sight at(const hc::Header& image, double focal, hc::ModuleFrames& frames) const;
 
  private:

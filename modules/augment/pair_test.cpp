@@ -44,7 +44,7 @@ TEST_F(Pairs, that_are_described_are_so) {
   mounted.translation().z() += 0.3;
   pair.set_camera(pose(3, 4, mounted));
   pair.set_camera(pose(4, 9, turned));
-  pair.set_camera(pose(1, 2, turned));  // is none of it
+  pair.set_camera(pose(1, 2, turned));  // unrelated frames
   const Sight sight = pair.at(image(), 100, frames);
   EXPECT_EQ(sight.camera.fy, 91);
   EXPECT_NEAR(sight.scale, 90 * 0.2, 1e-9);

@@ -11,7 +11,7 @@ namespace {
 
 using hc::Coord;
 
-/// A cursor's coordinate within an image.
+/// A cursor coordinate, limited to the image; the centre if negative.
 int within(double at, int size) {
   return std::min(static_cast<int>(at < 0 ? (size - 1) / 2.0 : at), size - 1);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The instruments of a robot, with what they show. Knows no ports.
+// The instruments and the data they display. No ports.
 
 #include <cstdint>
 #include <map>
@@ -16,22 +16,22 @@
 
 class Panel {
  public:
-  /// What the gaze follows.
+  /// Target of the gaze.
   struct Target {
     std::int64_t time = 0;   ///< [ns]
-    std::int32_t coord = 0;  ///< of an image: x, y [px]; of a frame: x, y, z [m]
+    std::int32_t coord = 0;  ///< an image: p is x, y [px]; a frame: x, y, z [m]
     Eigen::Vector3d p = Eigen::Vector3d::Zero();
   };
-  static constexpr std::int64_t kTargetLives = 500'000'000;  ///< it is shown for so long [ns]
+  static constexpr std::int64_t kTargetLives = 500'000'000;  ///< how long a target is shown [ns]
 
   Instruments shown;
-  std::map<std::int32_t, std::string> modes;  ///< their names
-  std::int32_t focus = 0;                     ///< the mode in focus, 0: none
+  std::map<std::int32_t, std::string> modes;  ///< names of modes
+  std::int32_t focus = 0;                     ///< mode in focus, 0: none
   std::optional<Target> target;
   cv::Mat confidence;                   ///< (H, W) u8 of the latest depth; empty: unknown
-  double cursor_x = -1, cursor_y = -1;  ///< [px]; -1: the middle
+  double cursor_x = -1, cursor_y = -1;  ///< [px]; -1: the centre
 
-  /// Draws the instruments over an eye's image. @param depth  (H, W) f32 of the left one [m].
+  /// Draws the instruments over an eye's image. @param depth  (H, W) f32 of the left image [m].
   void draw(const Sight& sight, std::size_t eye, const Scene& scene, hc::ModuleFrames& frames,
             const cv::Mat& depth, cv::Mat& image) const;
 

@@ -9,7 +9,7 @@
 
 namespace {
 
-/// T_world_frame; nothing for a marker that has not been seen.
+/// T_world_frame; nothing for a marker not yet seen.
 std::optional<Eigen::Isometry3d> find_frame(hc::ModuleFrames& frames, const Markers& markers,
                                             const NamedFrame& frame, std::int64_t time) {
   if (frame.number == 0) return frames.nearest("world", std::string_view(frame.name), time);
@@ -23,7 +23,7 @@ std::optional<Eigen::Isometry3d> find_frame(hc::ModuleFrames& frames, const Mark
 
 void Markers::see(int number, std::int64_t time, const Eigen::Isometry3d& T_world_marker,
                   double smoothing) {
-  constexpr double kMoved = 0.1;  // it was moved [m]
+  constexpr double kMoved = 0.1;  // a larger jump is not smoothed [m]
   const auto [at, is_new] = seen_.try_emplace(number, Seen{time, T_world_marker});
   if (is_new) return;
   auto& [last, pose] = at->second;
@@ -65,7 +65,7 @@ void Scene::place(hc::ModuleFrames& frames, const Markers& markers, std::int64_t
       const auto T_world_other = find_frame(frames, markers, *object.other, time);
       if (!T_world_other) continue;
       const Eigen::Vector3d from = T_world_frame->translation(), to = T_world_other->translation();
-      if (from == to) continue;  // there is no direction
+      if (from == to) continue;  // no direction
       T_world_frame = between_points(from, to);
       if (object.fits) body.set_size((to - from).norm());
     }

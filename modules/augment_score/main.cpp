@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well an object fits into the images of a head that turns, by the truth of a simulation.
+// Scores the registration and occlusion of a virtual object while the head turns, against the
+// ground truth of a simulation.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,17 +25,17 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// What is compared, while the head turns fast enough.
+/// Collected while the head turns fast enough.
 struct Samples {
   std::vector<double> errors;  ///< of corners [px]
-  std::vector<double> right;   ///< share of the object's pixels, of each image
+  std::vector<double> right;   ///< share of the object's pixels that are right, of each image
   double fastest = 0;          ///< [rad/s]
 };
 
-/// How many of an object's pixels are as they would be if it were there.
+/// The share of an object's pixels whose visibility is right.
 ///
-/// @param object  its depth (H, W) f32 [m], 0 where it is not. @param scene  depth without it.
-/// @returns  nothing where too little of it is seen to say.
+/// @param object  its depth (H, W) f32 [m], 0 elsewhere. @param scene  depth without the object.
+/// @returns  nothing if the object covers too few pixels.
 std::optional<double> share_right(const cv::Mat& object, const cv::Mat& scene,
                                   const cv::Mat& mask) {
   constexpr int kLeast = 500;  // [px]
@@ -58,19 +59,19 @@ int main(int argc, char** argv) {
   constexpr auto kWorldLeftEye = hc::transform_coord(Coord::kWorld, Coord::kLeftEye);
   constexpr auto kWorldRightEye = hc::transform_coord(Coord::kWorld, Coord::kRightEye);
   hc::Module module{"augment_score",
-                    "Compares where augment has a cube with where it would be seen."};
-  auto left_pose = module.input("left_pose", hc::transformation<double>(4, 4).in(kWorldLeftEye),
+                    "Compares where augment draws a cube with where a real one would be seen."};
+  auto left_pose = module.input("left_pose", hc::transformation().in(kWorldLeftEye),
                                 "truth: T_world_left_eye");
-  auto right_pose = module.input("right_pose", hc::transformation<double>(4, 4).in(kWorldRightEye),
+  auto right_pose = module.input("right_pose", hc::transformation().in(kWorldRightEye),
                                  "truth: T_world_right_eye");
   auto depth = module.input("depth", hc::intensity_image<float>().in(Coord::kDepth),
                             "truth: of the left image [m]");
-  auto corners = module.input("corners", hc::table<double>(), "from augment");
-  auto mask = module.input("mask", hc::intensity_image<std::uint8_t>(), "from augment");
+  auto corners = module.input("corners", hc::table(), "from augment");
+  auto mask = module.input("mask", hc::intensity_image(), "from augment");
   auto result =
-      module.output("score", hc::table<double>().of(6, 1),
+      module.output("score", hc::table().of(1, 6),
                     "reprojection error of the corners, median and most [px], share of "
-                    "the object's pixels that are right, median and minimum, fastest turn "
+                    "the object's pixels that are right, median and minimum, fastest head motion "
                     "[rad/s], images");
   auto x = module.parameter("x", 2.75, "m", "middle of the cube in the world", {.fixed = true});
   auto y = module.parameter("y", 0.35, "m", "the same", {.fixed = true});
@@ -78,9 +79,8 @@ int main(int argc, char** argv) {
   auto size =
       module.parameter("size", 0.3, "m", "of the cube", {.min = 1e-3, .max = 100, .fixed = true});
   auto focal = module.parameter("focal", 600.0, "px", "of the eyes", {.min = 1, .max = 1e6});
-  auto turning =
-      module.parameter("turning", 0.7, "rad/s",
-                       "images are scored while the head turns as fast as this", {.min = 0});
+  auto turning = module.parameter(
+      "turning", 0.7, "rad/s", "minimum speed of the head at which images are scored", {.min = 0});
   auto images = module.parameter("images", 100, "", "to be scored", {.min = 1, .max = 1e6});
   auto timeout =
       module.parameter("timeout", 60.0, "s", "to wait for an image", {.min = 1, .max = 3600});
@@ -90,9 +90,9 @@ int main(int argc, char** argv) {
   hc::graphics::PinholeCamera camera;
   Samples samples;
   std::optional<std::pair<std::int64_t, Eigen::Isometry3d>> last;  // time and T_world_left_eye
-  std::int64_t waits = 0;                                          // looks since an image
+  std::int64_t waits = 0;                                          // periods since an image
 
-  /// How fast the head turns, by this pose and the one before it [rad/s].
+  /// Angular speed of the head since the previous pose [rad/s].
   auto turn = [&](std::int64_t time, const Eigen::Isometry3d& pose) {
     double rate = 0;
     if (last && time > last->first)
@@ -104,8 +104,7 @@ int main(int argc, char** argv) {
   auto compare_corners = [&](const std::array<Eigen::Isometry3d, 2>& eyes,
                              std::span<const double> found) {
     const auto all = cube.corners();
-    if (found.size() != 4 * all.size())
-      throw hc::BadMessage("corners: are not those of one object");
+    if (found.size() != 4 * all.size()) throw hc::BadMessage("corners: not those of one object");
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t eye = 0; eye < 2; ++eye) {
         const Eigen::Vector3d p = eyes[eye].inverse() * all[i];
@@ -149,23 +148,21 @@ int main(int argc, char** argv) {
               compare_corners(eyes, found_corners.numbers());
               compare_mask(eyes[0], hc::as_mat(scene), hc::as_mat(found_mask));
             });
-  module.generate([&] {
-    constexpr double kLook = 20;  // [Hz]
-    module.keep_rate(kLook);
-    if (static_cast<double>(++waits) > *timeout * kLook)
+  constexpr std::chrono::milliseconds kLook{50};
+  module.every(kLook, [&] {
+    if (++waits * kLook > hc::duration(*timeout))
       throw hc::ModuleError("no image within timeout");
-    if (static_cast<std::int64_t>(samples.right.size()) < *images) return true;
+    if (static_cast<std::int64_t>(samples.right.size()) < *images) return;
     const double error = median(samples.errors), share = median(samples.right);
     const double worst = *std::ranges::max_element(samples.errors);
     const double least = *std::ranges::min_element(samples.right);
-    result.send(hc::table(
-        {error, worst, share, least, samples.fastest, static_cast<double>(samples.right.size())}));
+    result.send({error, worst, share, least, samples.fastest, static_cast<double>(samples.right.size())});
     module.log(
         hc::format("corners off by {:.2f} px median, {:.2f} px at most, pixels right {:.1f} % "
                    "median, {:.1f} % at least, the head turning at up to {:.0f}°/s",
                    error, worst, 100 * share, 100 * least, samples.fastest * 57.29578),
         hc::Level::Result);
-    return false;
+    module.stop();
   });
   return module.run(argc, argv);
 }

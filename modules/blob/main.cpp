@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The blob of a colour.
+// Tracks a blob of a given colour.
 #include <optional>
 
 #include <hc/base/format.h>
@@ -14,15 +14,15 @@ int main(int argc, char** argv) {
   hc::Module module{
       "blob",
       "Finds the blob of a colour in images, and follows it: round, large, near the last one."};
-  auto image = module.input("image", hc::rgb_image<std::uint8_t>(), "images");
+  auto image = module.input("image", hc::rgb_image(), "images");
   auto point = module.input(
-      "point", hc::position<double>().of(1, 1),
+      "point", hc::position().of(1, 1),
       "x, y in the next image of its coordinate system [px]: its colour is searched from then on, "
       "until the parameter hue changes");
-  auto target = module.output("target", hc::position<double>(),
+  auto target = module.output("target", hc::position(),
                               "x, y of the blob's middle, its radius [px], in the coordinate "
                               "system of the image; nothing while there is none");
-  auto area = module.output("area", hc::table<double>(), "area of the blob [px²]");
+  auto area = module.output("area", hc::table(), "area of the blob [px²]");
   auto hue = module.parameter("hue", 0.0, "", "0 red, 0.33 green, 0.67 blue", {.min = 0, .max = 1});
   auto hue_width = module.parameter("hue_width", 0.05, "", "maximum difference of a pixel's hue",
                                     {.min = 0, .max = 0.5});
@@ -42,14 +42,14 @@ int main(int argc, char** argv) {
       pointed.reset();
     } else if (pointed) {
       module.log_once("point in another image",
-                      hc::format("point: it is in coordinate system {}, and this image in {}",
+                      hc::format("point: in coordinate system {}, but the image in {}",
                                  pointed->header.coord, coord));
     }
     const auto blob =
         search.look(hc::as_mat(message), {*hue, *hue_width, *saturation, *value}, *min_area);
     if (!blob) return;
-    target.send(hc::position(blob->x, blob->y, blob->radius).in(message.header.coord));
-    area.send(hc::table({blob->area}));
+    target.send({blob->x, blob->y, blob->radius}, 0, message.header.coord);
+    area.send({blob->area});
   });
   const int status = module.run(argc, argv);
   if (const auto summary = search.summary(); !summary.empty())

@@ -38,7 +38,7 @@ std::optional<hc::vision::Blob> Search::look(const cv::Mat& rgb, const hc::visio
   return blob;
 }
 
-// The light or the parameters are not right.
+// If the colour is found, but too pale or too dark: logs which limits it misses.
 void Search::warn(const cv::Mat& rgb, double min_area) {
   constexpr int kMany = 40;
   if (images_ != kMany) return;
@@ -46,9 +46,9 @@ void Search::warn(const cv::Mat& rgb, double min_area) {
   if (!faint) return;
   const auto& wanted = finder_->colour();
   log_(hc::format(
-      "no blob in {} images: what is of hue {:.2f} has a mean saturation of {:.2f} and a mean "
-      "value of {:.2f}, and must have {:.2f} and {:.2f}; raise the camera's exposure, or lower "
-      "the parameters saturation or value",
+      "no blob in {} images: pixels of hue {:.2f} have a mean saturation of {:.2f} and a mean "
+      "value of {:.2f}, below the minimum of {:.2f} and {:.2f}; raise the camera's exposure, or "
+      "lower the parameters saturation or value",
       kMany, wanted.hue, faint->min_saturation, faint->min_value, wanted.min_saturation,
       wanted.min_value));
 }

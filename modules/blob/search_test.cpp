@@ -69,7 +69,7 @@ TEST_F(SearchTest, says_once_what_is_too_dark) {
   EXPECT_TRUE(said_.empty());
   for (int i = 0; i < 60; ++i) EXPECT_FALSE(is_found(kDarkRed));
   ASSERT_EQ(said_.size(), 1U);
-  EXPECT_TRUE(said_[0].starts_with("no blob in 40 images: what is of hue 0.00 has a ")) << said_[0];
+  EXPECT_TRUE(said_[0].starts_with("no blob in 40 images: pixels of hue 0.00 have a ")) << said_[0];
 }
 
 TEST_F(SearchTest, says_nothing_where_one_was_found_or_nothing_is_of_the_hue) {

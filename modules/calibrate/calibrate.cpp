@@ -19,15 +19,15 @@ using hc::gaze::HeadCalibration;
 using hc::vision::StereoCalibration;
 
 hc::Error too_little(const std::string& where) {
-  return {hc::Code::NotFound, "too little is seen in both images " + where};
+  return {hc::Code::NotFound, "too few matches between the images " + where};
 }
 
-/// A rotation of the head in its own frame and in an eye's: w in the head's frame, u in the eye's.
+/// A rotation vector of the head: w in the head's frame, u in the eye's.
 struct Turn {
   Vector3d w, u;
 };
 
-/// How much the turns are about a second axis, other than their main one [rad²].
+/// Spread of the turns about their second principal axis [rad²].
 double spread(const std::vector<Turn>& turns) {
   Matrix3d sum = Matrix3d::Zero();
   for (const auto& turn : turns) sum += turn.w * turn.w.transpose();
@@ -38,13 +38,13 @@ double spread(const std::vector<Turn>& turns) {
 struct Eye {
   cv::Mat HeadView::*image;
   Eigen::Isometry3d T_head_mounted;
-  Matrix3d M = T_head_mounted.linear();           // its mounting in the head, as far as it is known
+  Matrix3d M = T_head_mounted.linear();           // R_head_eye, refined in rounds
   Vector3d place = T_head_mounted.translation();  // [m]
-  std::vector<hc::vision::Matches> matches = {};  // of the first pose with each other one
+  std::vector<hc::vision::Matches> matches = {};  // between the first pose and each other
   std::vector<Turn> turns = {};
 
-  /// The turns from the first pose to others, as this eye sees them: a pose in which it sees too
-  /// little is skipped, as long as turns about both axes stay.
+  /// Measures the turns from the first pose to the others. Poses with too few matches are skipped,
+  /// as long as turns about both axes remain.
   hc::Status see(const std::vector<HeadView>& views, const hc::vision::Intrinsics& camera,
                  const std::stop_token& stop) {
     turns.clear();
@@ -66,7 +66,7 @@ struct Eye {
   }
 };
 
-/// The rotation M of which w = M u, nearly, for all.
+/// The rotation M that best fits w = M u for all turns (Kabsch).
 Matrix3d align(const std::vector<Turn>& turns) {
   Matrix3d sum = Matrix3d::Zero();
   for (const auto& turn : turns) sum += turn.w * turn.u.transpose();
@@ -75,7 +75,7 @@ Matrix3d align(const std::vector<Turn>& turns) {
   return svd.matrixU() * Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
 }
 
-/// Views as two equal cameras without distortion would have taken them.
+/// Views as seen by two identical cameras without distortion.
 /// @param is_swapped  the first images are the right eye's.
 hc::Result<std::vector<HeadView>> straightened(const std::vector<HeadView>& views,
                                                const StereoCalibration& cameras, bool is_swapped,
@@ -104,7 +104,7 @@ hc::vision::Matches matches_of_eyes(const HeadView& view, const hc::vision::Intr
   return hc::vision::match(view.first, view.second, camera, Matrix3d::Identity());
 }
 
-/// Whether the first image is the right eye's: the right eye is on the right of the left one.
+/// Whether the first image is the right eye's.
 hc::Result<bool> find_swapped(const HeadView& view, const hc::vision::Intrinsics& camera) {
   const auto eyes = hc::vision::relative_pose(matches_of_eyes(view, camera), camera,
                                               Matrix3d::Identity(), Vector3d::UnitX());
@@ -112,7 +112,7 @@ hc::Result<bool> find_swapped(const HeadView& view, const hc::vision::Intrinsics
   return eyes->t.x() < 0;
 }
 
-/// The calibration by views of two equal cameras without distortion.
+/// Calibrates from views of two identical cameras without distortion.
 hc::Result<HeadCalibration> solve(const std::vector<HeadView>& views, bool is_swapped,
                                   const hc::vision::Intrinsics& camera,
                                   const hc::gaze::Eyes& mounted, const std::stop_token& stop) {
@@ -123,11 +123,11 @@ hc::Result<HeadCalibration> solve(const std::vector<HeadView>& views, bool is_sw
   Eye left{&HeadView::first, mounted.T_head_eye(Side::Left)};
   Eye right{&HeadView::second, mounted.T_head_eye(Side::Right)};
   if (found.swapped) std::swap(left.image, right.image);
-  // How an eye moves as the head turns follows from its mounting.
+  // An eye's translation as the head turns depends on its mounting, so iterate.
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
     for (Eye* eye : {&left, &right}) HC_TRY(eye->see(views, camera, stop));
-    // What both eyes see at once shows how they are mounted.
+    // Matches between the eyes give their mounting relative to each other.
     const Eye &first = found.swapped ? right : left, &second = found.swapped ? left : right;
     const Vector3d to_second = first.M.transpose() * (second.place - first.place);
     const auto eyes =
@@ -136,12 +136,12 @@ hc::Result<HeadCalibration> solve(const std::vector<HeadView>& views, bool is_sw
     const Matrix3d R_left_right = found.swapped ? Matrix3d(eyes->R_a_b.transpose()) : eyes->R_a_b;
     found.rms = eyes->rms;
     found.offset = hc::gaze::rotation_vector(R_left_right);
-    // The right eye's turns, as the left one would see them.
+    // The right eye's turns, in the left eye's frame.
     auto turns = left.turns;
     for (const auto& turn : right.turns) turns.push_back({turn.w, R_left_right * turn.u});
     left.M = align(turns);
     right.M = left.M * R_left_right;
-    // The eyes are mounted on one bar, which is turned as the left one is.
+    // Both eyes sit on one bar, which has the left eye's rotation.
     const Matrix3d bar = left.M * left.T_head_mounted.linear().transpose();
     for (Eye* eye : {&left, &right}) eye->place = bar * eye->T_head_mounted.translation();
   }
@@ -162,7 +162,7 @@ hc::Result<HeadCalibration> calibrate(const std::vector<HeadView>& views,
                                                 std::to_string(cameras.size.height)};
   const hc::vision::Intrinsics ideal{cameras.M1(0, 0), (size.width - 1) / 2.0,
                                      (size.height - 1) / 2.0};
-  // Which camera took which images is not known before the eyes are identified.
+  // Cameras can be assigned to images only once the eyes are identified.
   const auto first = HC_TRY(straightened({views[0]}, cameras, false, ideal));
   const auto is_swapped = HC_TRY(find_swapped(first.front(), ideal));
   const auto straight = HC_TRY(straightened(views, cameras, is_swapped, ideal));

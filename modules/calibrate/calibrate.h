@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How a head's eyes are mounted on its pan-tilt unit, from what they see as it turns. No messages.
+// Calibrates the mounting of a head's eyes on its pan-tilt unit, by turning the head. No messages.
 
 #include <stop_token>
 #include <vector>
@@ -10,27 +10,26 @@
 #include <vision/calibration.h>
 #include <opencv2/core.hpp>
 
-/// What both eyes see in one pose of the head.
+/// Images of both eyes in one pose of the head.
 struct HeadView {
-  hc::gaze::Angles unit;  ///< as the unit reports it
-  cv::Mat first, second;  ///< (H, W) u8, of the cameras as they are plugged in
+  hc::gaze::Angles unit;  ///< reported by the unit [rad]
+  cv::Mat first, second;  ///< (H, W) u8, in the order of the cameras, which may be swapped
 };
 
-/// @param views  the first straight ahead; others a pan or a tilt away, so that images overlap by
-///     half; at least one of each.
-/// @param cameras  of the left and the right eye, as far as they are known.
-/// @param mounted  the eyes as they are mounted on the head, about.
+/// @param views  the first straight ahead; the others differ in pan or tilt, with images that
+///     overlap it by half; at least one of each.
+/// @param cameras  intrinsics and, if measured, extrinsics of the left and right eye.
+/// @param mounted  approximate mounting of the eyes on the head.
 ///
-/// The unit's axes are seen as those that the images turn about: of each turn of the unit, by the
-/// vector w in the head's frame, an eye sees the turn u = Mᵀ w, and M, which is how the eye sits in
-/// the head, comes out of several. Where `cameras` were measured, and what is seen does not speak
-/// against it, the offset is theirs: a chessboard measures it better.
+/// A turn of the unit by the rotation vector w in the head's frame appears to an eye as u = Mᵀ w;
+/// several turns give M, the rotation of the eye in the head. If `cameras` were measured with a
+/// chessboard and the images agree, the offset is theirs, which is more accurate. Poses with too
+/// few matches to the first are ignored.
 ///
 /// Source: Kabsch, A solution for the best rotation to relate two sets of vectors, 1976.
-/// A pose in which an eye sees too little of what it saw from the first is ignored.
-/// Errors: NotFound (too little is seen by both eyes, or of turns about one axis); Unsupported
-/// (images of another size than the cameras'); Stopped (`stop` was asked for).
-/// Cost: 2 to 4 s of nine views at 800×600.
+/// Errors: NotFound (too few matches between the eyes or while turning about one of the axes);
+/// Unsupported (images of another size than the cameras'); Stopped (by `stop`). Cost: 2 to 4 s for
+/// nine views at 800×600.
 hc::Result<hc::gaze::HeadCalibration> calibrate(const std::vector<HeadView>& views,
                                                 const hc::vision::StereoCalibration& cameras,
                                                 const hc::gaze::Eyes& mounted,

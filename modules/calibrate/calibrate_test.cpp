@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 constexpr double kDegree = M_PI / 180;
 
-/// A world of bright discs, drawn as an eye of the head sees them.
+/// A world of bright discs, rendered for an eye of the head.
 class Discs {
  public:
   Discs() {
@@ -58,7 +58,7 @@ class Discs {
   std::vector<Disc> discs_;
 };
 
-/// A head that is not as it was built, and what it sees.
+/// A head that deviates from its design, and its images.
 struct Crooked {
   hc::gaze::Eyes mounted = hc::gaze::mounted_eyes();
   hc::gaze::Angles zero{2 * kDegree, -1.5 * kDegree};
@@ -110,12 +110,12 @@ TEST(Calibrate, a_pose_that_shows_little_is_dropped) {
   auto views = head.views(false);
   views[4].second.setTo(0);
   head.expect_found(calibrate(views, head.pair, head.mounted));
-  // But not all that tilt.
+  // But at least one tilted view must remain.
   views.resize(4);
   views[3].second.setTo(0);
   const auto found = calibrate(views, head.pair, head.mounted);
   ASSERT_FALSE(found);
-  EXPECT_EQ(found.error().detail, "too little is seen in both images as the head turns");
+  EXPECT_EQ(found.error().detail, "too few matches between the images as the head turns");
 }
 
 TEST(Calibrate, a_pair_that_was_measured_is_not_measured_worse) {
@@ -131,7 +131,7 @@ TEST(Calibrate, a_pair_that_was_measured_is_not_measured_worse) {
   const auto found = calibrate(views, measured, head.mounted);
   ASSERT_TRUE(found);
   EXPECT_NEAR((found->R_left_right() - turned(0.15 * kDegree)).norm(), 0, 1e-9);
-  // One that has moved since is.
+  // One that has moved since is measured again.
   hc::vision::turn(measured, turned(2 * kDegree));
   head.expect_found(calibrate(views, measured, head.mounted));
 }
@@ -155,7 +155,7 @@ TEST(Calibrate, says_when_too_little_is_seen) {
   const std::vector<HeadView> views = {{{0, 0}, dark, dark}, {{0.2, 0}, dark, dark}};
   auto found = calibrate(views, pair, hc::gaze::mounted_eyes());
   ASSERT_FALSE(found);
-  EXPECT_EQ(found.error().detail, "too little is seen in both images of the eyes");
+  EXPECT_EQ(found.error().detail, "too few matches between the images of the eyes");
   found = calibrate(views, hc::vision::ideal_pair({640, 480}, 600, 0.1), hc::gaze::mounted_eyes());
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().detail, "the cameras' calibration is for images of 640 x 480");

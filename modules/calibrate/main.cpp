@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A task: turns the head a little to all sides, and finds how its eyes are mounted.
+// A task: turns the head a little to all sides to calibrate the mounting of its eyes.
 #include "calibrate.h"
 
 #include <cmath>
@@ -21,23 +21,23 @@ namespace {
 
 using hc::gaze::Angles;
 
-constexpr std::int64_t kSilent = 1'000'000'000;  // nothing comes for so long: disconnected [ns]
-constexpr double kNear = 0.004;                  // of where it was sent: it is there [rad]
-constexpr std::int64_t kRests = 300'000'000;     // it is at rest after this time [ns]
+constexpr std::int64_t kSilent = 1'000'000'000;  // without a pair for longer: disconnected [ns]
+constexpr double kNear = 0.004;                  // tolerance of a commanded pose [rad]
+constexpr std::int64_t kRests = 300'000'000;     // time in tolerance until at rest [ns]
 
 }  // namespace
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"calibrate", "Finds how a head's eyes are mounted, by turning it."};
-  auto left = module.input("left", hc::rgb_image<std::uint8_t>().in(hc::Coord::kLeftImage),
+  auto left = module.input("left", hc::rgb_image().in(hc::Coord::kLeftImage),
                            "image of the left camera");
-  auto right = module.input("right", hc::rgb_image<std::uint8_t>().in(hc::Coord::kRightImage),
+  auto right = module.input("right", hc::rgb_image().in(hc::Coord::kRightImage),
                             "of the right one");
-  auto command = module.output("command", hc::rotation<double>().in(hc::Coord::kGaze),
+  auto command = module.output("command", hc::rotation().in(hc::Coord::kGaze),
                                "commanded head orientation: roll 0, tilt, pan [rad]");
-  auto bid = module.output("bid", hc::table<double>(), "salience while it looks, else 0");
-  auto result = module.output("result", hc::table<double>().of(7, 1),
+  auto bid = module.output("bid", hc::table(), "salience while it looks, else 0");
+  auto result = module.output("result", hc::table().of(1, 7),
                               "eyes swapped 0/1, pan and tilt of the left eye with the unit "
                               "at 0, roll, pitch, yaw of the right eye to the left one [rad], "
                               "distance from epipolar lines, RMS [px]; once a second");
@@ -58,24 +58,24 @@ int main(int argc, char** argv) {
   hc::ModuleFrames frames{module};
 
   std::vector<HeadView> views;
-  std::vector<Angles> poses;  // that the head takes
+  std::vector<Angles> poses;  // to visit
   std::optional<hc::gaze::Eyes> mounted;
-  std::int64_t rests_from = 0;                              // 0: it moves [ns]
-  hc::vision::StereoCalibration cameras;                    // once the images' size is known
-  std::future<hc::Result<hc::gaze::HeadCalibration>> work;  // while it computes
+  std::int64_t rests_from = 0;                              // 0: moving [ns]
+  hc::vision::StereoCalibration cameras;                    // set once the images' size is known
+  std::future<hc::Result<hc::gaze::HeadCalibration>> work;  // valid while computing
   std::stop_source stop;
   std::optional<hc::gaze::HeadCalibration> found;
   bool is_done = false;
-  std::int64_t last_pair = 0;     // when both eyes saw, and the head was known [ns]
-  std::int64_t sent = 0;          // to the pose of now; 0: not yet [ns]
+  std::int64_t last_pair = 0;     // last images of both eyes with a known head pose [ns]
+  std::int64_t sent = 0;          // when the current pose was first commanded; 0: not yet [ns]
   std::int64_t paused_until = 0;  // [ns]
   std::int64_t tried = 0;         // failed attempts
 
   auto publish = [&] {
     const auto numbers = found->numbers();
-    result.send(hc::table<double>(std::span(numbers)));
+    result.send(std::span(numbers));
   };
-  std::string how_found;  // for the end
+  std::string how_found;  // for the final log line
   auto finish = [&](const hc::gaze::HeadCalibration& calibration, const std::string& how) {
     is_done = true;
     how_found = how.empty() ? "by turning the head" : "from " + *file;
@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
     paused_until = module.now() + hc::duration(*pause).count();
     module.log("not calibrated: " + why + (is_done ? "; giving up" : "; retrying"));
   };
-  /// Takes in what was computed.
+  /// Takes the result of the computation.
   auto take = [&] {
     const auto calibration = work.get();
     if (!calibration) return fail(calibration.error().detail);
@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
     if (!cameras.head.empty())
       finish(hc::value_or_end(hc::gaze::HeadCalibration::of(cameras.head)), "from " + *file + ": ");
   });
-  /// A pair of images, the head being turned so.
+  /// Handles a pair of images and the head's pose at its time.
   auto look = [&](std::int64_t time, const Angles& measured, const hc::Message& one,
                   const hc::Message& other) {
     last_pair = module.now();
@@ -160,10 +160,10 @@ int main(int argc, char** argv) {
     using std::chrono_literals::operator""ms;
     const std::int64_t now = module.now();
     if (work.valid() && work.wait_for(0ms) == std::future_status::ready) take();
-    // It wants the head only while it sees with both eyes and knows how the head is turned.
+    // Bids for the head only while images of both eyes arrive with a known head pose.
     const bool sees = now - last_pair < kSilent;
     const bool wants = !is_done && now >= paused_until && (sees || work.valid());
-    bid.send(hc::table({wants ? *salience : 0.0}).at(now));
+    bid.send({wants ? *salience : 0.0}, now);
     if (!wants) {
       sent = 0;
       return;
@@ -171,13 +171,13 @@ int main(int argc, char** argv) {
     const auto& wanted = work.valid() ? poses.back() : poses[views.size()];
     if (sent == 0) sent = now;
     if (!work.valid() && hc::seconds(now - sent) > *timeout)
-      return fail("the head did not come to rest where it was sent");
-    command.send(hc::rotation(0.0, wanted.tilt, wanted.pan).at(now));
+      return fail("the head did not come to rest at the commanded pose");
+    command.send({0.0, wanted.tilt, wanted.pan}, now);
   });
   module.every(std::chrono::seconds(1), [&] {
     if (found) publish();
   });
-  // At the end of the images the result is published; a module that is asked to stop does not wait.
+  // When the images end, the result is still published; when asked to stop, it is discarded.
   module.on_end([&] {
     if (work.valid()) take();
   });

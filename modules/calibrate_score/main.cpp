@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well a head has been calibrated, compared with what a simulation was set to.
+// Compares a head calibration with the parameters of the simulation.
 #include <cmath>
 
 #include <hc/base/format.h>
@@ -9,9 +9,8 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"calibrate_score", "Compares a head's calibration with the truth."};
-  auto result = module.input("result", hc::table<double>(), "result of calibrate");
-  module.keep(result);
-  auto score = module.output("score", hc::table<double>().of(3, 1),
+  auto result = module.input("result", hc::table(), "result of calibrate", {.keep = 1});
+  auto score = module.output("score", hc::table().of(1, 3),
                              "left and right identified correctly 0/1, error of the zero, of the "
                              "right eye's offset [rad]");
   auto swapped = module.parameter("swapped", false, "", "truth: the cameras are swapped");
@@ -23,7 +22,6 @@ int main(int argc, char** argv) {
   auto timeout =
       module.parameter("timeout", 60.0, "s", "to wait for a result", {.min = 1, .max = 3600});
 
-  bool is_done = false;
   module.on(result, [&](const auto& message) {
     const auto found = message.matrix().numbers();
     if (found.size() < 6) throw hc::BadMessage("the result is not one of calibrate");
@@ -31,20 +29,14 @@ int main(int argc, char** argv) {
     const double zero = std::hypot(found[1] - *zero_pan, found[2] - *zero_tilt);
     const double offset =
         std::hypot(found[3] - *offset_roll, found[4] - *offset_pitch, found[5] - *offset_yaw);
-    score.send(hc::table({is_right ? 1.0 : 0.0, zero, offset}));
+    score.send({is_right ? 1.0 : 0.0, zero, offset});
     module.log(hc::format("left and right {}, zero off by {:.3f}°, camera offset by {:.3f}°",
                           is_right ? "identified correctly" : "MIXED UP", zero * 180 / M_PI,
                           offset * 180 / M_PI),
                hc::Level::Result);
-    is_done = true;
+    module.stop();
   });
-  std::int64_t looks = 0;
-  module.generate([&] {
-    constexpr double kLook = 20;  // [Hz]
-    module.keep_rate(kLook);
-    if (static_cast<double>(++looks) > *timeout * kLook)
-      throw hc::ModuleError("no result within timeout");
-    return !is_done;
-  });
+  auto late = module.after(std::chrono::hours(1), [&] { throw hc::ModuleError("no result within timeout"); });
+  module.on_start([&] { late.restart(hc::duration(*timeout)); });
   return module.run(argc, argv);
 }

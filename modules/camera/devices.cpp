@@ -38,8 +38,8 @@ class AravisDevice final : public Device {
   std::unique_ptr<hc::aravis::Camera> camera_;
 };
 
-/// A V4L2 device or an RTSP stream, by OpenCV. A read of a silent one waits for silence_of() or
-/// kStreamTimeout.
+/// A V4L2 device or an RTSP stream, read with OpenCV. Reading a silent source blocks for
+/// silence_of() or kStreamTimeout.
 class CaptureDevice final : public Device {
  public:
   CaptureDevice(cv::VideoCapture capture, bool is_device, std::string remark)
@@ -62,7 +62,7 @@ class CaptureDevice final : public Device {
   [[nodiscard]] std::string remark() const override { return remark_; }
 
  private:
-  /// V4L2 says when an image was taken, by the monotonic clock.
+  /// V4L2 stamps images with the monotonic clock; converted to wall time.
   [[nodiscard]] std::int64_t time_of_image() const {
     const hc::SystemClock clock;
     if (is_device_) {
@@ -110,8 +110,8 @@ bool is_live(const std::string& name) {
 }
 
 LiveCamera live_camera(const std::string& name, const CaptureMode& mode) {
-  // OpenCV has no property of a V4L2 device for it, and reads this once, before the first image;
-  // here, since no camera's thread runs yet.
+  // OpenCV has no property for this timeout and reads the variable once, before the first image.
+  // setenv() is safe here, since no camera thread runs yet.
   ::setenv("OPENCV_VIDEOIO_V4L_SELECT_TIMEOUT", std::to_string(silence_of(mode)).c_str(), 0);
   if (!name.starts_with(kAravis)) return {name, [=] { return open_capture(name, mode); }};
   return {name,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Cameras that may go and come back, by what their name is: aravis:NAME (GigE Vision and USB3
-// Vision), a V4L2 device, an RTSP stream.
+// Live cameras, which may disconnect and reconnect: aravis:NAME (GigE Vision and USB3 Vision), V4L2
+// devices, RTSP streams.
 
 #include <optional>
 #include <string>
@@ -9,9 +9,9 @@
 #include "live.h"
 #include "v4l2.h"
 
-/// Whether a source is one: "aravis:…", a number, "/dev/…", "rtsp://…".
+/// Whether a name is of a live camera: "aravis:…", a number, "/dev/…", "rtsp://…".
 bool is_live(const std::string& name);
 
-/// How such a source is opened. @param mode  what it is asked for: of aravis: the pixel format
-/// and rate (see hc::aravis::Camera), of an RTSP stream nothing.
+/// How to open a live camera. @param mode  requested mode; aravis uses only the pixel format and
+/// rate (see hc::aravis::Camera), RTSP nothing.
 LiveCamera live_camera(const std::string& name, const CaptureMode& mode);

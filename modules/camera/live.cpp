@@ -6,16 +6,16 @@
 
 namespace {
 
-constexpr std::chrono::milliseconds kTimeout{100};  // until a thread notices that it is to end
-constexpr std::chrono::seconds kSettled{1};         // a camera that is lost sooner is retried later
+constexpr std::chrono::milliseconds kTimeout{100};  // of a wait, to notice `stopping_`
+constexpr std::chrono::seconds kSettled{1};         // a camera lost sooner increases the backoff
 
 }  // namespace
 
 bool Thinning::takes(std::int64_t time, double rate) {
   if (rate <= 0) return true;
   const double period = 1e9 / rate, now = static_cast<double>(time);
-  if (due_ <= 0 || due_ > now + 2 * period) due_ = now;  // the first, or the clock was set back
-  // One of a camera that keeps the rate itself may be a little early.
+  if (due_ <= 0 || due_ > now + 2 * period) due_ = now;  // first image, or the clock was set back
+  // A camera that keeps the rate itself may be a little early.
   if (now < due_ - period / 4) return false;
   due_ = std::max(due_, now - period) + period;
   return true;
@@ -24,9 +24,9 @@ bool Thinning::takes(std::int64_t time, double rate) {
 struct LiveCameras::Camera {
   std::size_t side = 0;
   LiveCamera how;
-  std::optional<Frame> newest;  // of a camera that is alone
-  bool is_missing = false;      // and it is logged
-  std::string remark;           // as it was logged
+  std::optional<Frame> newest;  // while the other camera is missing
+  bool is_missing = false;      // and logged
+  std::string remark;           // last logged
   hc::Backoff backoff;
   std::thread thread;
 };
@@ -56,14 +56,14 @@ void LiveCameras::report(std::string text) {
   remarks_.push_back({hc::Level::Warning, std::move(text)});
 }
 
-/// Waits; false when it is to end.
+/// Waits; false when stopping.
 bool LiveCameras::pause(std::chrono::nanoseconds time) {
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, time, [&] { return stopping_; });
   return !stopping_;
 }
 
-/// A camera cannot be opened, or is lost. With the mutex.
+/// Handles a camera that cannot be opened or is lost. Caller holds the mutex.
 void LiveCameras::miss(Camera& camera, const hc::Error& why, const char* how, const char* then) {
   if (!reopen_)
     failure_ = hc::Error{why.code, camera.how.name + ": " + why.detail};
@@ -97,7 +97,7 @@ void LiveCameras::run(Camera& camera) {
   } while (true);
 }
 
-/// Takes a camera's images until it is lost, or all is to end.
+/// Takes a camera's images until it is lost or we stop.
 void LiveCameras::serve(Camera& camera, Device& device) {
   std::optional<Adjustment> adjusted;
   std::optional<std::chrono::steady_clock::time_point> first;
@@ -120,7 +120,7 @@ void LiveCameras::serve(Camera& camera, Device& device) {
     const auto now = std::chrono::steady_clock::now();
     if (first && now - *first > kSettled) camera.backoff.reset();
     if (!first) {
-      // It is connected when it gives an image, and not when it can merely be opened.
+      // Connected means that an image arrives, not merely that the device opens.
       first = now;
       if (std::exchange(camera.is_missing, false))
         remarks_.push_back({hc::Level::Info, camera.how.name + ": reconnected"});
@@ -142,7 +142,7 @@ hc::Result<std::optional<LiveCameras::Taken>> LiveCameras::next(std::chrono::mil
     while (auto pair = pairing_.take()) taken = Taken{std::move((*pair)[0]), std::move((*pair)[1])};
     for (auto& camera : cameras_) {
       if (!camera->newest) continue;
-      // An image from before its partner came is stale beside a pair.
+      // A single image, from before the other camera returned, is older than the pair.
       auto frame = std::move(*std::exchange(camera->newest, {}));
       if (taken) continue;
       taken.emplace();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Cameras that send images by themselves, and may be disconnected. Each is opened, waited for and
-// reopened on a thread of its own, so that it holds up nothing else.
+// Live cameras, which may disconnect. Each is opened, read and reopened on a separate thread, so
+// that it delays nothing else.
 
 #include <array>
 #include <chrono>
@@ -21,35 +21,35 @@
 
 #include "pairing.h"
 
-/// What can be set while a camera runs.
+/// Settings that can change while a camera runs.
 struct Adjustment {
-  double exposure = 0;  ///< [s]; 0: the camera's own choice
-  double gain = -1;     ///< in the camera's unit; less than 0: the camera's own choice
+  double exposure = 0;  ///< [s]; 0: automatic
+  double gain = -1;     ///< in the camera's unit; < 0: automatic
   bool operator==(const Adjustment&) const = default;
 };
 
-/// Thins out images to a rate, by their times, without holding any back. Pure.
+/// Thins out images to a rate, by their times; never delays one. Pure.
 class Thinning {
  public:
-  /// Whether an image of such a time [ns] is taken at a rate [1/s]; 0: all are.
+  /// Whether to take the image of this time [ns] at a rate [1/s]; 0: all.
   bool takes(std::int64_t time, double rate);
 
  private:
-  double due_ = 0;  // of the next one [ns]
+  double due_ = 0;  // next image [ns]
 };
 
-/// An open camera, which belongs to one thread.
+/// An open camera. For one thread.
 class Device {
  public:
   virtual ~Device() = default;
-  /// Waits for an image; nothing when none comes in time. Errors: any, the camera is lost.
+  /// Waits for an image; nothing on timeout. Errors: any means that the camera is lost.
   virtual hc::Result<std::optional<Frame>> next(std::chrono::milliseconds timeout) = 0;
   virtual hc::Status adjust(const Adjustment& adjustment) = 0;
-  /// How it differs from what was asked for when it was opened; "": not.
+  /// How the mode differs from the requested one; "" if it does not.
   [[nodiscard]] virtual std::string remark() const { return {}; }
 };
 
-/// Opens a camera; is called on its thread, again and again while it fails.
+/// Opens a camera. Called on its thread, and again after a failure.
 using OpenDevice = std::function<hc::Result<std::unique_ptr<Device>>()>;
 
 /// A line of the log about a camera.
@@ -60,30 +60,29 @@ struct Remark {
 };
 
 struct LiveCamera {
-  std::string name;  ///< as remarks call it
+  std::string name;  ///< in remarks
   OpenDevice open;
 };
 
-/// One camera, or two whose images are taken in pairs at nearest times. When one of two is lost
-/// the other continues alone.
+/// One camera, or two whose images are paired by time. If one is lost, the other continues alone.
 class LiveCameras {
  public:
   struct Taken {
     std::optional<Frame> left, right;
   };
 
-  /// @param reopen  try again when a camera is lost or was never there; otherwise next() fails.
+  /// @param reopen  retry when a camera is lost or missing; otherwise next() fails.
   LiveCameras(std::vector<LiveCamera> cameras, bool reopen, const Adjustment& adjustment);
   ~LiveCameras();
   LiveCameras(const LiveCameras&) = delete;
   LiveCameras& operator=(const LiveCameras&) = delete;
 
-  /// Waits for an image or pair; the newest where several have come. Nothing when none has.
+  /// Waits for the newest image or pair; nothing on timeout.
   /// Errors: without `reopen`, those of a camera.
   hc::Result<std::optional<Taken>> next(std::chrono::milliseconds timeout);
-  /// Sets what the cameras are to do from now on. The same again changes nothing.
+  /// Applies settings to all cameras, if they changed.
   void adjust(const Adjustment& adjustment);
-  /// One for each change.
+  /// Takes the remarks since the last call.
   std::vector<Remark> remarks();
 
  private:
@@ -95,7 +94,7 @@ class LiveCameras {
   bool pause(std::chrono::nanoseconds time);
 
   const bool reopen_;
-  std::mutex mutex_;  // of all below
+  std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   bool stopping_ = false;
   Adjustment adjustment_;

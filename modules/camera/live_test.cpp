@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// What a test does to a camera, from another thread.
+/// Faults that a test injects from another thread.
 struct Plug {
   std::atomic<bool> is_in = true;
   std::atomic<int> opened = 0, adjusted = 0;
@@ -26,7 +26,7 @@ class FakeDevice final : public Device {
     if (!plug_.is_in || (plug_.is_loose && ++given_ > 1))
       return hc::Error{hc::Code::Closed, "pulled out"};
     std::this_thread::sleep_for(milliseconds(1));  // its rate
-    // One clock for all, or images of a camera that was away would have no partners.
+    // One clock for all; otherwise images of a reconnected camera would have no partners.
     const auto now = std::chrono::steady_clock::now().time_since_epoch();
     return std::optional<Frame>(
         Frame{cv::Mat(2, 2, CV_8UC3), std::chrono::nanoseconds(now).count()});
@@ -45,14 +45,14 @@ class FakeDevice final : public Device {
 
 LiveCamera camera(const std::string& name, Plug& plug) {
   return {name, [&plug]() -> hc::Result<std::unique_ptr<Device>> {
-            const bool is_in = plug.is_in;  // before a test hears that it is being opened
+            const bool is_in = plug.is_in;  // before the test is notified of the opening
             ++plug.opened;
             if (!is_in) return hc::Error{hc::Code::NotFound, "no such camera"};
             return std::unique_ptr<Device>(std::make_unique<FakeDevice>(plug));
           }};
 }
 
-/// Takes images until one is as wanted; all that was said meanwhile. The watchdog is the test's.
+/// Takes images until one meets the condition; returns the log meanwhile. Limited by the watchdog.
 template <typename Wanted>
 std::vector<Remark> take_until(LiveCameras& cameras, Wanted wanted) {
   std::vector<Remark> said;
@@ -129,7 +129,7 @@ TEST(LiveCameras, one_that_comes_and_goes_is_looked_for_less_and_less_often) {
     said += cameras.remarks().size();
   }
   EXPECT_LE(said, 9);  // two for each time
-  // 0.1 s, 0.2 s, 0.4 s, 0.8 s: however slow the machine is, it is not less.
+  // 0.1 s, 0.2 s, 0.4 s, 0.8 s: a minimum on any machine.
   EXPECT_GE(std::chrono::steady_clock::now() - begin, milliseconds(1500));
 }
 
@@ -159,7 +159,7 @@ TEST(Thinning, keeps_a_rate_and_holds_nothing_back) {
   Thinning thinning;
   EXPECT_TRUE(thinning.takes(1'000'000'000'000, 10));
   EXPECT_FALSE(thinning.takes(1'000'050'000'000, 10));
-  EXPECT_TRUE(thinning.takes(5'000'000'000, 10));  // by a clock that was set back
+  EXPECT_TRUE(thinning.takes(5'000'000'000, 10));  // after the clock was set back
 }
 
 TEST(LiveCameras, what_differs_is_reported_once) {

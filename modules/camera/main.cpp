@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One camera, or the two of a stereo pair.
+// Sends the images of one camera or of a stereo pair.
 #include "devices.h"
 #include "sequence.h"
 
@@ -12,7 +12,7 @@
 
 namespace {
 
-constexpr std::chrono::milliseconds kTimeout{20};  // until commands are looked for again
+constexpr std::chrono::milliseconds kTimeout{20};  // maximum delay of commands
 
 void check(bool is_valid, const std::string& problem) {
   if (!is_valid) throw hc::ModuleError(hc::Error{hc::Code::Invalid, problem});
@@ -23,10 +23,10 @@ void check(bool is_valid, const std::string& problem) {
 int main(int argc, char** argv) {
   hc::add_all_transports();
   using hc::Coord;
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we log the results
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we log errors ourselves
   hc::Module module{"camera", "Sends the images of a camera, a video or image files."};
-  auto left = module.output("left", hc::rgb_image<std::uint8_t>(), "image of the left eye");
-  auto right = module.output("right", hc::rgb_image<std::uint8_t>(), "image of the right eye");
+  auto left = module.output("left", hc::rgb_image(), "image of the left eye");
+  auto right = module.output("right", hc::rgb_image(), "image of the right eye");
   auto left_name = module.parameter("source", "", "",
                                     "left or only eye: aravis:NAME, a number or /dev/videoN, "
                                     "rtsp://…, a video, pipeline, folder or image",
@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
     if (image.empty()) return;
     const cv::Mat fitted =
         hc::vision::fit(image, static_cast<int>(*width), static_cast<int>(*height), *smooth);
-    auto draft = output.loan(fitted.cols, fitted.rows);
+    auto draft = output.loan(fitted.rows, fitted.cols);
     draft.header.time = *stamped ? time : 0;
     draft.header.coord = coord;
     hc::fill(draft, [&](cv::Mat& rgb) { cv::cvtColor(fitted, rgb, cv::COLOR_BGR2RGB); });
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
     if (!taken) throw hc::ModuleError(taken.error().detail);
     if (!*taken) return;
     const auto& [left_frame, right_frame] = **taken;
-    // A pair has one time, so that its images match.
+    // Both images of a pair get the same time, so that they match downstream.
     const std::int64_t time = left_frame ? left_frame->time : right_frame->time;
     if (thinning.takes(time, *rate))
       send_both(left_frame ? left_frame->image : cv::Mat(),
@@ -128,18 +128,14 @@ int main(int argc, char** argv) {
     return file.next();
   };
   module.generate([&] {
-    if (*count > 0 && sent == *count) return false;
-    if (cameras != nullptr) {
-      take_live();
-      return true;
-    }
+    if (*count > 0 && sent == *count) return module.stop();
+    if (cameras != nullptr) return take_live();
     if (*rate > 0) module.keep_rate(*rate);
     const cv::Mat left_image = next(*left_file);
     const std::int64_t time = module.now();
     const cv::Mat right_image = right_file ? next(*right_file) : cv::Mat();
-    if (left_image.empty() || (right_file && right_image.empty())) return false;
+    if (left_image.empty() || (right_file && right_image.empty())) return module.stop();
     send_both(left_image, right_image, time);
-    return true;
   });
   return module.run(argc, argv);
 }

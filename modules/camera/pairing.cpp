@@ -9,7 +9,7 @@
 namespace {
 
 constexpr std::size_t kPeriods = 7;
-// So that cameras half a period apart do not lose a pair to each uneven image.
+// Above 0.5, so that jitter does not break pairs of cameras half a period apart.
 constexpr double kTolerance = 0.55;
 
 }  // namespace
@@ -46,7 +46,7 @@ std::optional<std::array<Frame, 2>> Pairing::take() {
       right.pop_front();
       return pair;
     }
-    // The next of the one behind is closer; without a period, it gives one.
+    // The next image of the side behind is closer; if its period is unknown, wait for one.
     if (!period && behind.waiting.size() < 2) return {};
     behind.waiting.pop_front();
   }

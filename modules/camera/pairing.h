@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Brings together the images of two cameras that run freely, by their times. Pure.
+// Pairs the images of two free-running cameras by time. Pure.
 
 #include <array>
 #include <cstdint>
@@ -9,22 +9,21 @@
 
 #include <opencv2/core.hpp>
 
-/// An image, (H, W, 3) u8 blue, green, red, and when it was taken [ns since the Unix epoch].
+/// An image, (H, W, 3) u8 blue, green, red, and its time [ns since the Unix epoch].
 struct Frame {
   cv::Mat image;
   std::int64_t time = 0;
 };
 
-/// A pair is given as soon as no later image can make a closer one: when its times differ by no
-/// more than half a period of the camera that is behind. So nothing waits for an image to come
-/// that is not needed.
+/// Returns a pair as soon as no later image can be closer: when the times differ by at most half a
+/// period of the camera behind. So a pair never waits for an image it does not need.
 class Pairing {
  public:
-  /// @param side  0 left, 1 right; its times do not fall (when one does, pairing starts over).
+  /// @param side  0 left, 1 right; pairing restarts if its times go back.
   void add(std::size_t side, Frame frame);
   /// The next pair: left, right.
   std::optional<std::array<Frame, 2>> take();
-  /// Forgets what waits on a side.
+  /// Forgets the images of a side.
   void clear(std::size_t side) { sides_.at(side) = {}; }
 
  private:

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// The times [ms] of all pairs, of images that come in the order of their times.
+/// The times [ms] of all pairs from images that arrive in order of time.
 std::vector<std::pair<std::int64_t, std::int64_t>> pairs_of(std::vector<std::int64_t> left,
                                                             std::vector<std::int64_t> right) {
   Pairing pairing;
@@ -33,7 +33,7 @@ TEST(Pairing, equal_times_at_once) {
 }
 
 TEST(Pairing, the_nearest_of_cameras_that_are_out_of_step) {
-  // Right is 5 ms behind; before the first period is known, nothing can be said.
+  // Right is 5 ms late; no pairs before the first period is known.
   const auto pairs = pairs_of({20, 40, 60, 80, 100}, {25, 45, 65, 85, 105});
   ASSERT_GE(pairs.size(), 3U);
   for (const auto& [left, right] : pairs) EXPECT_EQ(right - left, 5);

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is named is not there, or is no such thing: it would not be at the next start either.
+/// A missing or wrong file, which a restart would not cure.
 hc::ModuleError unusable(const std::string& name, const std::string& why) {
   return hc::ModuleError(hc::Error{hc::Code::Invalid, name + ": " + why});
 }
@@ -25,10 +25,10 @@ class ImageFiles final : public ImageSequence {
   cv::Mat next() override {
     if (at_ == paths_.size()) return {};
     const std::string& path = paths_[at_++];
-    // One that is sent again and again is read again only where it has changed.
+    // A single image is sent repeatedly, and read again only when it changes.
     const auto stamp = hc::file_stamp(path);
     if (paths_.size() > 1 || image_.empty() || stamp != stamp_) image_ = cv::imread(path);
-    if (image_.empty()) throw unusable(path, "not an image that can be read");
+    if (image_.empty()) throw unusable(path, "not a readable image");
     stamp_ = stamp;
     return image_;
   }
@@ -54,13 +54,13 @@ class Capture final : public ImageSequence {
     const bool is_pipeline = name_.find('!') != std::string::npos;
     any_ = false;
     if (!capture_.open(name_, is_pipeline ? cv::CAP_GSTREAMER : cv::CAP_ANY))
-      throw hc::ModuleError(name_ + ": not a video, folder or image that can be opened");
+      throw hc::ModuleError(name_ + ": cannot be opened as a video, folder or image");
   }
 
  private:
   std::string name_;
   cv::VideoCapture capture_;
-  bool any_ = false;  // an image has come
+  bool any_ = false;  // at least one image was read
 };
 
 std::vector<std::string> images_in(const std::string& folder) {
@@ -77,7 +77,7 @@ std::vector<std::string> images_in(const std::string& folder) {
 
 std::unique_ptr<ImageSequence> open_sequence(const std::string& name) {
   std::error_code unreadable;
-  // Not a pipeline, an address, or a pattern like frame_%04d.png.
+  // Not a pipeline, a URL, or a pattern like frame_%04d.png.
   const bool is_path =
       name.find_first_of("!%") == std::string::npos && name.find("://") == std::string::npos;
   if (is_path && !fs::exists(name, unreadable))

@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Images of files: image files, folders of them, videos, streams and pipelines that OpenCV opens.
+// Images from files, folders, videos, and the streams and pipelines that OpenCV opens.
 
 #include <memory>
 #include <string>
 
 #include <opencv2/core.hpp>
 
-/// A sequence of images. One that cannot be opened, or breaks, throws hc::ModuleError.
+/// A sequence of images. Throws hc::ModuleError if it cannot be opened or read.
 class ImageSequence {
  public:
   virtual ~ImageSequence() = default;
-  /// The next image, (H, W, 3) u8 in OpenCV's order blue, green, red; empty at the end. Not to be
-  /// written to: it may be given again.
+  /// The next image, (H, W, 3) u8 blue, green, red; empty at the end. Do not write to it: it may be
+  /// returned again.
   virtual cv::Mat next() = 0;
   /// Starts again from the beginning.
   virtual void rewind() = 0;
 };
 
-/// Opens a sequence by its name: a text with `!` a GStreamer pipeline (with an appsink at its end),
-/// a folder its images in the order of their names, an image itself, anything else (a video file,
-/// an address) what OpenCV makes of it.
+/// Opens a GStreamer pipeline (a name with `!`, ending in an appsink), a folder (its images in the
+/// order of their names), an image file, or anything else that OpenCV opens (video file, URL).
 std::unique_ptr<ImageSequence> open_sequence(const std::string& name);

@@ -29,7 +29,7 @@ TEST(ImageSequence, an_image_is_read_again_when_its_file_has_changed) {
   std::filesystem::last_write_time(path, before + std::chrono::seconds(1));
   sequence->rewind();
   EXPECT_EQ(sequence->next().at<cv::Vec3b>(0, 0)[0], 20);
-  // Another file in its place, as old and as large as the one before.
+  // Another file with the same name, time and size.
   const auto kept = path + ".kept";
   std::filesystem::rename(path, kept);
   write(30);

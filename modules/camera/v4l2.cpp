@@ -8,8 +8,8 @@
 
 namespace {
 
-// V4L2: exposure_absolute counts in 100 µs; of exposure_auto, 1 is manual. Automatic is 0, or 3
-// where the camera cannot move its iris, as those of USB.
+// V4L2: exposure_absolute is in units of 100 µs; exposure_auto is 1 for manual, 0 for automatic,
+// and 3 for automatic with a fixed iris, as in USB cameras.
 constexpr double kExposureUnit = 1e-4, kManual = 1, kAuto = 0, kAutoTime = 3;
 
 constexpr int kSilence = 2;  // [s]
@@ -33,7 +33,7 @@ hc::Result<std::vector<Setting>> settings_to_open(const CaptureMode& mode) {
     settings.push_back(
         {cv::CAP_PROP_FOURCC, static_cast<double>(fourcc_of(mode.pixel_format)), ""});
   }
-  // One side alone is nothing to OpenCV.
+  // OpenCV ignores a width or height alone.
   if (mode.width > 0 && mode.height > 0) {
     settings.push_back({cv::CAP_PROP_FRAME_WIDTH, static_cast<double>(mode.width), ""});
     settings.push_back({cv::CAP_PROP_FRAME_HEIGHT, static_cast<double>(mode.height), ""});
@@ -45,7 +45,7 @@ hc::Result<std::vector<Setting>> settings_to_open(const CaptureMode& mode) {
 std::vector<Setting> settings_of(const Adjustment& adjustment, const Found& found) {
   std::vector<Setting> settings;
   if (adjustment.exposure > 0) {
-    settings.push_back({cv::CAP_PROP_AUTO_EXPOSURE, kManual, ""});  // some have no other
+    settings.push_back({cv::CAP_PROP_AUTO_EXPOSURE, kManual, ""});  // fails if always manual
     settings.push_back(
         {cv::CAP_PROP_EXPOSURE, adjustment.exposure / kExposureUnit, "exposure not supported"});
   } else {

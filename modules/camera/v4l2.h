@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a V4L2 device is to be set to, as OpenCV's properties. Pure.
+// The settings of a V4L2 device as OpenCV properties. Pure.
 
 #include <string>
 #include <vector>
@@ -9,39 +9,39 @@
 
 #include "live.h"
 
-/// What a camera is asked for when it is opened; 0 and "": what it has.
+/// The mode requested when a camera is opened; 0 and "": the camera's default.
 struct CaptureMode {
   int width = 0, height = 0;  ///< [px]
   double rate = 0;            ///< [1/s]
-  std::string pixel_format;   ///< of aravis: as GenICam calls it; of V4L2: a FourCC, as MJPG
+  std::string pixel_format;   ///< aravis: GenICam name; V4L2: FourCC, e.g. MJPG
 };
 
-/// One of OpenCV's properties.
+/// A value for an OpenCV property.
 struct Setting {
   int property = 0;
   double value = 0;
-  std::string refusal;  ///< what is to be said when the device refuses it; "": nothing
+  std::string refusal;  ///< error if the device refuses it; "": ignored
 };
 
-/// How a device was when it was opened.
+/// Settings of a device when it was opened.
 struct Found {
-  double exposure = 0, gain = 0;  ///< as OpenCV counts them; less than 0: it has none
+  double exposure = 0, gain = 0;  ///< in OpenCV's units; < 0: not supported
 };
 
-/// What is to be set in this order when a device is opened. The format comes first, since each has
-/// sizes of its own, and the rate last, since each size has rates of its own.
+/// The settings when a device is opened, in this order: format, size, rate, since the sizes depend
+/// on the format and the rates on the size.
 ///
-/// Errors: Unsupported (a format that is no FourCC).
+/// Errors: Unsupported (a format that is not a FourCC).
 hc::Result<std::vector<Setting>> settings_to_open(const CaptureMode& mode);
 
-/// What is to be set in this order while it runs. Its own choice of the exposure is the automatic
-/// one, of a device that has it, else what was found; that of the gain is what was found, since
-/// OpenCV does not reach V4L2_CID_AUTOGAIN.
+/// The settings while a device runs, in order. Automatic exposure falls back to the exposure found
+/// at the start; automatic gain is always the gain found, since OpenCV cannot set
+/// V4L2_CID_AUTOGAIN.
 std::vector<Setting> settings_of(const Adjustment& adjustment, const Found& found);
 
-/// What to log when a device does not do as it was asked: "gives 640 x 480 pixels instead of
-/// 800 x 600"; "" when it does.
+/// Describes a mode that differs from the requested one: "gives 640 x 480 pixels instead of
+/// 800 x 600"; "" if it does not.
 std::string difference(const CaptureMode& asked, int width, int height, double fourcc);
 
-/// How long a device may be silent at one image until it is lost [s]: 2, or two periods.
+/// How long a device may be silent until it counts as lost [s]: 2, or two periods if longer.
 int silence_of(const CaptureMode& mode);

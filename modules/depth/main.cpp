@@ -13,12 +13,12 @@
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"depth", "Finds the depth of a scene from a rectified stereo pair."};
-  auto left = module.input("left", hc::any_image(hc::Coord::kLeftRectified),
+  hc::Module module{"depth", "Finds the depth of a scene from a rectified stereo pair.", {.background = true}};
+  auto left = module.input("left", hc::image(hc::Coord::kLeftRectified),
                            "rectified image of the left eye");
-  auto right = module.input("right", hc::any_image(hc::Coord::kRightRectified),
+  auto right = module.input("right", hc::image(hc::Coord::kRightRectified),
                             "rectified image of the right eye");
-  auto intrinsics = module.input("intrinsics", hc::table<double>(),
+  auto intrinsics = module.input("intrinsics", hc::table(),
                                  "fx, fy, cx, cy [px], baseline [m] of the rectified pair, from "
                                  "rectify; until then focal and baseline apply");
   auto disparity =
@@ -27,13 +27,11 @@ int main(int argc, char** argv) {
   auto depth = module.output("depth", hc::intensity_image<float>().in(hc::Coord::kDepth),
                              "depth along the optical axis [m], 0 unknown");
   auto confidence =
-      module.output("confidence", hc::intensity_image<std::uint8_t>().in(hc::Coord::kDisparity),
-                    "how sure a disparity is: 1 doubtful, 255 sure, 0 unknown");
+      module.output("confidence", hc::intensity_image().in(hc::Coord::kDisparity),
+                    "confidence of the disparity: 1 lowest, 255 highest, 0 unknown", {.on_demand = true});
   auto points = module.output("points", hc::vector_field<float>(6).in(hc::Coord::kLeftEye),
                               "point of each pixel: x, y, z [m] in the frame left_eye, red, green, "
-                              "blue [0, 1]; NaN unknown");
-  module.on_demand(confidence);
-  module.on_demand(points);
+                              "blue [0, 1]; NaN unknown", {.on_demand = true});
   auto matcher_name = module.parameter("matcher", "semi_global", "", "how images are matched",
                                        {.choices = {"semi_global", "opencv"}, .fixed = true});
   auto disparities = module.parameter("disparities", 128, "px", "disparities searched",
@@ -85,9 +83,9 @@ int main(int argc, char** argv) {
                                            const hc::Message& right_image) {
     const auto width = left_image.header.width, height = left_image.header.height;
     const cv::Mat left_mat = hc::value_or_drop(hc::as_mat(left_image));
-    auto disparity_draft = disparity.loan(width, height);
-    auto confidence_draft = confidence.loan(width, height);
-    auto depth_draft = depth.loan(width, height);
+    auto disparity_draft = disparity.loan(height, width);
+    auto confidence_draft = confidence.loan(height, width);
+    auto depth_draft = depth.loan(height, width);
     hc::vision::Disparities found{hc::as_mat(disparity_draft), hc::as_mat(confidence_draft)};
     const cv::Mat right_mat = hc::value_or_drop(hc::as_mat(right_image));
     if (auto matched = matcher->match(left_mat, right_mat, found); !matched)
@@ -96,7 +94,7 @@ int main(int argc, char** argv) {
     if (depth.linked() || points.linked())
       hc::vision::depth_of(found.disparity, geometry(left_image.header), metres);
     if (points.linked()) {
-      auto draft = points.loan(width, height);
+      auto draft = points.loan(height, width);
       cv::Mat mat = hc::as_mat(draft);
       hc::vision::points_of(metres, left_mat, geometry(left_image.header), mat);
       points.send(std::move(draft));
@@ -105,6 +103,5 @@ int main(int argc, char** argv) {
     confidence.send(std::move(confidence_draft));
     depth.send(std::move(depth_draft));
   });
-  module.background();
   return module.run(argc, argv);
 }

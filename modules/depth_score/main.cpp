@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How good a disparity map is, against ground truth.
+// Compares a disparity map with ground truth.
 #include <string>
 
 #include <hc/base/format.h>
@@ -14,14 +14,14 @@ int main(int argc, char** argv) {
   hc::Module module{"depth_score", "Compares disparities with the true ones."};
   auto disparity =
       module.input("disparity", hc::intensity_image<float>(), "as found [px], 0 unknown");
-  auto truth = module.input("truth", hc::any_image(), "true disparity in grey levels, 0 unknown");
+  auto truth = module.input("truth", hc::image(), "true disparity in grey levels, 0 unknown");
   auto result = module.output(
-      "score", hc::table<double>(),
+      "score", hc::table(),
       "share of bad pixels among the valid, of holes, of bad or hole; pixels with known truth");
   auto truth_scale =
       module.parameter("truth_scale", 1.0, "px", "disparity of one grey level", {.min = 1e-6});
   auto threshold =
-      module.parameter("threshold", 2.0, "px", "an error above this is bad", {.min = 0});
+      module.parameter("threshold", 2.0, "px", "larger errors count as bad", {.min = 0});
 
   module.on(hc::together(disparity, truth), [&](const hc::Message& found,
                                                 const hc::Message& known) {
@@ -33,8 +33,8 @@ int main(int argc, char** argv) {
     cv::Mat true_mat;
     levels.convertTo(true_mat, CV_32F, *truth_scale);
     auto score = hc::vision::score(found_mat, true_mat, *threshold);
-    result.send(hc::table({score.bad_share(), score.hole_share(), score.wrong_share(),
-                           static_cast<double>(score.truth)}));
+    result.send({score.bad_share(), score.hole_share(), score.wrong_share(),
+                           static_cast<double>(score.truth)});
     module.log(hc::format("bad pixels {:.2f} % of valid ones (error over {:g} px), holes {:.2f} "
                           "%, bad or hole {:.2f} %, of {} pixels with known truth",
                           100 * score.bad_share(), *threshold, 100 * score.hole_share(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A person who turns the head and wears a tracker, simulated: opentrack's packets, and the truth.
+// Simulates a person's head tracker: sends opentrack packets, and the ground truth.
 #include <optional>
 #include <random>
 #include <string>
@@ -14,12 +14,11 @@
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"fake_head_tracker", "Simulated head tracker (opentrack protocol)."};
+  hc::Module module{"fake_head_tracker", "Simulated head tracker (opentrack protocol).", {.keep_running = true}};
   auto address = module.input("address", hc::string(),
-                              "where the head_tracker of its graph listens; nowhere when empty");
-  module.keep(address);
+                              "where the head_tracker of its graph listens; empty: sends nothing", {.keep = 1});
   auto rotation =
-      module.output("rotation", hc::rotation<double>().of(1, 1).in(hc::Coord::kSupervisor),
+      module.output("rotation", hc::rotation().of(1, 1).in(hc::Coord::kSupervisor),
                     "truth: roll 0, pitch, yaw of the head [rad]");
   auto rate = module.parameter("rate", 100.0, "Hz", "packets a second", {.min = 0, .max = 1000});
   auto amplitude = module.parameter("amplitude", 0.7, "rad", "how far the head turns to each side",
@@ -42,9 +41,8 @@ int main(int argc, char** argv) {
     random.seed(static_cast<std::uint64_t>(*seed));
     side = random() % 2 == 0 ? 1 : -1;
   });
-  module.keep_running();
   module.on(address, [&](const auto& message) {
-    if (std::exchange(sends_to, message.characters()) == sends_to) return;
+    if (std::exchange(sends_to, message.text()) == sends_to) return;
     sender.reset();
     if (sends_to.empty()) return;
     auto opened = hc::HeadPoseSender::open(sends_to);
@@ -65,7 +63,7 @@ int main(int argc, char** argv) {
     pose.R = hc::frames::rotation(0, noisy_pitch, noisy_yaw).toRotationMatrix();
     if (auto packet = sender ? sender->send(pose) : hc::Status(); !packet)
       module.log_once("packet not sent", "packet not sent: " + packet.error().detail);
-    rotation.send(hc::rotation(0.0, pitch, yaw).at(time));
+    rotation.send({0.0, pitch, yaw}, time);
   });
   return module.run(argc, argv);
 }

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How a person turns the head to and fro, who is not there. Pure.
+// The simulated motion of a person's head. Pure.
 
-/// How far and how fast; from this its acceleration follows, speed² / amplitude, a little more in
-/// the first seconds.
+/// The maximum acceleration is speed² / amplitude, slightly more in the first seconds.
 struct Nod {
-  double amplitude = 0.7;  ///< of yaw, over 0 [rad]
-  double speed = 1.047;    ///< greatest of yaw, over 0 [rad/s]
+  double amplitude = 0.7;  ///< of yaw, > 0 [rad]
+  double speed = 1.047;    ///< maximum of yaw, > 0 [rad/s]
 };
 
-/// The angles of a head. [rad]
+/// Angles of a head [rad].
 struct HeadAngles {
-  double pitch = 0;  ///< > 0: looks down
-  double yaw = 0;    ///< > 0: to the left
+  double pitch = 0;  ///< > 0: down
+  double yaw = 0;    ///< > 0: left
 };
 
-/// A sine of yaw and a smaller one of pitch, which begin at rest in the middle.
-/// @param time  since the beginning; before it the head is in the middle [s].
+/// A sine of yaw and a smaller one of pitch, starting at rest in the centre.
+/// @param time  since the start; negative: in the centre [s].
 HeadAngles angles_at(const Nod& nod, double time);

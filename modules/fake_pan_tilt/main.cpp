@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated pan-tilt unit: answers on a pseudo-terminal as a real one does on a serial line,
-// moves in real time, and fails on request.
+// A simulated pan-tilt unit on a pseudo-terminal: speaks the protocol of a real one, moves in real
+// time, and fails on request.
 #include <optional>
 
 #include <hc/module/module.h>
@@ -11,11 +11,11 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"fake_pan_tilt", "A simulated pan-tilt unit on a pseudo-terminal."};
-  auto motion = module.output("motion", hc::rotation<double>().of(1, 1).in(hc::Coord::kGaze),
+  auto motion = module.output("motion", hc::rotation().of(1, 1).in(hc::Coord::kGaze),
                               "truth: 0, tilt, pan [rad]");
   auto device = module.output("device", hc::string(),
                               "device to open; empty while unplugged; each second and on change");
-  auto received = module.output("received", hc::string(), "bytes received, in pieces as they came");
+  auto received = module.output("received", hc::string(), "bytes received");
   auto pan = module.parameter("pan", 0.0, "rad", "initial position",
                               {.min = -3.2, .max = 3.2, .fixed = true});
   auto tilt = module.parameter("tilt", 0.0, "rad", "initial position",
@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
   auto garbage = module.parameter("garbage", 0.0, "", "share of its bytes that are corrupted",
                                   {.min = 0, .max = 1});
   auto unplugged = module.parameter("unplugged", false, "",
-                                    "the line is disconnected; afterwards there is a new one");
+                                    "disconnects the line; plugging in creates a new one");
   auto bytes_per_second = module.parameter("bytes_per_second", 0.0, "1/s",
                                            "of the line, each way; 960 is 9600 baud, 0: unbounded",
                                            {.min = 0, .max = 1e9});
@@ -37,12 +37,12 @@ int main(int argc, char** argv) {
   auto seconds = [] { return hc::seconds(hc::SystemClock().monotonic()); };
   std::optional<SimulatedLine> line;
 
-  auto send_device = [&] { device.send(hc::string(line->path()).at(module.now())); };
+  auto send_device = [&] { device.send(line->path(), module.now()); };
   hc::Timeout serve = module.after(std::chrono::nanoseconds(0), [&] {
     if (hc::value_or_end(line->plug(!*unplugged))) send_device();
     const double now = seconds();
     const auto bytes = line->serve(now, {*answer_delay, *bytes_per_second, *garbage}, *silent);
-    if (!bytes.empty()) received.send(hc::string(bytes).at(module.now()));
+    if (!bytes.empty()) received.send(bytes, module.now());
     serve.restart(hc::duration(line->pause(now)));
   });
 
@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
                      [&] { serve.restart(std::chrono::nanoseconds(0)); });
   module.every(rate, [&] {
     const double now = seconds();
-    motion.send(hc::rotation(0.0, line->tilt(now), line->pan(now)).at(module.now()));
+    motion.send({0.0, line->tilt(now), line->pan(now)}, module.now());
   });
   module.every(std::chrono::seconds(1), send_device);
   return module.run(argc, argv);

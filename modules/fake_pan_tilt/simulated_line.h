@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A serial line with a simulated pan-tilt unit at one end, and a pseudo-terminal at the other.
-// Never waits; the same seed, the same damage.
+// A serial line with a simulated pan-tilt unit at one end and a pseudo-terminal at the other. Never
+// blocks. The same seed gives the same corruption.
 
 #include <cstdint>
 #include <numbers>
@@ -16,30 +16,28 @@
 
 class SimulatedLine {
  public:
-  static constexpr double kLook = 0.02;  ///< how often serve() is to be called at least [s]
+  static constexpr double kLook = 0.02;  ///< maximum time between calls of serve() [s]
 
-  /// Unplugged. @param pan, tilt  where the unit is, to the left and down [rad].
+  /// Starts unplugged. @param pan, tilt  position of the unit, > 0 left and down [rad].
   SimulatedLine(double pan, double tilt, std::uint64_t seed);
 
-  /// Plugs in a new line, or unplugs it, and what is on its way is lost; gives whether that changed
-  /// anything.
-  ///
-  /// Errors: System (Terminal::open()).
+  /// Plugs in a new line, or unplugs it, which loses the bytes on it. Returns whether this changed
+  /// anything. Errors: System (Terminal::open()).
   hc::Result<bool> plug(bool in);
-  /// What others open; "" while unplugged.
+  /// The device to open; "" while unplugged.
   [[nodiscard]] std::string path() const { return terminal_ ? terminal_->path() : ""; }
   /// For poll(); -1 while unplugged.
   [[nodiscard]] int descriptor() const { return terminal_ ? terminal_->descriptor() : -1; }
 
-  /// Does all that is due: bytes reach the unit, and its answers the terminal. Gives those bytes.
-  /// @param time  does not fall [s].
-  /// @param faults  of the way back; the way to the unit is as slow, but neither late nor bad.
+  /// Passes bytes to the unit and its answers to the terminal as due. Returns the unit's bytes.
+  /// @param time  must not decrease [s].
+  /// @param faults  of the answers; bytes to the unit are only as slow.
   /// @param is_silent  the unit obeys, but does not answer.
   std::string serve(double time, const Wire::Faults& faults, bool is_silent);
-  /// How long until there is something due again, at most kLook [s].
+  /// Time until the next byte or answer is due, at most kLook [s].
   [[nodiscard]] double pause(double time) const;
 
-  /// Where the unit is [rad].
+  /// Position of the unit [rad].
   [[nodiscard]] double pan(double time) const { return unit_.pan(time) * kStep; }
   [[nodiscard]] double tilt(double time) const { return -unit_.tilt(time) * kStep; }
 

@@ -22,7 +22,7 @@ class SimulatedLineTest : public ::testing::Test {
     ASSERT_TRUE(opened) << opened.error().text();
     serial.emplace(std::move(*opened));
   }
-  /// What the unit gets of what was written: all, since a read() that finds nothing has waited.
+  /// The bytes that the unit receives: all, since a read() that finds nothing has waited.
   std::string serve(double time, const Wire::Faults& faults = {}, bool is_silent = false) {
     std::string all;
     for (std::string part; !(part = line.serve(time, faults, is_silent)).empty();) all += part;

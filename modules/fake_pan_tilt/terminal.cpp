@@ -27,7 +27,7 @@ hc::Result<Terminal> Terminal::open() {
   const int other = ::open(path.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   if (other < 0) return failure("open");
   terminal.other_ = Descriptor(other);
-  // Else whoever is in the group tty may write to it.
+  // Otherwise the group tty may write to it.
   if (::fchmod(other, S_IRUSR | S_IWUSR) != 0) return failure("fchmod");
   termios settings = {};
   if (tcgetattr(other, &settings) != 0) return failure("open");

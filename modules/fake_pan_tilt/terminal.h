@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A pseudo-terminal: a serial line whose other end is a program. It has no name but its number,
-// which is free again once it is closed, however the program ends.
+// A pseudo-terminal: a serial line whose other end is a program. Its device number is released when
+// it closes, however the program ends.
 
 #include <string>
 #include <string_view>
@@ -11,22 +11,22 @@
 
 class Terminal {
  public:
-  /// Errors: System (there are no more).
+  /// Errors: System (none left).
   static hc::Result<Terminal> open();
 
-  /// What others open.
+  /// The device to open.
   [[nodiscard]] const std::string& path() const { return path_; }
   /// For poll().
   [[nodiscard]] int descriptor() const { return own_.get(); }
-  /// What has come; never waits.
+  /// Reads the bytes available; never blocks.
   std::string read();
-  /// Writes what there is room for; the rest is lost, as on a line to which nobody listens.
+  /// Writes as much as fits; the rest is lost, as on a line without a reader.
   void write(std::string_view bytes);
 
  private:
   Terminal() = default;
 
   hc::Descriptor own_;
-  hc::Descriptor other_;  // their end: open here too, so that one may leave and come back
+  hc::Descriptor other_;  // the device's end, kept open so that a client can disconnect and reopen
   std::string path_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Bytes on their way along a line that is slow, late or bad. Pure; the same seed, the same damage.
+// Bytes in transit on a slow, delayed or corrupting line. Pure; corruption depends on the seed.
 
 #include <cstdint>
 #include <deque>
@@ -11,9 +11,8 @@
 
 class Wire {
  public:
-  static constexpr std::size_t kMostBytes = 65536;  ///< on their way; more are lost
+  static constexpr std::size_t kMostBytes = 65536;  ///< in transit; more are lost
 
-  /// What is wrong with it.
   struct Faults {
     double delay = 0;             ///< of each byte [s]
     double bytes_per_second = 0;  ///< 0: unbounded
@@ -22,13 +21,13 @@ class Wire {
 
   explicit Wire(std::uint64_t seed) : random_(seed) {}
 
-  /// Puts bytes in. @param time  does not fall [s].
+  /// Puts bytes in. @param time  must not decrease [s].
   void put(double time, std::string_view bytes, const Faults& faults);
-  /// Those that have come out by then.
+  /// The bytes that have arrived by then.
   std::string take(double time);
-  /// When the next one comes out.
+  /// When the next byte arrives.
   [[nodiscard]] std::optional<double> next() const;
-  /// Forgets all that is on its way, as if it were new.
+  /// Discards the bytes in transit.
   void clear() {
     bytes_.clear();
     free_at_ = 0;
@@ -41,5 +40,5 @@ class Wire {
   };
   std::mt19937_64 random_;
   std::deque<Byte> bytes_;
-  double free_at_ = 0;  // when the last one has been sent
+  double free_at_ = 0;  // when the last byte has been sent
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well a head follows another head, by the truth of a simulation.
+// Scores how well a head follows a setpoint, against the ground truth of a simulation.
 #include <algorithm>
 
 #include <frames/messages.h>
@@ -13,13 +13,11 @@ int main(int argc, char** argv) {
   hc::Module module{"follow_score", "Compares the orientation of a head with its setpoints."};
   auto setpoint = module.input(
       "setpoint",
-      hc::any_of(hc::rotation<double>().in(kGaze), hc::rotation<double>().in(kSupervisor)),
-      "truth: setpoint roll, tilt, pan [rad]");
-  auto motion = module.input("motion", hc::rotation<double>().in(kGaze),
-                             "truth: roll, tilt, pan of the head [rad]");
-  module.keep(setpoint, 64);
-  module.keep(motion, 64);
-  auto result = module.output("score", hc::table<double>().of(4, 1),
+      hc::any_of(hc::rotation().in(kGaze), hc::rotation().in(kSupervisor)),
+      "truth: setpoint roll, tilt, pan [rad]", {.keep = 64});
+  auto motion = module.input("motion", hc::rotation().in(kGaze),
+                             "truth: roll, tilt, pan of the head [rad]", {.keep = 64});
+  auto result = module.output("score", hc::table().of(1, 4),
                               "RMS error [rad], maximum error [rad], delay [s], samples");
   auto settle = module.parameter("settle", 2.0, "s", "delay of the scoring after the first of both",
                                  {.min = 0, .max = 1e6});
@@ -29,7 +27,7 @@ int main(int argc, char** argv) {
       module.parameter("timeout", 60.0, "s", "to wait for a gaze of each", {.min = 1, .max = 3600});
 
   std::vector<hc::gaze::TimedAngles> wanted, turned;
-  std::int64_t waits[2] = {};  // looks since one of each
+  std::int64_t waits[2] = {};  // periods since a setpoint, a motion
   auto take = [](auto& samples, auto& wait, const auto& message) {
     wait = 0;
     const double time = hc::seconds(message.header.time);
@@ -39,20 +37,19 @@ int main(int argc, char** argv) {
   };
   module.on(setpoint, [&](const auto& message) { take(wanted, waits[0], message); });
   module.on(motion, [&](const auto& message) { take(turned, waits[1], message); });
-  module.generate([&] {
-    constexpr double kLook = 20;  // [Hz]
-    module.keep_rate(kLook);
+  constexpr std::chrono::milliseconds kLook{50};
+  module.every(kLook, [&] {
     for (auto& wait : waits)
-      if (static_cast<double>(++wait) > *timeout * kLook)
+      if (++wait * kLook > hc::duration(*timeout))
         throw hc::ModuleError("no gaze of both within timeout");
-    if (wanted.empty() || turned.empty()) return true;
+    if (wanted.empty() || turned.empty()) return;
     const double begin = std::max(wanted.front().time, turned.front().time) + *settle;
     const double end = begin + *duration;
-    if (wanted.back().time < end || turned.back().time < end) return true;
+    if (wanted.back().time < end || turned.back().time < end) return;
     const auto score = hc::gaze::score_follow(wanted, turned, begin, end);
-    result.send(hc::table<double>(score.numbers()));
+    result.send(score.numbers());
     module.log(score.text(), hc::Level::Result);
-    return false;
+    module.stop();
   });
   return module.run(argc, argv);
 }

@@ -16,12 +16,12 @@ namespace web = hc::web;
 namespace {
 
 constexpr const char* kProtocols[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"};  // best first
-constexpr std::int32_t kFailed = 2;  // level of an error
+constexpr std::int32_t kFailed = 2;  // status level of an error
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 using web::refusal;
 
-/// The protocol to speak of those that are offered, joined by commas; null where none is ours.
+/// The best supported protocol in a comma-separated offer; null if none.
 const char* chosen(std::string_view offered) {
   std::string list = "," + std::string(offered) + ",";
   std::erase(list, ' ');
@@ -30,7 +30,7 @@ const char* chosen(std::string_view offered) {
   return nullptr;
 }
 
-/// The list of a key; empty where there is none.
+/// The list of a key; empty if missing.
 const Json& list_of(const Json& object, const char* key) {
   static const Json kNone = Json::array();
   const auto found = object.find(key);
@@ -44,7 +44,7 @@ std::vector<std::string> strings_of(const Json& object, const char* key) {
   return strings;
 }
 
-/// The number of a key, where it is one of 32 bits.
+/// The number of a key, if it is an unsigned 32-bit integer.
 std::optional<std::uint32_t> number_of(const Json& object, const char* key) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_number_unsigned() ||
@@ -53,10 +53,10 @@ std::optional<std::uint32_t> number_of(const Json& object, const char* key) {
   return found->get<std::uint32_t>();
 }
 
-/// What a module is set to.
+/// A parameter value as text.
 std::string text_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
-  // JavaScript has no integers; a whole number is to be one for us.
+  // JavaScript has no integers: write whole numbers without a fraction.
   if (value.is_number_float() && value.get<double>() == std::floor(value.get<double>()) &&
       std::abs(value.get<double>()) < 1e15)
     return std::to_string(value.get<std::int64_t>());
@@ -86,8 +86,8 @@ web::Reply Bridge::reply(const web::Request& request) {
     return refusal(421, "this server is not \"" + request.host.substr(0, 64) +
                             "\"; open the URL that it printed");
   if (!request.is_socket)
-    return refusal(426, "this is a server for Foxglove and Lichtblick: open its ws:// URL there");
-  if (request.path != "/") return refusal(404, "there is no such socket; the path is /");
+    return refusal(426, "this server is for Foxglove and Lichtblick: open its ws:// URL there");
+  if (request.path != "/") return refusal(404, "no such socket; the path is /");
   if (!access_.right_of_session(web::option(request.query, "token")))
     return refusal(401, "the URL needs the token that was printed when the graph started");
   const char* protocol = chosen(request.protocols);
@@ -111,7 +111,8 @@ void Bridge::open(std::shared_ptr<web::WebSocket> socket, const web::Request& re
   };
   events.on_binary = [weak = std::weak_ptr(viewer)](std::string_view) {
     if (const auto still = weak.lock())
-      still->say_status(kFailed, "binary messages are not taken here: nothing can be published");
+      still->say_status(kFailed,
+                        "binary messages are not supported: this server accepts no publications");
   };
   events.on_close = [this, viewer = viewer.get()] { remove(viewer); };
   viewer->say(Json{
@@ -130,7 +131,7 @@ void Bridge::open(std::shared_ptr<web::WebSocket> socket, const web::Request& re
 void Bridge::take_text(const std::shared_ptr<Viewer>& who, std::string_view line) {
   Viewer& viewer = *who;
   const Json request = Json::parse(line, nullptr, false);
-  if (!request.is_object()) return viewer.say_status(kFailed, "what was sent is no JSON object");
+  if (!request.is_object()) return viewer.say_status(kFailed, "not a JSON object");
   const std::string op = string_of(request, "op");
   if (op == "subscribe") {
     subscribe(viewer, request);
@@ -155,7 +156,7 @@ void Bridge::take_text(const std::shared_ptr<Viewer>& who, std::string_view line
     viewer.graph = op.starts_with("s");
     if (viewer.graph) viewer.say(catalog_.connection_graph());
   } else {
-    viewer.say_status(kFailed, excerpt(Json(op)) + " is not done here");
+    viewer.say_status(kFailed, excerpt(Json(op)) + " is not supported");
   }
 }
 
@@ -164,11 +165,11 @@ void Bridge::subscribe(Viewer& viewer, const Json& request) {
     const auto id = number_of(each, "id"), channel = number_of(each, "channelId");
     const auto found = catalog_.channels().find(channel.value_or(0));
     if (!id || found == catalog_.channels().end()) {
-      viewer.say_status(kFailed, "there is no such channel: " + excerpt(each));
+      viewer.say_status(kFailed, "no such channel: " + excerpt(each));
       continue;
     }
     if (!viewer.subscribe(*id, found->second)) {
-      viewer.say_status(kFailed, "already subscribed, or too often: " + excerpt(each));
+      viewer.say_status(kFailed, "already subscribed, or too many subscriptions: " + excerpt(each));
       continue;
     }
     if (found->second == catalog_.frames()) publish_frames();
@@ -201,22 +202,22 @@ void Bridge::get_parameters(Viewer& viewer, const Json& request) {
 void Bridge::set_parameters(const std::shared_ptr<Viewer>& viewer, const Json& request) {
   if (viewer->right() < web::Right::Operate)
     return viewer->say_status(kFailed,
-                              "this URL may view, and not change anything: that needs the right "
-                              "to operate");
+                              "this URL is view only; changing parameters needs the right to "
+                              "operate");
   std::map<std::string, std::string> values;
   for (const Json& each : list_of(request, "parameters")) {
     const std::string name = string_of(each, "name");
     if (!catalog_.has_parameter(name) || !each.contains("value")) {
-      viewer->say_status(kFailed, "there is no such parameter: " + excerpt(each));
+      viewer->say_status(kFailed, "no such parameter: " + excerpt(each));
       continue;
     }
     std::string value = text_of(each["value"]);
     if (value.find('\n') == std::string::npos)
       values[name] = std::move(value);
     else
-      viewer->say_status(kFailed, name + ": a value is one line");
+      viewer->say_status(kFailed, name + ": a value must be a single line");
   }
-  // Answered when all are done; what could not be set has its old value then.
+  // Answered when all are done; values that could not be set are then reported unchanged.
   struct Answer {
     std::vector<std::string> names;
     std::map<std::string, std::string> set;

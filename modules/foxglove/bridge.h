@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the server serves: Foxglove's WebSocket protocol, over a running graph (doc/foxglove.md).
-// For the server's thread.
+// Serves a running graph in Foxglove's WebSocket protocol (doc/foxglove.md). For the server's
+// thread.
 
 #include <cstdint>
 #include <list>
@@ -37,7 +37,7 @@ class Bridge final : public hc::web::Site {
 
   void close() override;
 
-  /// A pose of a frame that moves. From any thread. Errors: as GraphJoints::joint_of().
+  /// Takes the pose of a moving frame. From any thread. Errors: as GraphJoints::joint_of().
   hc::Status move(const hc::Message& pose);
 
  private:
@@ -66,6 +66,6 @@ class Bridge final : public hc::web::Site {
   std::map<std::string, hc::ros::Joint> joints_;  // by child
   std::list<std::shared_ptr<Viewer>> viewers_;
   std::map<std::uint32_t, std::unique_ptr<Publisher>> publishers_;  // by channel
-  std::int64_t reported_ = 0;                                       // when what was dropped was
+  std::int64_t reported_ = 0;                                       // last report of drops [ns]
   hc::GraphClient graph_;
 };

@@ -20,7 +20,6 @@ Json list_of(const std::map<std::string, std::vector<std::string>>& names, const
   return list;
 }
 
-/// A parameter's value in JSON.
 Json value_of(const hc::ParameterState& parameter) {
   return std::visit([](const auto& value) { return Json(value); }, parameter.value);
 }

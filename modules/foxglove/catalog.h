@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a running graph is, in Foxglove's words: topics, parameters, and who publishes and takes
-// them. Made of the graph's state (spec/graph.md, G45) and of what its modules say of themselves.
-// For one thread.
+// A running graph in Foxglove's terms: channels, parameters and the connection graph, from the
+// graph's state (spec/graph.md, G45) and the descriptions of its modules. For one thread.
 
 #include <cstdint>
 #include <map>
@@ -19,17 +18,17 @@
 
 class Catalog {
  public:
-  /// @param jpeg  images of u8 are CompressedImage.
+  /// @param jpeg  send u8 images as CompressedImage.
   explicit Catalog(bool jpeg);
 
   struct Changes {
     std::vector<Channel> added, removed;
-    std::vector<std::string> parameters;  ///< names of those whose value is another
-    bool graph = false;                   ///< who publishes and takes what is another
-    std::vector<std::string> unknown;     ///< modules that are to be described
+    std::vector<std::string> parameters;  ///< names of changed parameters
+    bool graph = false;                   ///< the connection graph changed
+    std::vector<std::string> unknown;     ///< modules to be described
   };
   Changes take_state(const hc::GraphState& state);
-  /// Takes in what `--describe` of a module printed; nothing where it is no description.
+  /// Takes a module's output of `--describe`; no changes if it is invalid.
   Changes describe(const std::string& module, std::string_view description);
 
   /// By id.
@@ -38,21 +37,20 @@ class Catalog {
   /// {"op":"advertise","channels":[…]}
   [[nodiscard]] static std::string advertise(const std::vector<Channel>& channels);
   [[nodiscard]] static std::string unadvertise(const std::vector<Channel>& channels);
-  /// {"op":"connectionGraphUpdate",…}, whole.
+  /// {"op":"connectionGraphUpdate",…}, the whole graph.
   [[nodiscard]] std::string connection_graph() const;
-  /// {"op":"parameterValues",…} of those named that there are, each once.
-  /// @param set  values as text that count instead of those that are known, by name.
+  /// {"op":"parameterValues",…} of the named parameters that exist, each once.
+  /// @param set  text values that replace the known ones, by name.
   [[nodiscard]] std::string parameter_values(
       const std::vector<std::string>& names, const std::string& id,
       const std::map<std::string, std::string>& set = {}) const;
-  /// The names of all parameters.
   [[nodiscard]] std::vector<std::string> parameter_names() const;
-  /// Whether there is a parameter MODULE.NAME.
+  /// @param name  MODULE.NAME.
   [[nodiscard]] bool has_parameter(const std::string& name) const {
     return parameters_.contains(name);
   }
 
-  /// The channels that are made here: the log, and the frames.
+  /// The channels that are not outputs of modules.
   [[nodiscard]] const Channel& log() const { return channels_.at(kLog); }
   [[nodiscard]] const Channel& frames() const { return channels_.at(kFrames); }
 
@@ -67,6 +65,6 @@ class Catalog {
   std::map<std::uint32_t, Channel> channels_;
   std::map<std::string, std::string> programs_;           // by module
   std::map<std::string, hc::ParameterState> parameters_;  // by MODULE.NAME
-  std::map<std::string, std::string> values_;             // as the state says, by MODULE.NAME
+  std::map<std::string, std::string> values_;             // from the state, by MODULE.NAME
   Names published_, taken_;
 };

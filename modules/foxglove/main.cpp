@@ -15,12 +15,12 @@ namespace web = hc::web;
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"foxglove", "Shows the graph in Foxglove and Lichtblick, live."};
+  hc::Module module{"foxglove", "Shows the graph in Foxglove and Lichtblick, live.", {.keep_running = true}};
   auto poses =
-      module.input("frames", hc::transformation<double>(4, 4), "poses, linked by `hc run`");
+      module.input("frames", hc::transformation(), "poses, linked by `hc run`");
   auto listen = module.parameter(
       "listen", "127.0.0.1", "",
-      "IP address; other machines can reach any but 127.0.0.1, with TLS alone", {.fixed = true});
+      "IP address; any but 127.0.0.1 is open to other machines, with TLS only", {.fixed = true});
   auto port = module.parameter("port", 8765, "", "the next nine are tried too; 0: any",
                                {.min = 0, .max = 65526, .fixed = true});
   auto tls = module.parameter("tls", false, "", "use TLS on 127.0.0.1 too", {.fixed = true});
@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
 
   const auto loop = hc::value_or_end(hc::Loop::make());
   std::unique_ptr<web::Service> service;
-  Bridge* bridge = nullptr;  // that it serves
+  Bridge* bridge = nullptr;  // owned by the service
   module.on_start([&] {
     const auto graph = hc::own_graph();
     if (!graph)
@@ -47,14 +47,12 @@ int main(int argc, char** argv) {
                                             [&](std::string_view line) { module.log(line); }));
     auto& access = service->access();
     module.log("foxglove: " + access.invite_socket(web::Right::Operate), hc::Level::Notice);
-    module.log("foxglove, to view alone: " + access.invite_socket(web::Right::View),
-               hc::Level::Notice);
+    module.log("foxglove, view only: " + access.invite_socket(web::Right::View), hc::Level::Notice);
     if (!service->fingerprint().empty())
       module.log("foxglove: certificate " + service->fingerprint(), hc::Level::Notice);
     bridge = &service->serve(std::make_unique<Bridge>(
         Bridge::Options{*graph, std::move(joints), *images == "jpeg"}, access, service->server()));
   });
-  module.keep_running();
   module.on_readable([&] { return loop->descriptor(); },
                      [&] { hc::succeed_or_end(loop->turn(std::chrono::milliseconds(0))); });
   module.on(poses, [&](const auto& pose) {

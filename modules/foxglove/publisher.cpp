@@ -42,7 +42,7 @@ void Publisher::take(const hc::Message& message) {
   }
   const auto pieces = encoder_.encode_any(channel_.type, message);
   if (!pieces) {
-    // A message that is not as its port says; the same words once.
+    // A message that does not match its port. Each error is reported once.
     if (std::exchange(failed_, pieces.error().detail) != failed_)
       call([why = failed_](const Callbacks& to) { to.end(why); });
     return;

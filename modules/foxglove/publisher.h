@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// An output of the graph as a topic: observed while somebody subscribes, each message encoded once
-// for all of them.
+// An output of the graph as a topic: observed while a viewer subscribes; each message is encoded
+// once for all viewers.
 
 #include <atomic>
 #include <cstdint>
@@ -14,11 +14,11 @@
 #include <ros/encode.h>
 #include <web/server.h>
 
-/// What viewers can subscribe to.
+/// A topic that viewers can subscribe to.
 struct Channel {
   std::uint32_t id = 0;
   std::string topic;  ///< "/head_eyes/left"
-  std::string port;   ///< "head_eyes.left"; empty: it is made here
+  std::string port;   ///< "head_eyes.left"; empty: the log or the frames
   hc::ros::Type type = hc::ros::Type::Matrix;
   bool operator==(const Channel&) const = default;
 };
@@ -29,7 +29,6 @@ struct Payload {
   hc::web::Bytes bytes;
 };
 
-/// The bytes of what an encoder gives.
 hc::web::Bytes bytes_of(const hc::ros::Pieces& pieces);
 
 class Publisher {
@@ -37,19 +36,18 @@ class Publisher {
   /// Called on the server's thread.
   struct Callbacks {
     std::function<void(const Payload&)> message;
-    /// There is nothing more: why.
-    std::function<void(const std::string&)> end;
+    std::function<void(const std::string& why)> end;
   };
 
-  /// @param frames  names of frames by their number, for frame_ids.
+  /// @param frames  names of frames by number, for frame_ids.
   Publisher(hc::RunningGraph graph, Channel channel, std::map<std::int32_t, std::string> frames,
             hc::web::Post post, Callbacks callbacks);
 
-  /// How many messages were dropped since the last call, as the server's thread was busy.
+  /// Messages dropped since the last call because the server's thread was busy.
   std::uint64_t take_dropped() { return shared_->dropped.exchange(0); }
 
  private:
-  /// What waits for the server's thread at most, but for one message of any size. [byte]
+  /// Bytes queued for the server's thread at which messages are dropped.
   static constexpr std::size_t kMaxWaiting = std::size_t{32} << 20;
 
   // On the tap's thread.
@@ -60,7 +58,7 @@ class Publisher {
   const hc::web::Post post_;
   hc::ros::Encoder encoder_;
   std::string failed_;  // why the last message could not be encoded
-  /// What the server's thread calls, if it is still there then; and what waits for it.
+  /// Shared with calls queued for the server's thread, which may run after the publisher has ended.
   struct Shared {
     Callbacks callbacks;
     std::atomic<std::size_t> waiting{0};  // [byte]

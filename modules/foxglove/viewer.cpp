@@ -10,13 +10,13 @@
 namespace {
 
 constexpr std::size_t kMaxQueued = std::size_t{8} << 20, kMaxMessages = 1024;  // [byte], 1
-constexpr std::size_t kLarge = 65536;     // of these the newest alone waits [byte]
-constexpr std::size_t kMaxWaiting = 512;  // texts that nobody reads
-constexpr std::size_t kMaxUnderWay = 2;   // messages that the socket has
+constexpr std::size_t kLarge = 65536;     // of larger messages only the newest is queued [byte]
+constexpr std::size_t kMaxWaiting = 512;  // unread texts
+constexpr std::size_t kMaxUnderWay = 2;   // messages given to the socket
 constexpr std::size_t kMaxSubscriptions = 1024;
 constexpr char kMessageData = 1, kTime = 2;
 
-/// Numbers as they are on the wire, little-endian.
+/// A binary message of little-endian numbers.
 template <typename... Number>
 std::string binary(char opcode, Number... number) {
   std::string bytes(1, opcode);
@@ -38,7 +38,7 @@ Viewer::~Viewer() {
 void Viewer::say(std::string json) {
   if (socket_->waiting() < kMaxWaiting) return socket_->send_text(std::move(json));
   is_lost_ = true;
-  socket_->close(1008, "too slow: 512 messages wait to be read");
+  socket_->close(1008, "too slow: 512 messages are unread");
 }
 
 void Viewer::say_time(std::int64_t time) {
@@ -115,7 +115,7 @@ void Viewer::report_dropped() {
     each.reported = each.dropped;
     say_status(1,
                std::to_string(each.dropped) + " messages of " + each.topic +
-                   " were dropped: this viewer or its network takes them too slowly",
+                   " were dropped: this viewer or its network is too slow",
                "dropped:" + each.topic);
   }
 }

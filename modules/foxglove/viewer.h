@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A viewer that is connected: what it has subscribed to, and what waits for it. For one thread.
+// A connected viewer: its subscriptions and its queue. For one thread.
 
 #include <cstdint>
 #include <deque>
@@ -24,35 +24,35 @@ class Viewer {
 
   [[nodiscard]] hc::web::Right right() const { return right_; }
 
-  /// Sends JSON. One who does not read what is said is disconnected, is_lost() then.
+  /// Sends JSON. A viewer that does not read is disconnected; is_lost() is then true.
   void say(std::string json);
   [[nodiscard]] bool is_lost() const { return is_lost_; }
-  /// Sends the time of the server. [ns since the Unix epoch]
+  /// Sends the server's time [ns since the Unix epoch].
   void say_time(std::int64_t time);
-  /// A warning or an error, level 1 or 2, in the viewer's list of problems; it replaces one of the
-  /// same id, where that is given.
+  /// Sends a warning (level 1) or error (2) for the viewer's list of problems; replaces an earlier
+  /// one with the same id.
   void say_status(int level, const std::string& words, const std::string& id = {});
 
-  /// @returns  false: there is a subscription of that number, or of that channel, or too many.
+  /// @returns  false if the number or the channel is already subscribed, or there are too many.
   bool subscribe(std::uint32_t subscription, const Channel& channel);
   void unsubscribe(std::uint32_t subscription);
-  /// Ends the subscription of a channel that is no longer there.
+  /// Ends the subscription of a removed channel.
   void forget(std::uint32_t channel);
   [[nodiscard]] bool is_subscribed(std::uint32_t channel) const {
     return subscriptions_.contains(channel);
   }
 
-  /// Sends a message soon, if it subscribes to that channel. What waits is bounded: of a large one
-  /// only the newest, and of all the newest 1024 and 8 MiB.
+  /// Queues a message, if the viewer subscribes to its channel. The queue is bounded: of large
+  /// messages the newest of each channel, in all the newest 1024 and 8 MiB.
   void offer(std::uint32_t channel, const Payload& payload);
-  /// Counts messages of a channel that were dropped before they were offered.
+  /// Adds messages of a channel that were dropped before they were offered.
   void count_dropped(std::uint32_t channel, std::uint64_t messages);
-  /// Says what has been dropped since the last time.
+  /// Reports the drops since the last report.
   void report_dropped();
 
-  std::set<std::string> parameters;  ///< whose changes it wants to know
+  std::set<std::string> parameters;  ///< subscribed parameters
   bool all_parameters = false;
-  bool graph = false;  ///< wants to know the connection graph
+  bool graph = false;  ///< subscribed to the connection graph
 
  private:
   struct Outgoing {

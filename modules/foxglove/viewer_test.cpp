@@ -9,7 +9,7 @@
 
 namespace {
 
-/// The other end: what was sent, as if it had not been read yet, until read() is called.
+/// The client: what was sent counts as unread until read() is called.
 struct FakeSocket final : hc::web::WebSocket {
   void send_text(std::string text) override { texts.push_back(std::move(text)); }
   void send(hc::web::Bytes message, std::string head) override {

@@ -24,9 +24,9 @@ hc::Result<Renumbering> parse_renumbering(std::string_view text) {
       return usage(word, "is not NUMBER=NUMBER");
     bool are_addresses = here > 0 && there > 0, are_groups = here < -1 && there < -1;
     if (!are_addresses && !are_groups)
-      return usage(word, "does not make an address of an address, or a group of a group");
+      return usage(word, "must map an address to an address, or a group to a group");
     if (!numbers.emplace(here, there).second || !taken.insert(there).second)
-      return usage(word, "has a number that was there before");
+      return usage(word, "repeats a number");
   }
   return numbers;
 }
@@ -36,7 +36,7 @@ hc::Result<std::set<std::int32_t>> parse_addresses(std::string_view text) {
   for (auto word : hc::words_of(text)) {
     std::int32_t number = 0;
     if (!hc::read_number(word, number)) return usage(word, "is not an address");
-    if (!addresses.insert(number).second) return usage(word, "was there before");
+    if (!addresses.insert(number).second) return usage(word, "is repeated");
   }
   return addresses;
 }
@@ -72,7 +72,7 @@ hc::Result<hc::Message> in_encoding(const hc::Message& message, hc::Encoding wan
   if (message.header.empty() || hc::broken_rule(info) != 0) return message;
   if (wanted == hc::Encoding::Text || wanted == hc::Encoding::Binary) {
     auto plain = hc::expand(message);
-    if (plain) plain->header.info.encoding = wanted;  // the same in memory
+    if (plain) plain->header.info.encoding = wanted;  // text and binary are the same in memory
     return plain;
   }
   if (!message.plain()) return message;

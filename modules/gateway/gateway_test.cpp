@@ -10,7 +10,7 @@
 namespace {
 
 hc::Message message(const hc::Info& info, std::int32_t width, std::int32_t height) {
-  hc::Draft draft = hc::Draft::make(info, width, height);
+  hc::Draft draft = hc::Draft::make(info, height, width);
   std::memset(draft.elements().data(), 7, draft.elements().size());
   return std::move(draft).finish();
 }
@@ -74,7 +74,7 @@ TEST(Gateway, R21_compresses_what_can_be_and_leaves_the_rest) {
   EXPECT_EQ(in_encoding(map, hc::Encoding::Jpeg)->header, map.header);
   auto zstd = in_encoding(map, hc::Encoding::Zstd);
   EXPECT_EQ(zstd->header.info.encoding, hc::Encoding::Zstd);
-  // What is compressed already continues as it is, and what would become larger too.
+  // Messages already compressed, or that would grow, are passed on unchanged.
   EXPECT_EQ(in_encoding(*jpeg, hc::Encoding::Zstd)->elements.data(), jpeg->elements.data());
   EXPECT_EQ(in_encoding(message(kMap, 1, 1), hc::Encoding::Zstd)->header.info, kMap);
   EXPECT_EQ(in_encoding(message(kMap, 0, 0), hc::Encoding::Zstd)->header.info, kMap);

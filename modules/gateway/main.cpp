@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between two graphs: what may pass gets the numbers and the encoding of the other side. A gateway
-// is one way. Its links' `rate` limits how fast.
+// Passes messages from one graph to another, with the addresses and encoding of the other graph.
+// One-way; limit its rate with `rate` on its links.
 #include "gateway.h"
 
 #include <hc/module/module.h>
@@ -8,11 +8,11 @@
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"gateway", "Passes messages from one graph to another, renumbered."};
+  hc::Module module{"gateway", "Passes messages from one graph to another, renumbered.", {.routes = true}};
   auto in = module.input("in", hc::anything(), "messages of this graph");
   auto out = module.output("out", hc::anything(),
                            "those that pass, encoded as asked where possible (u8 images as jpeg)");
-  auto sent = module.output("counts", hc::table<std::int64_t>().of(5, 1),
+  auto sent = module.output("counts", hc::table<std::int64_t>().of(1, 5),
                             "each second: messages passed; dropped for ttl, as not listed, "
                             "without a route, as damaged");
   auto numbers = module.parameter(
@@ -21,7 +21,6 @@ int main(int argc, char** argv) {
                                {.fixed = true});
   auto only_from =
       module.parameter("only_from", "", "", "src that pass; none: all", {.fixed = true});
-  module.route_outputs();
 
   GatewayRules rules;
   GatewayCounts counts;
@@ -42,8 +41,7 @@ int main(int argc, char** argv) {
   });
   module.every(std::chrono::seconds(1), [&] {
     sent.send(
-        hc::table({counts.passed, counts.ttl, counts.unlisted, counts.no_route, counts.damaged})
-            .at(module.now()));
+        {counts.passed, counts.ttl, counts.unlisted, counts.no_route, counts.damaged}, module.now());
   });
 
   const int status = module.run(argc, argv);

@@ -25,7 +25,7 @@ void Controller::push(std::int64_t now, double left, double down, const Angles& 
 }
 
 std::optional<Angles> Controller::steer(std::int64_t now, const Angles& measured) {
-  constexpr double kLead = 0.02;  // so that it moves at once, and on if a push comes late [s]
+  constexpr double kLead = 0.02;  // to start at once, and to bridge a late push [s]
   auto motion = stick_.at(hc::seconds(now), measured);
   if (!motion) return std::nullopt;
   motion->angles.pan += motion->pan_rate * kLead;

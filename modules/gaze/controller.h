@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the head is commanded: to follow a target, or a stick. No messages; times in nanoseconds.
+// Commands the head to follow a target or a stick. No messages; times in nanoseconds.
 
 #include <cmath>
 #include <optional>
@@ -16,16 +16,16 @@ class Controller {
   Controller(const GazeParameters& parameters, Targets empty)
       : targets(std::move(empty)), parameters_(parameters) {}
 
-  /// The command that follows the target: to where it will be when the head gets there. Nothing:
-  /// there is no target, or it is near enough to where the head looks, `measured`.
+  /// The command that follows the target: to its predicted position when the head arrives. Nothing
+  /// if there is no target, or it is within the dead zone around `measured`.
   [[nodiscard]] std::optional<hc::gaze::Angles> follow(std::int64_t now,
                                                        const hc::gaze::Angles& measured) const;
-  /// A stick is pushed. @param left, down  -1 … 1.
+  /// Takes a position of the stick. @param left, down  -1 … 1.
   void push(std::int64_t now, double left, double down, const hc::gaze::Angles& measured);
-  /// The command that follows the stick; nothing: it is in its middle.
+  /// The command that follows the stick; nothing while it is centred.
   [[nodiscard]] std::optional<hc::gaze::Angles> steer(std::int64_t now,
                                                       const hc::gaze::Angles& measured);
-  /// Whether there is a target, or a stick that is pushed.
+  /// Whether there is a fresh target or a deflected stick.
   [[nodiscard]] bool wants_head(std::int64_t now) const;
 
   Targets targets;
@@ -34,7 +34,8 @@ class Controller {
   [[nodiscard]] bool is_fresh(std::optional<double> last, std::int64_t now) const {
     return last && std::abs(hc::seconds(now) - *last) <= *parameters_.timeout;
   }
-  /// The command for what moves so: ahead of it by the unit's braking distance, within its limits.
+  /// The command for a moving target: ahead of it by the unit's braking distance, within its
+  /// limits.
   [[nodiscard]] hc::gaze::Angles command(const hc::gaze::Motion& motion) const;
 
   const GazeParameters& parameters_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns the head to where a task wants it to look, and bids for the head while it wants that.
+// Turns the head to a target, setpoint or stick, and bids for the head while there is one.
 #include <cmath>
 #include <map>
 #include <optional>
@@ -19,17 +19,16 @@
 
 namespace {
 
-/// How often a push is repeated: the first time may come before the head is granted.
+/// Period of commands while a stick is pushed; the first may precede the focus.
 constexpr std::chrono::milliseconds kSteer{5};
 
-/// What is further in the future, by another clock, is dropped [s].
+/// Messages further in the future, from a skewed clock, are dropped [s].
 constexpr double kAhead = 0.2;
 
-/// Who pushes a stick repeats it; who is silent for longer has let it go.
+/// A pushed stick is repeated; after this silence it counts as released.
 constexpr std::chrono::milliseconds kLetGo{250};
 
-/// In which frame an orientation of the head is given: the robot's, for angles of the neck (13) and
-/// of a person's head (14), and where nothing is said.
+/// Frame of a setpoint: the robot's for angles of the neck (13) or a person's head (14), or if 0.
 std::int32_t frame_of_setpoint(std::int32_t coord) {
   const bool is_of_neck =
       coord == 0 || coord == hc::Coord::kGaze || coord == hc::Coord::kSupervisor;
@@ -42,27 +41,23 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"gaze",
                     "Turns the head to a target, and bids for the head while there is one."};
-  auto target =
-      module.input("target",
-                   hc::any_of(hc::position<double>(), hc::transformation<double>(4, 4),
-                              hc::table<double>().of(hc::vision::kMarkerColumns, 0)),
-                   "x, y in the left (7) or right (8) image [px], or a place in any frame [m]; a "
-                   "pose of marker, or its table; in each image or frame of one source at a time");
+  auto target = module.input(
+      "target",
+      hc::any_of(hc::position(), hc::transformation(),
+                 hc::table().of(0, hc::vision::kMarkerColumns)),
+      "x, y in the left (7) or right (8) image [px], or a position in any frame [m]; a "
+      "pose of marker, or its table; in each image or frame of one source at a time", {.keep = 1});
   auto setpoint = module.input(
-      "setpoint", hc::rotation<double>(),
+      "setpoint", hc::rotation(),
       "orientation to take, roll, tilt, pan [rad]: of the neck (13) or a person's head "
-      "(14), or in a frame; of one source at a time");
-  auto stick = module.input("stick", hc::table<double>().of(2, 1).finite(),
+      "(14), or in a frame; of one source at a time", {.keep = 1});
+  auto stick = module.input("stick", hc::table().of(1, 2).finite(),
                             "turn to the left, turn down, -1 … 1 of stick_rate; repeated while "
-                            "pushed; of one source at a time");
-  auto calibration = module.input("calibration", hc::table<double>(), "result of calibrate");
-  module.keep(target);
-  module.keep(setpoint);
-  module.keep(stick);
-  module.keep(calibration);
-  auto command = module.output("command", hc::rotation<double>().in(hc::Coord::kGaze),
+                            "pushed; of one source at a time", {.keep = 1});
+  auto calibration = module.input("calibration", hc::table(), "result of calibrate", {.keep = 1});
+  auto command = module.output("command", hc::rotation().in(hc::Coord::kGaze),
                                "commanded head orientation: roll 0, tilt, pan [rad]");
-  auto bid = module.output("bid", hc::table<double>(),
+  auto bid = module.output("bid", hc::table(),
                            "salience while there is a target, else idle_salience");
   hc::ModuleFrames frames{module};
   const GazeParameters parameters{module};
@@ -89,35 +84,34 @@ int main(int argc, char** argv) {
         Eigen::Quaterniond(frames.nearest(kRobot, kHead, module.now()).linear()));
   };
   auto send = [&](const std::optional<hc::gaze::Angles>& to) {
-    if (to) command.send(hc::rotation(0.0, to->tilt, to->pan).at(module.now()));
+    if (to) command.send({0.0, to->tilt, to->pan}, module.now());
   };
   auto follow = [&] { send(controller->follow(module.now(), measured())); };
   auto steer = [&] { send(controller->steer(module.now(), measured())); };
   auto send_bid = [&] {
     was_wanted = controller->wants_head(module.now());
     const double salience = was_wanted ? *parameters.salience : *parameters.idle_salience;
-    bid.send(hc::table({salience}).at(module.now()));
+    bid.send({salience}, module.now());
   };
-  /// When a message was made. One that is old is not wanted any more; one of the future would hold
-  /// back all that is made until then.
+  /// Time of a message. Drops old ones, and ones from the future, which would block all until then.
   auto time_of = [&](const hc::Header& header, double oldest) -> std::int64_t {
     if (header.time <= 0) return module.now();
-    const double age = module.seconds_since(header.time);
+    const double age = hc::seconds(module.now() - header.time);
     if (age <= oldest && age >= -kAhead) return header.time;
     throw hc::BadMessage(
         hc::format("it is {:.3f} s {}", std::abs(age), age > 0 ? "old" : "in the future"));
   };
-  /// Drops a message of a frame that cannot be turned into the robot's.
+  /// Drops a message whose frame has no transform to the robot's.
   auto check_frame = [&](std::int32_t frame, const std::string& others) {
     if (const auto chain = frames.tree().chain(kRobot, frame); !chain)
-      throw hc::BadMessage(hc::format("coordinate system {} is none of {}, and {}", frame, others,
-                                      chain.error().detail));
+      throw hc::BadMessage(hc::format("coordinate system {} is not one of {}, and {}", frame,
+                                      others, chain.error().detail));
   };
-  /// Whether a source may decide alone what all may say.
+  /// Whether a source is in control, of several that send to one input.
   auto has_turn = [&](const std::string& what, hc::Turn<std::int32_t>& turn, std::int32_t source) {
     if (turn.take(source, module.monotonic())) return true;
     module.log_once(what + " of a second source",
-                    hc::format("{} of source {} dropped: source {} gives one", what, source,
+                    hc::format("{} of source {} dropped: source {} is in control", what, source,
                                *turn.holder(module.monotonic())));
     return false;
   };
@@ -133,7 +127,7 @@ int main(int argc, char** argv) {
     const auto time = time_of(message.header, *parameters.timeout);
     const std::int32_t frame = Targets::frame_of(seen->coord);
     check_frame(frame, "an eye and its image (4, 5, 7, 8)");
-    // Two eyes see one target; two who see it with one eye see different ones.
+    // The eyes share one target, but two sources with the same eye see different ones.
     auto& turn = sights.try_emplace(seen->coord, hc::duration(*parameters.timeout)).first->second;
     if (!has_turn("target", turn, message.header.src)) return;
     frames.when_known(kRobot, frame, time, [&, time, frame, seen](const auto& T_robot_frame) {
@@ -160,14 +154,14 @@ int main(int argc, char** argv) {
     const auto& header = message.header;
     const double left = message.numbers()[0], down = message.numbers()[1];
     time_of(header, hc::seconds(kLetGo));
-    // One in its middle pushes nothing, and ends the push of its own source alone.
+    // A centred stick only ends a push of the same source.
     const bool is_let_go = left == 0 && down == 0;
     const auto* pushed_by = pushes.holder(module.monotonic());
     if (is_let_go && (pushed_by == nullptr || *pushed_by != header.src)) return;
     if (!has_turn("stick", pushes, header.src)) return;
     if (is_let_go) pushes.release(header.src);
     controller->push(module.now(), left, down, measured());
-    // A person's push does not wait for the next bid.
+    // A push does not wait for the next periodic bid.
     if (!was_wanted && controller->wants_head(module.now())) send_bid();
     steer();
   });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The parameters of `gaze`, and what follows from them.
+// The parameters of `gaze`, and values derived from them.
 
 #include <algorithm>
 #include <string>
@@ -10,7 +10,7 @@
 #include <hc/module/module.h>
 
 struct GazeParameters {
-  hc::Module& module;  ///< that has them
+  hc::Module& module;
 
   hc::Parameter<double> rate =
       module.parameter("rate", 100.0, "Hz", "commands a second", {.min = 1, .max = 1000});
@@ -34,14 +34,15 @@ struct GazeParameters {
   hc::Parameter<double> horizon =
       module.parameter("horizon", 0.2, "s", "how long to extrapolate a lost target",
                        {.min = 0, .max = 10, .fixed = true});
-  hc::Parameter<double> acceleration = module.parameter(
-      "acceleration", 1.795, "rad/s²",
-      "braking of the unit, which stops where it is sent; 0: at once", {.min = 0, .max = 1000});
-  hc::Parameter<double> base_speed =
-      module.parameter("base_speed", 0.8976, "rad/s",
-                       "up to which the unit starts and stops at once", {.min = 0, .max = 100});
+  hc::Parameter<double> acceleration =
+      module.parameter("acceleration", 1.795, "rad/s²",
+                       "deceleration of the unit towards a commanded position; 0: infinite",
+                       {.min = 0, .max = 1000});
+  hc::Parameter<double> base_speed = module.parameter(
+      "base_speed", 0.8976, "rad/s", "speed up to which the unit starts and stops at once",
+      {.min = 0, .max = 100});
   hc::Parameter<double> dead_zone = module.parameter(
-      "dead_zone", 0.0, "rad", "no command for a target so near to where the head looks",
+      "dead_zone", 0.0, "rad", "no command for a target within this angle of the gaze",
       {.min = 0, .max = 1});
   hc::Parameter<double> stick_rate = module.parameter(
       "stick_rate", 1.0, "rad/s", "speed of the head at full deflection", {.min = 0.01, .max = 10});
@@ -64,7 +65,7 @@ struct GazeParameters {
       module.parameter("distance", 2.5, "m", "assumed of a target seen by one eye alone",
                        {.min = 0.2, .fixed = true});
 
-  /// Equal eyes, mounted so in the head.
+  /// Eyes with these intrinsics and mountings.
   [[nodiscard]] hc::gaze::Eyes eyes(const Eigen::Isometry3d& T_head_left,
                                     const Eigen::Isometry3d& T_head_right) const {
     hc::gaze::Eyes eyes(T_head_left, T_head_right);
@@ -76,11 +77,11 @@ struct GazeParameters {
   [[nodiscard]] hc::gaze::FollowerOptions follower() const {
     return {*noise, *process_noise, *timeout, *horizon};
   }
-  /// How far ahead a command has to be of what moves so fast [rad/s, rad].
+  /// How far a command must lead a target that moves at `speed` [rad/s] [rad].
   [[nodiscard]] double lead(double speed) const {
     return *acceleration > 0 ? hc::gaze::braking(speed, {*acceleration, *base_speed}) : 0;
   }
-  /// The nearest that the unit can take.
+  /// The nearest orientation within the unit's limits.
   [[nodiscard]] hc::gaze::Angles within_limits(const hc::gaze::Angles& to) const {
     return {std::clamp(to.pan, -*pan_max, *pan_max), std::clamp(to.tilt, *tilt_min, *tilt_max)};
   }

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A target out of a message.
+// Reads a target from a message.
 
 #include <frames/messages.h>
 
-/// A target: where it was seen, in which coordinate system.
+/// A target: its position and coordinate system.
 struct Seen {
   std::int32_t coord = 0;
   Eigen::Vector3d p;  ///< [px] in an image, else [m]
 };
 
-/// Of a position, x y z; of a pose (coord 1000 · frame + …), its origin; of a table of markers, the
-/// place of the first, in the frame of its coord. Nothing: an empty message, or not finite.
+/// The target in a position (x y z), a pose (its origin, in the frame coord / 1000), or a table of
+/// markers (the first, in the frame coord). Nothing if the message is empty or not finite.
 inline std::optional<Seen> seen_of(const hc::Message& message) {
   const auto& header = message.header;
   constexpr int kPlace = 3;  // column of x in a table of markers

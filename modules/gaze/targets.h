@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Where the head has to look for what was seen, by where it was then. No messages.
+// Computes where the head has to look, from targets and the head's pose at their time. No messages.
 
 #include <cstdint>
 #include <optional>
@@ -15,34 +15,34 @@
 inline constexpr std::int32_t kRobot = 2, kHead = 3, kLeftEye = 4, kRightEye = 5, kLeftImage = 7,
                               kRightImage = 8;
 
-/// Times are in nanoseconds since any one origin.
+/// Times are in nanoseconds of any one clock.
 class Targets {
  public:
-  /// @param distance  of a target that one eye alone has seen [m].
+  /// @param distance  assumed of a target seen by one eye only [m].
   Targets(hc::gaze::Eyes eyes, const hc::gaze::FollowerOptions& options, double distance)
       : eyes_(std::move(eyes)), distance_(distance), follower_(options) {}
 
-  /// Takes cameras, and how they sit on the head, as measured.
-  /// Errors: Malformed (of `head`, see hc::gaze::HeadCalibration::of).
+  /// Takes calibrated cameras and, if measured, their mounting on the head.
+  /// Errors: Malformed (as hc::gaze::HeadCalibration::of).
   hc::Status calibrate(const hc::vision::StereoCalibration& cameras);
   void calibrate(const hc::gaze::HeadCalibration& calibration) { eyes_.calibrate(calibration); }
 
-  /// The frame in which a target is seen: the head's of an eye or its image, else its own.
+  /// The frame of a target: the head's if `coord` is an eye or its image, else `coord`.
   [[nodiscard]] static std::int32_t frame_of(std::int32_t coord);
-  /// A target: x, y in an image [px], or its place in a frame [m].
-  /// @param T_robot_frame  of frame_of(coord), then.
+  /// Takes a target: x, y in an image [px], or a position in a frame [m].
+  /// @param T_robot_frame  of frame_of(coord) at that time.
   void see(std::int64_t time, std::int32_t coord, const Eigen::Vector3d& p,
            const Eigen::Isometry3d& T_robot_frame);
-  /// Angles to take, as of a target.
+  /// Takes a setpoint instead of a target.
   void set(std::int64_t time, const hc::gaze::Angles& setpoint) {
     follower_.see(hc::seconds(time), setpoint);
   }
 
-  /// The target, by all that was seen [s].
+  /// The filtered target; times in seconds.
   [[nodiscard]] const hc::gaze::Follower& follower() const { return follower_; }
 
  private:
-  /// In the head [m].
+  /// Position in the head's frame [m].
   std::optional<Eigen::Vector3d> place(std::int64_t time, hc::gaze::Side side,
                                        Eigen::Vector2d pixel);
 

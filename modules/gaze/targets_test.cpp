@@ -13,7 +13,7 @@ Targets targets() {
   return {hc::gaze::mounted_eyes(), {}, 2.5};
 }
 
-/// How the head is turned.
+/// The rotation of the head.
 Eigen::Isometry3d pan(double angle) {
   return Eigen::Isometry3d(hc::gaze::rotation({angle, 0}));
 }
@@ -50,7 +50,7 @@ TEST(Targets, are_looked_at_with_eyes_that_sit_as_they_were_found) {
 }
 
 TEST(Targets, are_seen_by_eyes_that_are_swapped) {
-  const double side = 600 * 0.05 / 2;  // of a place 2 m before the middle of the eyes [px]
+  const double side = 600 * 0.05 / 2;  // of a point 2 m in front of the centre of the eyes [px]
   for (bool swapped : {false, true}) {
     auto eyes = targets();
     eyes.calibrate(hc::gaze::HeadCalibration{swapped, {}, Eigen::Vector3d::Zero(), 0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The level of a sound, and its direction.
+// Measures the level and direction of sound.
 #include <hc/module/module.h>
 #include <sound/direction.h>
 #include <sound/format.h>
@@ -8,11 +8,10 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"hearing", "Measures the level and the direction of stereo sound."};
-  auto sound = module.input("sound", hc::sound<std::int16_t>(2), "left and right ear");
-  module.keep(sound, 64);  // the eyes of a simulation must not wait for the ears
-  auto level = module.output("level", hc::table<double>(),
+  auto sound = module.input("sound", hc::sound(2), "left and right ear", {.keep = 64});
+  auto level = module.output("level", hc::table(),
                              "root of the mean square of each message, 1 is full scale");
-  auto direction = module.output("direction", hc::rotation<double>().in(hc::Coord::kHead),
+  auto direction = module.output("direction", hc::rotation().in(hc::Coord::kHead),
                                  "roll 0, tilt 0, pan [rad], > 0 to the left; nothing while it is "
                                  "too quiet or comes from several sides");
   auto base =
@@ -24,9 +23,9 @@ int main(int argc, char** argv) {
     const auto rate = hc::audio::rate_of(message.header.coord);
     if (!rate) return;
     const auto heard = hc::audio::hear(message.numbers(), *rate, *base);
-    level.send(hc::table({heard.level}));
+    level.send({heard.level});
     if (heard.pan && heard.level >= *min_level)
-      direction.send(hc::rotation(0.0, 0.0, *heard.pan).in(hc::Coord::kHead));
+      direction.send({0.0, 0.0, *heard.pan}, 0, hc::Coord::kHead);
   });
   return module.run(argc, argv);
 }

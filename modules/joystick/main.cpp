@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A person's commands to turn the head, by a game controller.
+// Reads a game controller, with which a person turns the head.
 #include <string>
 #include <utility>
 
@@ -12,18 +12,17 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"joystick", "Sends a game controller's sticks and buttons."};
-  auto stick = module.output("stick", hc::table<double>().of(2, 1),
+  auto stick = module.output("stick", hc::table().of(1, 2),
                              "left > 0, down > 0, each -1 to 1, of the left stick");
-  auto axes = module.output("axes", hc::table<double>(),
+  auto axes = module.output("axes", hc::table(),
                             "raw, -1 to 1: left x, y, right x, y, left and right trigger");
   auto buttons = module.output("buttons", hc::table<std::uint8_t>(),
-                               "1 where one is pressed: A, B, X, Y, back, guide, start, left and "
+                               "1 if pressed: A, B, X, Y, back, guide, start, left and "
                                "right stick, left and right shoulder, up, down, left, right, …");
-  auto dead_zone =
-      module.parameter("dead_zone", 0.1, "", "of the stick: positions nearer to the middle are 0",
-                       {.min = 0, .max = 0.9});
+  auto dead_zone = module.parameter("dead_zone", 0.1, "", "of the stick: smaller deflections are 0",
+                                    {.min = 0, .max = 0.9});
   auto rate = module.parameter("rate", 50.0, "Hz",
-                               "how often the stick is repeated while out of its middle; a silent "
+                               "repetition rate while the stick is deflected; a silent "
                                "stick counts as released",
                                {.min = 20, .max = 1000});
 
@@ -31,7 +30,7 @@ int main(int argc, char** argv) {
   hc::JoystickWatch watch;
 
   auto send_stick = [&] {
-    stick.send(hc::table({watch.stick().left, watch.stick().down}).at(module.now()));
+    stick.send({watch.stick().left, watch.stick().down}, module.now());
   };
   auto send_changes = [&] {
     const auto& state = joystick->state();
@@ -40,8 +39,8 @@ int main(int argc, char** argv) {
     if (!changes.line.empty()) module.log(changes.line, changes.level);
     // The stick first: the head moves by it.
     if (changes.stick) send_stick();
-    if (changes.axes) axes.send(hc::table<double>(state.axes).at(time));
-    if (changes.buttons) buttons.send(hc::table<std::uint8_t>(state.buttons).at(time));
+    if (changes.axes) axes.send(state.axes, time);
+    if (changes.buttons) buttons.send(state.buttons, time);
   };
   std::string taken;
   auto update = [&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the markers are that an eye sees.
+// Finds markers in images, and their poses.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -43,14 +43,14 @@ int main(int argc, char** argv) {
   hc::Module module{"marker",
                     "Finds ArUco, AprilTag and coloured square markers, and their poses."};
   auto image =
-      module.input("image", hc::any_image(),
+      module.input("image", hc::image(),
                    "image of the left eye, unless its coordinate system is the right one's");
-  auto poses = module.output("poses", hc::transformation<double>(4, 4),
+  auto poses = module.output("poses", hc::transformation(),
                              "T_eye_marker, one a marker: x right, y down, z into the marker as "
                              "seen by the viewer, origin in its middle [m]; coord = 1000 · eye + "
                              "frame of the marker, 0 where it has none");
   auto markers = module.output(
-      "markers", hc::table<double>().of(hc::vision::kMarkerColumns, 0),
+      "markers", hc::table().of(0, hc::vision::kMarkerColumns),
       "12 columns, a row each: kind (0 aruco, 1 apriltag, 2 colour), id (hue [degree] of colour), "
       "side [m], x y z [m] and qx qy qz qw in the eye, which is coord, reprojection error, mean "
       "side [px]");
@@ -84,7 +84,6 @@ int main(int argc, char** argv) {
   std::string frames_read, sides_read;
   std::vector<NamedMarker> frame_names, side_names;
   auto read_parameters = [&] {
-    // They may be set while the module runs.
     if (frames_read != *frames)
       frame_names = hc::value_or_end(read_names(frames_read = *frames, 1, 999, true));
     if (sides_read != *sides)
@@ -110,10 +109,10 @@ int main(int argc, char** argv) {
   };
   auto send_poses = [&](const std::vector<Found>& all, std::int32_t eye) {
     for (const auto& found : all)
-      poses.send(hc::transformation(found.T_eye_marker()).in(1000 * eye + found.frame));
+      poses.send(hc::numbers_of(found.T_eye_marker()), 0, 1000 * eye + found.frame);
   };
   auto send_table = [&](const std::vector<Found>& all, std::int32_t eye) {
-    auto draft = markers.loan(hc::vision::kMarkerColumns, static_cast<std::int32_t>(all.size()));
+    auto draft = markers.loan(static_cast<std::int32_t>(all.size()), hc::vision::kMarkerColumns);
     draft.header.coord = eye;
     for (std::size_t i = 0; i < all.size(); ++i) {
       const auto& [marker, metres, pose, frame] = all[i];
@@ -152,7 +151,7 @@ int main(int argc, char** argv) {
       if (*named_only && !its_side && !its_frame) continue;
       if (its_side) found.side = its_side->value;
       if (its_frame) found.frame = static_cast<std::int32_t>(its_frame->value);
-      // A hue as it is named, and not as the light has made it.
+      // The named hue, not the measured one, which depends on the light.
       if (its_frame || its_side) found.marker.id = its_frame ? its_frame->id : its_side->id;
       auto pose = hc::vision::pose_of(marker, found.side, view.camera);
       if (!pose) continue;

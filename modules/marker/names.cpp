@@ -35,20 +35,20 @@ hc::Result<std::vector<NamedMarker>> read_names(const std::string& text, double 
       return hc::Error{hc::Code::Invalid, "\"" + std::string(word) + "\" " + why};
     };
     if (colon == word.npos || equals == word.npos || equals < colon)
-      return wrong("is not as in aruco:23=VALUE");
+      return wrong("is not like aruco:23=VALUE");
     NamedMarker name;
     const auto kind = kind_of(word.substr(0, colon));
-    if (!kind) return wrong("is none of aruco, apriltag and colour");
+    if (!kind) return wrong("is not one of aruco, apriltag, colour");
     name.kind = *kind;
     const auto id = word.substr(colon + 1, equals - colon - 1);
     const int most_id = *kind == MarkerKind::Colour ? 359 : 100000;
     if (!hc::read_number(id, name.id) || name.id < 0 || name.id > most_id)
-      return wrong(*kind == MarkerKind::Colour ? "has no hue from 0 to 359" : "has no number");
+      return wrong(*kind == MarkerKind::Colour ? "needs a hue from 0 to 359" : "needs a number");
     if (!hc::read_number(word.substr(equals + 1), name.value) || !(name.value >= least) ||
         !(name.value <= most) || (whole && name.value != std::floor(name.value)))
-      return wrong("has a value that is not taken");
+      return wrong("has a value out of range");
     for (const auto& other : names)
-      if (other.kind == name.kind && other.id == name.id) return wrong("is there twice");
+      if (other.kind == name.kind && other.id == name.id) return wrong("is repeated");
     names.push_back(name);
   }
   return names;

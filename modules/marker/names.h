@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Markers by name in parameters, as in "aruco:23=101 apriltag:7=102 colour:300=103". Pure.
+// Parameters of single markers, e.g. "aruco:23=101 apriltag:7=102 colour:300=103". Pure.
 
 #include <optional>
 #include <string>
@@ -9,22 +9,21 @@
 #include <hc/base/result.h>
 #include <vision/marker.h>
 
-/// What is said of one marker.
+/// The value for one marker.
 struct NamedMarker {
   hc::vision::MarkerKind kind = hc::vision::MarkerKind::Aruco;
-  int id = 0;  ///< of a coloured one, its hue [degree]
+  int id = 0;  ///< for colour the hue [degree]
   double value = 0;
 };
 
-/// Reads words KIND:ID=VALUE with blanks or commas between them.
+/// Reads words KIND:ID=VALUE, separated by blanks or commas.
 ///
-/// @param least, most  what a value may be.
-/// @param whole  a value is a whole number.
-/// Errors: Invalid, with the word that is wrong.
+/// @param least, most  range of a value.
+/// @param whole  values are whole numbers.
+/// Errors: Invalid.
 hc::Result<std::vector<NamedMarker>> read_names(const std::string& text, double least, double most,
                                                 bool whole);
 
-/// The value for a marker, where there is one. Hues are alike that differ by 20 degrees at most;
-/// the closest is taken.
+/// The value for a marker, if any. A hue matches the closest one within 20 degrees.
 std::optional<NamedMarker> find_name(const std::vector<NamedMarker>& names,
                                      hc::vision::MarkerKind kind, int id);

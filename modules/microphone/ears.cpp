@@ -33,8 +33,8 @@ Result<std::optional<Piece>> FileEar::next() {
   }
   if (ready_.empty()) return std::optional<Piece>();
   const std::size_t size = std::min(wanted, ready_.size());
-  auto piece = hc::audio::message_of(std::span(std::as_const(ready_)).first(size), format_)
-                   .at(start_ + hc::audio::duration_of(sent_, format_.rate));
+  auto piece = hc::audio::message_of(std::span(std::as_const(ready_)).first(size), format_);
+  piece.header.time = start_ + hc::audio::duration_of(sent_, format_.rate);
   sent_ += piece.header.width;
   ready_.erase(ready_.begin(), ready_.begin() + static_cast<std::ptrdiff_t>(size));
   return std::optional(std::move(piece));
@@ -48,8 +48,9 @@ std::optional<Piece> DeviceEar::next() {
   if (std::exchange(is_silent_, false)) log_(hc::Level::Info, "microphone resumed");
   if (capture_->lost() > 0 && !std::exchange(has_lost_, true))
     log_(hc::Level::Warning, "sound dropped: not read in time (further drops are not logged)");
-  const auto piece = hc::audio::message_of(heard->samples, format_);
-  return piece.at(times_.stamp(piece.header.width, heard->time));
+  auto piece = hc::audio::message_of(heard->samples, format_);
+  piece.header.time = times_.stamp(piece.header.width, heard->time);
+  return piece;
 }
 
 void DeviceEar::look() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Sound of a microphone or a WAV file, in messages with the time of their first frame.
+// Sound from a microphone or a WAV file, in messages with the time of their first frame.
 
 #include <chrono>
 #include <cstdint>
@@ -21,10 +21,10 @@
 
 inline constexpr int kPiecesPerSecond = 50;  // of 20 ms
 
-/// A piece of sound, of a rate that has a coordinate system.
+/// A piece of sound; its rate has a coordinate system.
 using Piece = hc::MessageOf<hc::SoundKind<std::int16_t>>;
 
-/// A WAV file as sound of another format; the last piece may be shorter.
+/// Reads a WAV file and converts it to a format. The last piece may be shorter.
 class FileEar {
  public:
   /// @param start  time of its first frame [ns]. Errors: as WavReader::open and Converter::make.
@@ -50,20 +50,19 @@ class FileEar {
   bool is_finished_ = false;
 };
 
-/// A microphone, which may be disconnected at any time, or give nothing for kTimeout. Each change
-/// is logged once.
+/// A microphone, which may disconnect or be silent for kTimeout at any time. Logs each change once.
 class DeviceEar {
  public:
-  static constexpr std::chrono::seconds kTimeout{3};      ///< some servers begin late
-  static constexpr std::chrono::milliseconds kLook{100};  ///< how often look() is to be called
+  static constexpr std::chrono::seconds kTimeout{3};      ///< some sound servers start late
+  static constexpr std::chrono::milliseconds kLook{100};  ///< period of look()
   DeviceEar(std::string device, const hc::audio::Format& format, hc::LogSink log)
       : device_(std::move(device)), format_(format), log_(std::move(log)), times_(format.rate) {}
 
-  /// Checks whether the device is connected, and opens it again.
+  /// Checks whether the device is connected, and reopens it if not.
   void look();
   /// For poll(): readable while there are pieces; -1 without a device.
   [[nodiscard]] int descriptor() const { return capture_ ? capture_->descriptor() : -1; }
-  /// The next piece, if there is one. Never waits.
+  /// The next piece, if any. Never blocks.
   std::optional<Piece> next();
 
  private:
@@ -73,6 +72,6 @@ class DeviceEar {
   hc::audio::FrameClock times_;
   hc::Backoff backoff_;
   std::unique_ptr<hc::audio::Capture> capture_;
-  hc::MonotonicTime heard_at_{0};  // or opened
+  hc::MonotonicTime heard_at_{0};  // last sound, or when opened
   bool is_missing_ = false, is_silent_ = false, has_lost_ = false;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ears: sound from a microphone or a WAV file.
+// Sends sound from a microphone or a WAV file.
 #include <hc/module/module.h>
 #include <transports/all.h>
 
@@ -8,9 +8,9 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"microphone", "Sends the sound of a microphone or a WAV file."};
-  auto mono = module.output("mono", hc::sound<std::int16_t>(1),
+  auto mono = module.output("mono", hc::sound(1),
                             "pieces of 20 ms, where channels is 1; coord 20 … 24 by the rate");
-  auto stereo = module.output("stereo", hc::sound<std::int16_t>(2),
+  auto stereo = module.output("stereo", hc::sound(2),
                               "the same, left and right, where channels is 2");
   auto file = module.parameter("file", "", "", "WAV file instead of a microphone",
                                {.positional = true, .fixed = true});
@@ -31,8 +31,8 @@ int main(int argc, char** argv) {
     // A piece is sent at its end, as by a microphone.
     if (*paced) module.keep_rate(kPiecesPerSecond);
     const auto piece = hc::value_or_end(from_file->next());
-    if (piece) send(*piece);
-    return piece.has_value();
+    if (!piece) return module.stop();
+    send(*piece);
   };
   module.on_start([&] {
     const hc::audio::Format format{static_cast<int>(*rate), static_cast<int>(*channels)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The robot's neck: turns the head by a pan-tilt unit on a serial line, and reports where it looks.
+// The robot's neck: turns the head with a pan-tilt unit on a serial line; reports its orientation.
 #include <drivers/pan_tilt/neck.h>
 #include <frames/messages.h>
 #include <hc/module/module.h>
@@ -9,15 +9,15 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"pan_tilt", "Turns the head by a FLIR pan-tilt unit; reports where it looks."};
   auto command =
-      module.input("command", hc::rotation<double>().of(1, 1).in(hc::Coord::kGaze).finite(),
+      module.input("command", hc::rotation().of(1, 1).in(hc::Coord::kGaze).finite(),
                    "roll (ignored), tilt, pan to take [rad]; the newest is used, of one source of "
-                   "a mode at a time");
+                   "a mode at a time", {.actor = true, .keep = 1});
   auto device_input = module.input("device", hc::string(), "device to open; none when empty");
-  auto gaze = module.output("gaze", hc::rotation<double>().of(1, 1).in(hc::Coord::kGaze),
+  auto gaze = module.output("gaze", hc::rotation().of(1, 1).in(hc::Coord::kGaze),
                             "0, tilt, pan as measured [rad]");
   auto pose = module.output(
       "pose",
-      hc::transformation<double>().in(hc::transform_coord(hc::Coord::kRobot, hc::Coord::kHead)),
+      hc::transformation().in(hc::transform_coord(hc::Coord::kRobot, hc::Coord::kHead)),
       "T_robot_head at the same time");
   auto device =
       module.parameter("device", "", "", "serial device, e.g. /dev/ttyUSB0", {.positional = true});
@@ -33,8 +33,6 @@ int main(int argc, char** argv) {
                                 {.min = 0, .max = 100});
   auto acceleration = module.parameter("acceleration", 0.0, "rad/s2",
                                        "of each axis, 0: the unit's own", {.min = 0, .max = 1000});
-  module.actor(command);
-  module.keep(command);
 
   auto now = [] { return hc::SystemClock().monotonic(); };
   hc::pan_tilt::Neck neck(
@@ -42,9 +40,9 @@ int main(int argc, char** argv) {
       [&](const auto&... problem) { module.log_once(problem...); },
       [&](const hc::pan_tilt::Gaze& seen) {
         const std::int64_t time = module.now() - (now() - seen.time).count();
-        gaze.send(hc::rotation(0.0, seen.tilt, seen.pan).at(time));
+        gaze.send({0.0, seen.tilt, seen.pan}, time);
         const Eigen::Isometry3d T_robot_head(hc::frames::rotation(0, seen.tilt, seen.pan));
-        if (pose.linked()) pose.send(hc::transformation(T_robot_head).at(time));
+        if (pose.linked()) pose.send(hc::numbers_of(T_robot_head), time);
       });
   auto pass = [&] {
     neck.set_focus(now(), module.focus());
@@ -60,7 +58,7 @@ int main(int argc, char** argv) {
                        neck.set_focus(now(), module.focus());
                        neck.read(now());
                      });
-  module.on(device_input, [&](const auto& name) { neck.set_device(now(), name.characters()); });
+  module.on(device_input, [&](const auto& name) { neck.set_device(now(), name.text()); });
   module.on(command, [&](const auto& message) {
     neck.set_focus(now(), module.focus());
     const auto angles = message.numbers();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How soon a head obeys a stick, by the truth of a simulation.
+// Measures the latency from a stick to the motion of the head in a simulation.
 #include <optional>
 
 #include <frames/messages.h>
@@ -11,24 +11,23 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"point_score", "Pushes a stick and measures when the head begins to move."};
-  auto motion = module.input("motion", hc::rotation<double>().in(hc::Coord::kGaze),
+  auto motion = module.input("motion", hc::rotation().in(hc::Coord::kGaze),
                              "truth: roll, tilt, pan of the head [rad]");
-  auto report = module.input("gaze", hc::rotation<double>().in(hc::Coord::kGaze),
-                             "measured head orientation; with the first one it starts");
-  auto stick = module.output("stick", hc::table<double>().of(2, 1), "left > 0, down > 0, -1 to 1");
-  auto result = module.output("score", hc::table<double>().of(4, 1),
+  auto report = module.input("gaze", hc::rotation().in(hc::Coord::kGaze),
+                             "measured head orientation; the first starts the test");
+  auto stick = module.output("stick", hc::table().of(1, 2), "left > 0, down > 0, -1 to 1");
+  auto result = module.output("score", hc::table().of(1, 4),
                               "median and maximum time from the stick to the motion [s], "
                               "pushes that moved the head, pushes");
   auto count = module.parameter("count", 20, "", "pushes", {.min = 1, .max = 1e6, .fixed = true});
   auto seed = module.parameter("seed", 1, "", "of the times, directions and lengths of the pushes",
                                {.min = 0, .max = 1e9, .fixed = true});
-  auto rate = module.parameter("rate", 50.0, "Hz",
-                               "how often the stick is repeated while it is out of its middle",
+  auto rate = module.parameter("rate", 50.0, "Hz", "repetition rate while the stick is deflected",
                                {.min = 1, .max = 1000});
   auto acceleration = module.parameter("acceleration", 1.795, "rad/s²", "of the unit",
                                        {.min = 0.01, .max = 1000, .fixed = true});
   auto base_speed = module.parameter("base_speed", 0.8976, "rad/s",
-                                     "up to which the unit starts and stops at once",
+                                     "speed up to which the unit starts and stops at once",
                                      {.min = 0, .max = 100, .fixed = true});
 
   std::optional<Pusher> pusher;
@@ -43,18 +42,16 @@ int main(int argc, char** argv) {
     pusher->take(hc::seconds(message.header.time), hc::gaze::angles_of(q));
   });
   module.on(report, [&](const auto&) { is_ready = true; });
-  module.generate([&] {
-    constexpr double kLook = 1000;  // [Hz]
-    module.keep_rate(kLook);
-    if (!is_ready) return true;
+  module.every(std::chrono::milliseconds(1), [&] {
+    if (!is_ready) return;
     const std::int64_t now = module.now();
     if (const auto pushed = pusher->look(hc::seconds(now), *rate))
-      stick.send(hc::table({pushed->left, pushed->down}).at(now));
-    if (!pusher->is_done()) return true;
+      stick.send({pushed->left, pushed->down}, now);
+    if (!pusher->is_done()) return;
     const auto score = pusher->score();
-    result.send(hc::table<double>(score.numbers()));
+    result.send(score.numbers());
     module.log(score.text(), hc::Level::Result);
-    return false;
+    module.stop();
   });
   return module.run(argc, argv);
 }

@@ -40,14 +40,14 @@ bool Pusher::move(double time) {
     if (!is_over) return false;
     pushed_.reset();
     still_since_ = time;
-    rest_ = random(0.2, 0.8);  // some so long that the head is left to others meanwhile
+    rest_ = random(0.2, 0.8);  // sometimes long enough for the bid for the head to end
     stick_ = {};
     return true;
   }
   if (!rests_at_ || pushes_ >= options_.count || time - still_since_ < rest_ ||
       heard_ < still_since_ + rest_ / 2)
     return false;
-  // Back towards the middle, so that the unit never comes to its limits.
+  // Towards the centre, so that the unit never reaches its limits.
   const double size = random(0.3, 1), share = random(-0.5, 0.5);
   stick_.left = rests_at_->pan > 0 ? -size : size;
   stick_.down = (rests_at_->tilt > 0 ? -1 : 1) * std::abs(share) * size;

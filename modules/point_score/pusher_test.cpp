@@ -16,7 +16,7 @@ struct Sent {
   Pusher::Stick stick;
 };
 
-/// A head that begins to move a while after the push, and stops when the stick is let go.
+/// A head that starts to move with a delay after the push, and stops when the stick is released.
 Pusher play(const Pusher::Options& options, double delay, std::vector<Sent>* all = nullptr) {
   Pusher pusher(options);
   Pusher::Stick held;

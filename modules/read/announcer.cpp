@@ -8,10 +8,10 @@
 
 namespace {
 
-/// Whether two texts are the same but for a letter or two that are read so or so.
+/// Whether two texts differ by only one or two adjacent letters, probably misread.
 bool are_near(const std::string& a, const std::string& b) {
   constexpr std::ptrdiff_t kMost = 2;
-  constexpr std::size_t kLong = 5;  // shorter texts are easily near
+  constexpr std::size_t kLong = 5;  // shorter texts are similar by chance
   if (a.size() > b.size()) return are_near(b, a);
   if (a.size() < kLong || static_cast<std::ptrdiff_t>(b.size() - a.size()) > kMost) return false;
   const auto [begin_a, begin_b] = std::mismatch(a.begin(), a.end(), b.begin());
@@ -31,7 +31,7 @@ bool Announcer::take(const std::string& text, double confidence, std::int64_t ti
   while (std::ssize(readings_) > 2 * kDoubt * rules.repeat - 1) readings_.pop_front();
   const auto first = readings_.end() - std::min(std::ssize(readings_), 2 * wanted - 1);
   if (!is_sure || std::count(first, readings_.end(), text) < wanted) return false;
-  // A clock that went back, as when a recording starts over, does not silence it.
+  // A clock may go back when a recording restarts: announce then, too.
   const auto since = hc::seconds(time - said_at_);
   const bool is_due = rules.again > 0 && (since >= rules.again || since < 0);
   if (text == said_ && !is_due && (was_heard_ || !is_heard)) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Decides which of many readings of a text is said, and when. Pure: times come from the caller.
+// Decides which readings of a text to announce, and when. Pure: times come from the caller.
 
 #include <cstdint>
 #include <deque>
@@ -9,29 +9,29 @@
 class Announcer {
  public:
   struct Rules {
-    double confidence = 0;    ///< minimum confidence of a reading that counts, 0 … 1
-    std::int64_t repeat = 1;  ///< so many of the last 2 · repeat − 1 readings, the majority of
-                              ///< them, are to be the same; of a text that is said already but
-                              ///< for a letter or two, thrice as many
-    double again = 0;         ///< after this time an unchanged text is said again, 0: never [s]
+    double confidence = 0;  ///< minimum confidence of a reading that counts, 0 … 1
+    /// Readings that must agree among the last 2 · repeat − 1; three times as many if the text
+    /// nearly equals the last announced one.
+    std::int64_t repeat = 1;
+    double again = 0;  ///< an unchanged text is announced again after this time [s], 0: never
   };
 
   /// Takes a reading.
   ///
   /// @param time  when the image was taken [ns].
-  /// @param is_heard  whether what is said now is used: not while another mode has the focus.
-  /// @returns  whether its text is to be said now: it is certain, and differs from the last one, or
-  ///     that was said long ago, or not heard.
+  /// @param is_heard  whether an announcement has an effect now: this mode has the focus.
+  /// @returns  whether to announce the text now: it is certain, and it is new, or the last
+  ///     announcement was `again` ago or not heard.
   bool take(const std::string& text, double confidence, std::int64_t time, const Rules& rules,
             bool is_heard = true);
 
-  /// "read 3 texts, the last "STOP""; empty while nothing was said.
+  /// "read 3 texts, the last "STOP""; empty if none was announced.
   [[nodiscard]] std::string summary() const;
 
  private:
-  std::deque<std::string> readings_;  // the last ones; "" unsure
-  std::string said_;                  // last, and when, and whether it was heard
+  std::deque<std::string> readings_;  // recent; "" if not confident
+  std::string said_;                  // last announced text
   std::int64_t said_at_ = 0;
   bool was_heard_ = false;
-  int texts_ = 0;  // that were said
+  int texts_ = 0;  // announced
 };

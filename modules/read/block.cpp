@@ -6,10 +6,10 @@
 
 namespace {
 
-// Heights of capital letters that a line is read at [px]: the network's errors differ between them.
+// Heights of capital letters to read a line at [px]: the network's errors differ between them.
 constexpr int kHeights[] = {36, 30, 42};
 
-/// Reads a line, again at another size as long as letters and glyphs do not fit together.
+/// Reads a line, at several sizes until the letters match the shapes of the glyphs.
 hc::vision::Reading read_line(Recogniser& recogniser, const cv::Mat& image,
                               const hc::vision::TextLine& line, bool upper_case) {
   hc::vision::Reading best;
@@ -40,7 +40,7 @@ hc::Result<BlockReader> BlockReader::make(const std::string& language, bool uppe
 bool BlockReader::is_due(std::int64_t time, double rate) const {
   if (rate <= 0 || !read_at_) return true;
   const auto since = time - *read_at_;
-  // Half a millisecond is what times of images that come evenly may differ by.
+  // Tolerates 0.5 ms of jitter in the times of images.
   return since < 0 || static_cast<double>(since) + 5e5 >= 1e9 / rate;
 }
 

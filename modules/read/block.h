@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Reads what is on a board, one line or several, and no more often than is asked for.
+// Reads the lines of text on a board, at a limited rate.
 
 #include <cstdint>
 #include <optional>
@@ -15,15 +15,15 @@ class BlockReader {
  public:
   using Block = std::vector<hc::vision::TextLine>;
 
-  /// Errors: as Recogniser::make(), which says what the parameters are.
+  /// Parameters and errors: as Recogniser::make().
   static hc::Result<BlockReader> make(const std::string& language, bool upper_case);
 
-  /// What is written in the lines of a block, joined by spaces, as sure as the least sure line.
+  /// The text of a block's lines, joined by spaces, with the confidence of the least certain line.
   /// @param image  (H, W, 3) or (H, W, 1) u8.
   hc::vision::Reading read(const cv::Mat& image, const Block& block);
 
-  /// The same, if the block is whole and the last reading is 1 / rate ago by the times of the
-  /// images, so that a recording gives the same result.
+  /// Reads if the block is whole and the last reading is 1 / rate ago, by the times of the images,
+  /// so that a recording gives the same result.
   /// @param time  of the image [ns].
   /// @param rate  maximum number of readings a second, 0: all [Hz].
   std::optional<hc::vision::Reading> read_when_due(const cv::Mat& image, const Block& block,
@@ -35,5 +35,5 @@ class BlockReader {
 
   Recogniser recogniser_;
   bool upper_case_;
-  std::optional<std::int64_t> read_at_;  // the time of the last image that was due [ns]
+  std::optional<std::int64_t> read_at_;  // time of the last image read [ns]
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boards in common fonts, as they are seen: bright on dark, faint, small, out of focus, turned,
-// from the side, in several lines.
+// Boards in common fonts under various conditions: bright on dark, faint, small, out of focus,
+// rotated, from the side, in several lines.
 #include "block.h"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ cv::Mat draw(const Text& lines, const std::string& font, const Look& look) {
     cv::warpAffine(image, turned, turn, image.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
   cv::resize(turned, seen, {800, 600}, 0, 0, cv::INTER_AREA);
   if (look.blur > 0) cv::GaussianBlur(seen, seen, {}, look.blur);
-  static std::map<double, cv::Mat> noises;  // by their deviations, since they take long
+  static std::map<double, cv::Mat> noises;  // by deviation; cached because they are slow
   cv::Mat& noise = noises[look.noise];
   if (noise.empty()) {
     noise.create(seen.size(), CV_16SC3);
@@ -68,7 +68,7 @@ cv::Mat draw(const Text& lines, const std::string& font, const Look& look) {
   return sum;
 }
 
-/// A board of 262 by 63 pixels with OpenCV's letters of strokes, as in the simulated room.
+/// A board of 262 by 63 pixels with OpenCV's stroke fonts, as in the simulated room.
 cv::Mat draw_strokes(const std::string& text, double noise) {
   constexpr int kFont = cv::FONT_HERSHEY_DUPLEX;
   cv::Mat board(240, 1000, CV_8UC3, cv::Scalar(245, 245, 240)), seen, sum;
@@ -88,7 +88,7 @@ cv::Mat draw_strokes(const std::string& text, double noise) {
   return sum;
 }
 
-/// How many of some texts in all fonts are read without an error, [%].
+/// The share of texts in all fonts read without an error [%].
 int read(const std::vector<Text>& texts, const Look& look, bool upper_case = true) {
   static std::map<bool, BlockReader> readers;
   if (!readers.count(upper_case))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads letters in images, and says where they are.
+// Reads text in images, and locates it.
 #include <hc/module/module.h>
 #include <transports/all.h>
 #include <vision/messages.h>
@@ -9,22 +9,22 @@
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"read", "Reads lines of letters on an even ground, as on a board."};
-  auto image = module.input("image", hc::any_image(), "image with letters");
+  hc::Module module{"read", "Reads lines of letters on an even ground, as on a board.", {.background = true}};
+  auto image = module.input("image", hc::image(), "image with letters");
   auto text = module.output("text", hc::string().in(hc::Coord::kText),
                             "the text, once it is certain, and when it changes");
   auto confidence =
-      module.output("confidence", hc::table<double>(), "of each reading, certain or not, 0 to 1");
-  auto target = module.output("target", hc::position<double>(),
+      module.output("confidence", hc::table(), "of each reading, certain or not, 0 to 1");
+  auto target = module.output("target", hc::position(),
                               "x, y, width of the lines [px], in the image's coordinate system");
   auto language = module.parameter("language", "eng", "", "Tesseract's name: eng, deu, eng+deu",
                                    {.fixed = true});
-  auto upper_case = module.parameter(
-      "upper_case", true, "", "nothing but capital letters, digits and - . , ! ?", {.fixed = true});
+  auto upper_case = module.parameter("upper_case", true, "",
+                                     "only capital letters, digits and - . , ! ?", {.fixed = true});
   auto least = module.parameter("confidence", 0.4, "", "minimum confidence of a text that is sent",
                                 {.min = 0, .max = 1});
   auto repeat =
-      module.parameter("repeat", 2, "", "of the last 2 repeat - 1 readings so many must agree",
+      module.parameter("repeat", 2, "", "readings that must agree among the last 2 repeat - 1",
                        {.min = 1, .max = 1000});
   auto again =
       module.parameter("again", 10.0, "s", "until an unchanged text is sent again, 0: never",
@@ -45,17 +45,15 @@ int main(int argc, char** argv) {
     const auto block = hc::vision::block_of_best(hc::vision::find_text_lines(pixels, *score));
     if (block.empty()) return;
     const auto box = hc::vision::box_of(block);
-    target.send(hc::position<double>(box.x + box.width / 2, box.y + box.height / 2, box.width)
-                    .in(message.header.coord));
+    target.send({box.x + box.width / 2, box.y + box.height / 2, box.width}, 0, message.header.coord);
     const std::int64_t time = message.header.time != 0 ? message.header.time : module.now();
     const auto reading = reader->read_when_due(pixels, block, time, *rate);
     if (!reading) return;
-    confidence.send(hc::table({reading->confidence}));
+    confidence.send({reading->confidence});
     if (announcer.take(reading->text, reading->confidence, time, {*least, *repeat, *again},
                        module.has_focus()))
-      text.send(hc::string(reading->text));
+      text.send(reading->text);
   });
-  module.background();
   const int status = module.run(argc, argv);
   if (const auto summary = announcer.summary(); !summary.empty())
     module.log(summary, hc::Level::Result);

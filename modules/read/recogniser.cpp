@@ -10,8 +10,8 @@
 
 namespace {
 
-/// Has Tesseract stay on one thread: its loops are too short to be worth several, which wait for
-/// one another. What OMP_THREAD_LIMIT=1 does is settled before main() begins; this is the same.
+/// Keeps Tesseract on one thread: its loops are too short to gain from more. The same as
+/// OMP_THREAD_LIMIT=1, which is only read before main().
 void keep_to_one_thread() {
   using SetLevels = void (*)(int);
   if (void* set = dlsym(RTLD_DEFAULT, "omp_set_max_active_levels"); set != nullptr)
@@ -34,16 +34,16 @@ hc::Result<Recogniser> Recogniser::make(const std::string& language, bool upper_
   keep_to_one_thread();
   auto engine = std::make_shared<Engine>();
   auto& api = engine->api;
-  api.SetVariable("debug_file", "/dev/null");  // else it talks on standard error
+  api.SetVariable("debug_file", "/dev/null");  // else it writes to standard error
   if (api.Init(nullptr, language.c_str(), tesseract::OEM_LSTM_ONLY) != 0)
     return hc::Error{hc::Code::NotFound, "Tesseract has no language " + language +
                                              " (package tesseract-ocr-" + language + ")"};
   api.SetPageSegMode(tesseract::PSM_SINGLE_LINE);
   if (upper_case)
     api.SetVariable("tessedit_char_whitelist", "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-.,!? ");
-  else  // plain characters look the same
+  else  // look-alikes of ASCII characters
     api.SetVariable("tessedit_char_blacklist", "|—–‘’“”");
-  // Names and codes are in no dictionary.
+  // Names and codes are not in a dictionary.
   api.SetVariable("load_system_dawg", "0");
   api.SetVariable("load_freq_dawg", "0");
   return Recogniser(std::move(engine));
@@ -57,7 +57,7 @@ hc::vision::Reading Recogniser::read(const cv::Mat& line) {
   hc::vision::Reading reading;
   if (text == nullptr) return reading;
   reading.text = without_space_around(text.get());
-  // The mean of the letters': that of a word is its worst letter's, however right the others are.
+  // Mean over the letters: Tesseract's confidence of a word is that of its worst letter.
   const std::unique_ptr<tesseract::ResultIterator> letter(api.GetIterator());
   double sum = 0;
   int count = 0;

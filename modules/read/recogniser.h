@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Reads a line of letters by Tesseract's neural network (LSTM). One thread.
+// Reads a line of text with Tesseract's neural network (LSTM). For one thread.
 
 #include <memory>
 #include <string>
@@ -12,15 +12,15 @@
 
 class Recogniser {
  public:
-  /// Loads a language, which takes about 0.1 s.
+  /// Loads a language. Cost: about 0.1 s.
   ///
-  /// @param language  as Tesseract calls it: "eng", "deu", "eng+deu".
-  /// @param upper_case  take nothing but capital letters, digits, space and - . , ! ?
+  /// @param language  Tesseract's name: "eng", "deu", "eng+deu".
+  /// @param upper_case  only capital letters, digits, space and - . , ! ?
   ///
-  /// Errors: NotFound (no data of this language).
+  /// Errors: NotFound (no data for this language).
   static hc::Result<Recogniser> make(const std::string& language, bool upper_case);
 
-  /// @param line  (H, W) u8, black letters about 36 pixels high on white, level, with a margin.
+  /// @param line  (H, W) u8, black letters about 36 px high on white, horizontal, with a margin.
   /// Cost: 30 … 150 ms on one core.
   hc::vision::Reading read(const cv::Mat& line);
 

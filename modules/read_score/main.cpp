@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well a robot reads aloud what is written before it.
+// Writes texts on a board for a robot to read aloud, and scores the result.
 #include <hc/module/module.h>
 #include <sound/format.h>
 #include <transports/all.h>
@@ -9,16 +9,15 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"read_score", "Writes texts for a robot to read aloud, and scores it."};
-  auto text = module.input("text", hc::string().in(hc::Coord::kText),
-                           "what was read, with the image's time");
-  auto sound = module.input("sound", hc::sound<std::int16_t>(1).in(hc::Coord::kSound22k),
-                            "what is spoken, with the time of the text");
+  auto text =
+      module.input("text", hc::string().in(hc::Coord::kText), "text read, with the image's time");
+  auto sound = module.input("sound", hc::sound(1).in(hc::Coord::kSound22k),
+                            "speech, with the time of the text");
   auto writing =
       module.output("writing", hc::string().in(hc::Coord::kText), "the next text for the board");
-  auto result =
-      module.output("score", hc::table<double>().of(6, 1),
-                    "character error rate; seen to spoken, median and maximum [s]; of "
-                    "it since the image that decided, median [s]; texts; texts not spoken");
+  auto result = module.output("score", hc::table().of(1, 6),
+                              "character error rate; seen to spoken, median and maximum [s]; of "
+                              "it after the decisive image, median [s]; texts; texts not spoken");
   auto seed =
       module.parameter("seed", 1, "", "of the texts", {.min = 0, .max = 1e9, .fixed = true});
   auto count = module.parameter("count", 5, "", "texts", {.min = 1, .max = 100'000});
@@ -33,27 +32,25 @@ int main(int argc, char** argv) {
                       module.now() + hc::duration(*time_out).count());
   });
   module.on(text, [&](const auto& message) {
-    dictation->take_text(std::string(message.characters()), message.header.time, module.now());
+    dictation->take_text(std::string(message.text()), message.header.time, module.now());
   });
   module.on(sound, [&](const auto& message) {
     const double rate = *hc::audio::rate_of(message.header.coord);  // [Hz]
     dictation->take_sound(message.header.time, module.now(), message.header.width / rate);
   });
-  module.generate([&] {
-    constexpr double kLook = 100;  // [Hz]
-    module.keep_rate(kLook);
+  module.every(std::chrono::milliseconds(10), [&] {
     const std::int64_t now = module.now();
     const auto ended = dictation->finish(now, *time_out, *pause);
     if (ended && ended->read != ended->truth)
       module.log("\"" + ended->truth + "\" was read as \"" + ended->read + "\"");
     if (!dictation->is_done(*count)) {
-      if (const auto next = dictation->write(now)) writing.send(hc::string(*next).at(now));
-      return true;
+      if (const auto next = dictation->write(now)) writing.send(*next, now);
+      return;
     }
     const auto score = dictation->score();
-    result.send(hc::table<double>(score.numbers()));
+    result.send(score.numbers());
     module.log(score.text(), hc::Level::Result);
-    return false;
+    module.stop();
   });
   return module.run(argc, argv);
 }

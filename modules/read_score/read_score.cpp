@@ -16,7 +16,7 @@ constexpr std::size_t kLeastWord = 3, kMostWord = 8;  // of a word
 constexpr std::int64_t kSettle = 1'000'000'000;  // from the first reading to the first text [ns]
 constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
 
-/// The one in the middle, or the mean of the two there; 0 of none.
+/// Returns 0 for no values.
 double median_of(std::vector<double> values) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
@@ -27,7 +27,7 @@ double median_of(std::vector<double> values) {
 }  // namespace
 
 std::string random_text(std::mt19937_64& random) {
-  // Not by a distribution of the standard library, as those are different ones elsewhere.
+  // Not a standard distribution: those differ between libraries.
   const auto draw = [&](std::size_t least, std::size_t most) {
     return least + static_cast<std::size_t>(random() % (most - least + 1));
   };
@@ -113,7 +113,7 @@ std::string ReadingScore::text() const {
 }
 
 void Dictation::take_text(const std::string& text, std::int64_t image, std::int64_t now) {
-  // The head turns to what it has read.
+  // Let the head turn to the text it has read.
   if (!std::exchange(has_begun_, true)) next_at_ = now + kSettle;
   if (attempt_) attempt_->take_text(text, image);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How well a robot reads aloud: texts to be read, and what became of them. Pure: times come from
-// the caller, in nanoseconds since the Unix epoch.
+// Scores how well a robot reads aloud: texts to read, and their results. Pure: times come from the
+// caller, in nanoseconds since the Unix epoch.
 
 #include <array>
 #include <cstdint>
@@ -17,16 +17,16 @@ std::string random_text(std::mt19937_64& random);
 /// Letters to insert, delete or replace to make one text of the other (Levenshtein 1966).
 std::size_t edits(const std::string& truth, const std::string& read);
 
-/// What became of a text. What was not read is an empty `read`.
+/// The result of a text; `read` is empty if it was not read.
 struct ReadText {
   std::string truth, read;
-  std::optional<double> seen_to_spoken;  ///< [s]; not when it was not spoken in time
-  double work = 0;                       ///< the part of it since the image that decided [s]
+  std::optional<double> seen_to_spoken;  ///< [s]; none if not spoken in time
+  double work = 0;                       ///< the part of it after the decisive image [s]
 };
 
 struct ReadingScore {
-  double error_rate = 0;        ///< edits by letters of all texts; more than 1 where much was added
-  double median = 0, most = 0;  ///< seen to spoken, of those that were spoken [s]
+  double error_rate = 0;        ///< edits per letter of all texts; > 1 if much was inserted
+  double median = 0, most = 0;  ///< seen to spoken, of the spoken texts [s]
   double work = 0;              ///< median of their work [s]
   std::size_t texts = 0, unspoken = 0;
 
@@ -38,16 +38,16 @@ struct ReadingScore {
 
 ReadingScore score_of(const std::vector<ReadText>& texts);
 
-/// One text from when it is written until it was read and spoken. The first reading counts, however
-/// wrong it is; readings of images from before do not.
+/// One text, from writing until read and spoken. The first reading counts, even if wrong; readings
+/// of earlier images do not.
 class Attempt {
  public:
   Attempt(std::string truth, std::int64_t written_at)
       : truth_(std::move(truth)), written_at_(written_at) {}
 
-  /// @param image  when the image was taken that was read [ns].
+  /// @param image  time of the image read [ns].
   void take_text(const std::string& text, std::int64_t image);
-  /// @param image  the same of the text that is spoken [ns].
+  /// @param image  time of the image whose text is spoken [ns].
   void take_sound(std::int64_t image, std::int64_t now);
 
   [[nodiscard]] bool is_done() const { return read_.has_value() && spoken_at_.has_value(); }
@@ -60,37 +60,35 @@ class Attempt {
   std::int64_t written_at_;
   std::optional<std::string> read_;
   std::optional<std::int64_t> spoken_at_;
-  std::int64_t image_ = 0;  // of what was spoken
+  std::int64_t image_ = 0;  // of the spoken text
 };
 
-/// Texts that are written one after the other, each until it was read and spoken. Call finish() and
-/// then write() often.
+/// Writes texts one after another, each until read and spoken. Call finish(), then write(), often.
 class Dictation {
  public:
-  /// @param latest  when the first text is written if none is read before [ns].
+  /// @param latest  when to write the first text, unless one is read before [ns].
   Dictation(std::uint64_t seed, std::int64_t latest) : random_(seed), next_at_(latest) {}
 
-  /// As Attempt's. The first text that is read shows that all is running, and the dictation begins
-  /// 1 s later.
+  /// As Attempt's. The first text read shows that everything runs; the dictation starts 1 s later.
   void take_text(const std::string& text, std::int64_t image, std::int64_t now);
-  /// @param duration  of what is spoken [s].
+  /// @param duration  of the sound [s].
   void take_sound(std::int64_t image, std::int64_t now, double duration);
 
-  /// What became of the text, once it is read and spoken or its time is over.
+  /// The result of the text, once it is read and spoken or has timed out.
   /// @param time_out  of a text [s].
   /// @param pause  from the end of the speech to the next text [s].
   std::optional<ReadText> finish(std::int64_t now, double time_out, double pause);
-  /// The next text, once it is to be written.
+  /// The next text, when it is due.
   std::optional<std::string> write(std::int64_t now);
 
-  /// Whether so many texts have ended.
+  /// Whether this many texts are finished.
   [[nodiscard]] bool is_done(std::int64_t texts) const;
   [[nodiscard]] ReadingScore score() const { return score_of(texts_); }
 
  private:
   std::mt19937_64 random_;
-  std::vector<ReadText> texts_;  // that have ended
+  std::vector<ReadText> texts_;  // finished
   std::optional<Attempt> attempt_;
-  std::int64_t next_at_, heard_until_ = 0;  // the next text; what is spoken [ns]
+  std::int64_t next_at_, heard_until_ = 0;  // next text; end of the speech [ns]
   bool has_begun_ = false;
 };

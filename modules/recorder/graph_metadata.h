@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a recording says beside its messages: the graph, its modules, their parameters, the log.
+// Metadata of a recording: the graph, its modules, their parameters, and the log.
 
 #include <deque>
 #include <map>
@@ -9,8 +9,7 @@
 #include <client/graph_client.h>
 #include <record/writer.h>
 
-/// Records what a graph says of itself: log lines, and metadata that has changed. What cannot be
-/// written, the writer tells by itself.
+/// Records a graph's log lines and changes of its metadata. The writer reports its own errors.
 class GraphMetadata {
  public:
   GraphMetadata(hc::GraphClient& graph, hc::record::Writer& writer);
@@ -22,6 +21,6 @@ class GraphMetadata {
 
   hc::GraphClient& graph_;
   hc::record::Writer& writer_;
-  std::map<std::string, hc::mcap::StringMap> recorded_;  // the newest metadata, by name
+  std::map<std::string, hc::mcap::StringMap> recorded_;  // latest metadata, by name
   std::deque<std::string> undescribed_;                  // modules
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records all that comes, into MCAP or a folder. `hc run --record` adds it to a graph, with an
-// input for each output that it records.
+// Records messages to MCAP or a folder. `hc run --record` adds it to a graph, with an input for
+// each recorded output.
 #include <sys/signalfd.h>
 #include <unistd.h>
 
@@ -22,7 +22,7 @@ struct StreamName {
   std::string input, name;
 };
 
-/// Inputs and names of streams, "INPUT=NAME INPUT=NAME …"; one input where there are none.
+/// Inputs and names of streams, "INPUT=NAME INPUT=NAME …"; by default one input.
 std::vector<StreamName> stream_names(int argc, char** argv) {
   constexpr std::string_view kStreams = "--streams";
   std::string all;
@@ -42,7 +42,7 @@ std::vector<StreamName> stream_names(int argc, char** argv) {
   return names;
 }
 
-/// The times of messages where --clock says so.
+/// The module's clock, which is the messages' time with --clock.
 class ModuleClock final : public hc::Clock {
  public:
   explicit ModuleClock(const hc::Module& module) : module_(module) {}
@@ -67,9 +67,8 @@ std::uint64_t bytes_of(const std::string& parameter, const std::string& text) {
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"recorder",
-                    "Records streams into a file of MCAP, which viewers read, or into a folder."};
-  sigset_t saves;  // a signal that is read from a descriptor
+  hc::Module module{"recorder", "Records streams into an MCAP file or a folder.", {.finish_when_stopped = true}};
+  sigset_t saves;  // SIGUSR1, read from a descriptor
   ::sigemptyset(&saves);
   ::sigaddset(&saves, SIGUSR1);
   ::pthread_sigmask(SIG_BLOCK, &saves, nullptr);
@@ -83,23 +82,25 @@ int main(int argc, char** argv) {
     recorded.push_back(name);
   }
   auto file = module.parameter(
-      "file", "", "", "output file, of MCAP; recording.mcap where neither it nor `folder` is given",
+      "file", "", "", "output file in MCAP format; default recording.mcap unless `folder` is given",
       {.fixed = true});
   auto folder = module.parameter(
       "folder", "", "", "record into this folder instead of `file`, one STREAM.mtp for each stream",
       {.fixed = true});
   auto append = module.parameter("append", false, "",
-                                 "continue the files that `folder` has, as in a graph that goes on",
+                                 "append to existing files in `folder`, as when a graph resumes",
                                  {.fixed = true});
   auto streams = module.parameter(
       "streams", "", "", "inputs and names of their streams, INPUT=NAME …", {.fixed = true});
-  auto split = module.parameter(
-      "split", "0", "", "a new file begins after so many bytes (1G); 0: never", {.fixed = true});
+  auto split = module.parameter("split", "0", "",
+                                "size of a file in bytes at which a new one begins (1G); 0: never",
+                                {.fixed = true});
   auto keep = module.parameter(
-      "keep", "0", "", "of all files, the oldest are removed (10G); 0: all stay", {.fixed = true});
+      "keep", "0", "", "maximum size of all files, the oldest are removed (10G); 0: unlimited",
+      {.fixed = true});
   auto last = module.parameter(
       "last", 0.0, "s",
-      "keep the last seconds in memory, and write them on SIGUSR1, or when `when` says so; 0: off",
+      "keep the last seconds in memory, and write them on SIGUSR1 or by `when`; 0: off",
       {.fixed = true});
   auto when = module.parameter("when", "", "",
                                "MODULE.PORT: saves when its first number becomes other than 0",
@@ -110,12 +111,12 @@ int main(int argc, char** argv) {
   std::unique_ptr<hc::record::Writer> recording;  // null: before the start
   const auto loop = hc::value_or_end(hc::Loop::make());
   std::optional<GraphMetadata> metadata;
-  std::optional<hc::GraphClient> graph;  // nothing: there is none, or it is not kept
+  std::optional<hc::GraphClient> graph;  // none: not in a graph, or not recorded
   bool has_failed = false;
   auto fail_once = [&](const hc::Status& status) {
     if (status || std::exchange(has_failed, true)) return;
     module.log("recording ended: " + status.error().detail + "; " + recording->written().place +
-                   " holds what came before",
+                   " holds all messages before",
                hc::Level::Error);
   };
 
@@ -157,13 +158,11 @@ int main(int argc, char** argv) {
                        while (::read(signals, &info, sizeof info) > 0)
                          if (recording != nullptr) recording->save();
                      });
-  module.finish_when_stopped();
   module.on_end([&] {
     graph.reset();
     const auto& written = recording->close();
     fail_once(written.status);
-    if (written.files.empty())
-      return module.log("nothing saved of what was kept", hc::Level::Result);
+    if (written.files.empty()) return module.log("nothing saved", hc::Level::Result);
     std::string text = hc::format("{} message{} in {}", written.messages,
                                   written.messages == 1 ? "" : "s", written.place);
     if (written.files.size() > 1 && folder->empty())
@@ -172,6 +171,6 @@ int main(int argc, char** argv) {
     module.log(text, hc::Level::Result);
   });
   const int status = module.run(argc, argv);
-  // In a graph it lasts as long as that, which says at its end what is missing.
+  // In a graph a failed recorder keeps running, and the graph reports the failure at its end.
   return status == 0 && has_failed && !hc::own_graph() ? 1 : status;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The images of both eyes, rectified.
+// Rectifies the images of both eyes.
 #include <array>
 #include <optional>
 #include <utility>
@@ -17,25 +17,23 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   using hc::Coord, hc::vision::Eye, hc::vision::Rectifier;
   hc::Module module{"rectify", "Turns the images of two cameras into a rectified pair."};
-  const auto image = hc::rgb_image<std::uint8_t>();
+  const auto image = hc::rgb_image();
   auto left = module.input("left", image.in(Coord::kLeftImage), "image of the left eye");
   auto right = module.input("right", image.in(Coord::kRightImage), "image of the right eye");
   auto head =
-      module.input("calibration", hc::table<double>(), "mounting of the eyes: calibrate's result");
-  module.keep(head);
+      module.input("calibration", hc::table(), "mounting of the eyes: calibrate's result", {.keep = 1});
   auto left_rectified =
       module.output("left", image.in(Coord::kLeftRectified), "rectified image of the left eye");
   auto right_rectified =
       module.output("right", image.in(Coord::kRightRectified), "rectified image of the right eye");
   auto intrinsics =
-      module.output("intrinsics", hc::table<double>().of(5, 1).in(Coord::kLeftRectified),
+      module.output("intrinsics", hc::table().of(1, 5).in(Coord::kLeftRectified),
                     "fx, fy, cx, cy [px], baseline [m] of the rectified pair, with "
                     "the first image and then once a second");
   auto cameras = module.output(
-      "cameras", hc::transformation<double>(4, 4),
+      "cameras", hc::transformation(),
       "with the intrinsics: T_head_left_eye as calibrated (coord 3004), and from the left camera "
-      "of the rectified pair to the left eye (coord 4009)");
-  module.on_demand(cameras);
+      "of the rectified pair to the left eye (coord 4009)", {.on_demand = true});
   auto file = module.parameter(
       "calibration_file", "", "",
       "written by stereo_calibration and calibrate; without it an ideal pair is assumed",
@@ -46,7 +44,7 @@ int main(int argc, char** argv) {
 
   std::optional<hc::vision::StereoCalibration> calibration;
   std::optional<Rectifier> rectifiers[2];
-  hc::gaze::HeadCalibration mounting;  // of the eyes, as far as it is known
+  hc::gaze::HeadCalibration mounting;  // of the eyes; the default if unknown
   bool has_message = false;            // of `calibration`
   bool is_new = true;                  // since `intrinsics` was sent
   std::optional<std::int64_t> time;    // of the last image
@@ -60,19 +58,15 @@ int main(int argc, char** argv) {
     T_left_rectified.linear() =
         Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(calibration->R1.val)
             .transpose();
-    cameras.send(hc::transformation(eyes.T_head_eye(hc::gaze::Side::Left))
-                     .in(hc::transform_coord(Coord::kHead, Coord::kLeftEye))
-                     .at(*time));
-    cameras.send(hc::transformation(T_left_rectified)
-                     .in(hc::transform_coord(Coord::kLeftEye, Coord::kLeftRectified))
-                     .at(*time));
+    cameras.send(hc::numbers_of(eyes.T_head_eye(hc::gaze::Side::Left)), *time, hc::transform_coord(Coord::kHead, Coord::kLeftEye));
+    cameras.send(hc::numbers_of(T_left_rectified), *time, hc::transform_coord(Coord::kLeftEye, Coord::kLeftRectified));
   };
   auto send_intrinsics = [&] {
     if (!time) return;
     send_cameras();
     const auto camera = calibration->rectified();
     intrinsics.send(
-        hc::table({camera.fx, camera.fy, camera.cx, camera.cy, calibration->baseline()}).at(*time));
+        {camera.fx, camera.fy, camera.cx, camera.cy, calibration->baseline()}, *time);
   };
   auto prepare = [&](Eye eye, const hc::Header& header) {
     const cv::Size size(header.width, header.height);
@@ -94,7 +88,7 @@ int main(int argc, char** argv) {
   module.on(head, [&](const auto& message) {
     const auto found = hc::gaze::HeadCalibration::of(message.numbers());
     if (!found) return module.log_once("invalid calibration", found.error().detail);
-    if (has_message && found->numbers() == mounting.numbers()) return;  // it is sent repeatedly
+    if (has_message && found->numbers() == mounting.numbers()) return;  // sent repeatedly
     mounting = *found;
     has_message = is_new = true;
     for (auto& rectifier : rectifiers) rectifier.reset();
@@ -107,8 +101,8 @@ int main(int argc, char** argv) {
     prepare(Eye::Right, images[1]->header);
     time = first.header.time;
     if (std::exchange(is_new, false)) send_intrinsics();
-    std::array drafts = {left_rectified.loan(images[0]->header.width, images[0]->header.height),
-                         right_rectified.loan(images[1]->header.width, images[1]->header.height)};
+    std::array drafts = {left_rectified.loan(images[0]->header.height, images[0]->header.width),
+                         right_rectified.loan(images[1]->header.height, images[1]->header.width)};
     cv::parallel_for_({0, 2}, [&](const cv::Range& eyes) {
       for (auto eye = static_cast<std::size_t>(eyes.start);
            eye < static_cast<std::size_t>(eyes.end); ++eye)

@@ -23,7 +23,7 @@ struct Blob : ddsi_serdata {
     is_too_large = wanted > static_cast<const BlobType*>(type)->max_bytes;
     if (is_too_large) return nullptr;
     size = wanted;
-    bytes.resize((wanted + 3) / 4 * 4);  // they are sent in words
+    bytes.resize((wanted + 3) / 4 * 4);  // sent in words of 4 bytes
     return bytes.data();
   }
   void copy(std::size_t at, std::span<std::byte> to) const {
@@ -31,7 +31,7 @@ struct Blob : ddsi_serdata {
   }
 
   std::vector<std::byte> bytes;
-  std::size_t size = 0;  // without what fills the last word
+  std::size_t size = 0;  // without padding
   bool is_too_large = false;
 };
 

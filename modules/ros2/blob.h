@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Messages of Cyclone DDS that are bytes of CDR and nothing more: of any type, none compiled in.
+// Cyclone DDS messages as plain CDR bytes, so that no types are compiled in.
 
 #include <cstddef>
 #include <span>
@@ -12,13 +12,13 @@
 
 #include <ros/cdr.h>
 
-/// A topic type by its DDS name, without a key and without type information.
-/// @param max_bytes  longer messages come without their bytes: is_too_large().
+/// A topic type by its DDS name, without key or type information.
+/// @param max_bytes  longer messages arrive without bytes: is_too_large().
 ddsi_sertype* make_blob_type(const std::string& name, std::size_t max_bytes);
 
-/// A message for dds_writecdr(), which takes it over.
+/// A message for dds_writecdr(), which takes ownership.
 ddsi_serdata* make_blob(const ddsi_sertype& type, const hc::ros::Pieces& pieces);
 
-/// What dds_takecdr() gave: its bytes, with their encapsulation header.
+/// The bytes of a message from dds_takecdr(), with the encapsulation header.
 std::span<const std::byte> bytes_of(const ddsi_serdata& blob);
 bool is_too_large(const ddsi_serdata& blob);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Talks to ROS 2: outputs of the graph as topics, topics as outputs here; without ROS installed.
+// Bridges to ROS 2, without ROS installed: publishes outputs of the graph as topics, and subscribes
+// topics as outputs of this module.
 #include <atomic>
 #include <cstdlib>
 #include <functional>
@@ -30,7 +31,7 @@ std::string environment(const char* name, const char* otherwise) {
   return value == nullptr || *value == '\0' ? otherwise : value;
 }
 
-/// The domain of a parameter below 0 is that of ROS_DOMAIN_ID.
+/// The DDS domain; for a negative parameter that of ROS_DOMAIN_ID.
 std::uint32_t domain_of(std::int64_t parameter) {
   if (parameter >= 0) return static_cast<std::uint32_t>(parameter);
   const std::string text = environment("ROS_DOMAIN_ID", "0");
@@ -47,7 +48,7 @@ struct Destination {
   std::function<void(hc::Message)> send;
 };
 
-/// A topic that is subscribed, and where its messages go.
+/// A subscribed topic, and the destination of its messages.
 struct Subscription {
   Mapping subscribed;
   const Destination& to;
@@ -67,9 +68,9 @@ struct Frames {
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"ros2", "Talks to ROS 2: outputs of the graph as topics, and topics here."};
+  hc::Module module{"ros2", "Talks to ROS 2: outputs of the graph as topics, and topics here.", {.keep_running = true}};
   auto poses =
-      module.input("frames", hc::transformation<double>(4, 4), "poses, linked by `hc run`");
+      module.input("frames", hc::transformation(), "poses, linked by `hc run`");
   std::map<std::string, Destination> outputs;
   const auto add = [&]<typename K>(const std::string& name, const K& kind, const char* doc) {
     outputs[name] = {kind.type,
@@ -77,19 +78,19 @@ int main(int argc, char** argv) {
                        output.send(hc::MessageOf<K>{std::move(message)});
                      }};
   };
-  add("image", hc::rgb_image<std::uint8_t>(), "of Image or CompressedImage");
-  add("grey", hc::intensity_image<std::uint8_t>(), "of Image or CompressedImage");
+  add("image", hc::rgb_image(), "of Image or CompressedImage");
+  add("grey", hc::intensity_image(), "of Image or CompressedImage");
   add("depth", hc::intensity_image<float>(), "of Image [m], 0 unknown");
   auto points = hc::position<float>();
   points.type.info.encoding = hc::Encoding::Binary;  // there are many
   add("points", points, "of PointCloud2");
-  add("camera", hc::table<double>().of(5, 1), "of CameraInfo: fx, fy, cx, cy [px], baseline [m]");
-  add("pose", hc::transformation<double>(4, 4), "of PoseStamped or TFMessage");
-  add("twist", hc::table<double>().of(6, 1), "of Twist: linear, angular");
-  add("joints", hc::table<double>(),
+  add("camera", hc::table().of(1, 5), "of CameraInfo: fx, fy, cx, cy [px], baseline [m]");
+  add("pose", hc::transformation(), "of PoseStamped or TFMessage");
+  add("twist", hc::table().of(1, 6), "of Twist: linear, angular");
+  add("joints", hc::table(),
       "of JointState: a row of positions, then of velocities and efforts");
   add("text", hc::string(), "of String");
-  add("numbers", hc::table<double>(), "of Float64MultiArray");
+  add("numbers", hc::table(), "of Float64MultiArray");
   const auto publish = module.parameter(
       "publish", "", "", "outputs as topics: MODULE.PORT=/topic[:TYPE] [rate=HZ], …; frames=/tf",
       {.fixed = true});
@@ -100,16 +101,16 @@ int main(int argc, char** argv) {
   const auto domain = module.parameter("domain", -1, "", "of DDS; -1: ROS_DOMAIN_ID, else 0",
                                        {.min = -1, .max = 232, .fixed = true});
   const auto range = module.parameter(
-      "range", "", "", "whom it talks to; empty: ROS_AUTOMATIC_DISCOVERY_RANGE, else LOCALHOST",
+      "range", "", "", "discovery range; empty: ROS_AUTOMATIC_DISCOVERY_RANGE, else LOCALHOST",
       {.choices = {"", "LOCALHOST", "SUBNET", "OFF"}, .fixed = true});
   const auto distro = module.parameter(
-      "distro", "", "", "the release of ROS, which differs for humble; empty: ROS_DISTRO",
+      "distro", "", "", "ROS distribution; humble has another protocol; empty: ROS_DISTRO",
       {.fixed = true});
   const auto frames = module.parameter("frames", std::string(hc::frames::kDefaultHead), "",
                                        "coordinate systems, by `hc run`; else of the default head",
                                        {.fixed = true});
 
-  // From other threads; what they say again and again waits in bounds.
+  // Called on other threads. The number of queued lines is bounded.
   const auto loop = hc::value_or_end(hc::Loop::make());
   std::atomic<int> waiting{0};
   const auto log = [&](const std::string& kind, const std::string& line) {
@@ -151,10 +152,10 @@ int main(int argc, char** argv) {
     if (published.empty() && subscribed.empty())
       throw hc::ModuleError(
           hc::Error{hc::Code::Invalid,
-                    "neither publish nor subscribe says a topic: publish=eyes.left=/left"});
+                    "neither publish nor subscribe names a topic: publish=eyes.left=/left"});
     if (!is_node(*node))
       throw hc::ModuleError(hc::Error{
-          hc::Code::Invalid, "node: \"" + *node + "\" is not of letters, digits and _ alone"});
+          hc::Code::Invalid, "node: \"" + *node + "\" may contain only letters, digits and _"});
     joints = hc::value_or_end(hc::ros::GraphJoints::read(*frames));
     const std::string release = distro->empty() ? environment("ROS_DISTRO", "") : *distro;
     participant = hc::value_or_end(Participant::open(
@@ -175,13 +176,12 @@ int main(int argc, char** argv) {
       }
       if (!graph)
         throw hc::ModuleError(
-            "HC_GRAPH does not name a running graph, NAME.PID, whose outputs could be published; "
+            "HC_GRAPH does not name a running graph, NAME.PID; "
             "run this module in a graph, or add it to one: hc graph add ros2 ros2");
       publications.emplace_back(*graph, each, joints->names, *participant, log);
     }
     arrived.raise();
   });
-  module.keep_running();
   module.on_readable([&] { return loop->descriptor(); },
                      [&] { hc::succeed_or_end(loop->turn(std::chrono::milliseconds(0))); });
 
@@ -193,9 +193,9 @@ int main(int argc, char** argv) {
                        : hc::Result<hc::Message>(bytes.error());
     if (message && !message->plain()) message = hc::expand(*message);
     if (!message)
-      return module.log_once(
-          "refused of " + subscribed.topic,
-          subscribed.topic + ": refused; others are counted: " + message.error().detail);
+      return module.log_once("refused of " + subscribed.topic,
+                             subscribed.topic + ": message refused (further ones are counted): " +
+                                 message.error().detail);
     if (message->header.time == 0) message->header.time = module.now();
     message->header.coord = subscribed.coord;
     from.to.send(std::move(*message));

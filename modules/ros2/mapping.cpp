@@ -21,7 +21,7 @@ hc::Error wrong(std::string_view what, const std::string& why) {
   return {hc::Code::Invalid, "\"" + std::string(what) + "\" " + why};
 }
 
-/// What is between characters of `at`, and not empty.
+/// The non-empty parts between characters of `at`.
 std::vector<std::string_view> split(std::string_view text, std::string_view at) {
   std::vector<std::string_view> parts;
   while (true) {
@@ -32,19 +32,18 @@ std::vector<std::string_view> split(std::string_view text, std::string_view at) 
   }
 }
 
-/// At the first `=`; the second part is empty where there is none.
+/// Splits at the first `=`; without one the second part is empty.
 std::pair<std::string_view, std::string_view> pair_of(std::string_view word) {
   const auto at = std::min(word.find('='), word.size());
   return {word.substr(0, at), word.substr(std::min(at + 1, word.size()))};
 }
 
-/// "/topic:TYPE" in two; the type is none where it is not said.
+/// Reads "/topic[:TYPE]".
 hc::Status read_topic(std::string_view text, Mapping& each) {
   const auto colon = std::min(text.find(':'), text.size());
   each.topic = text.substr(0, colon);
   if (!is_topic(each.topic))
-    return wrong(each.topic,
-                 "is no topic: it begins with / and has letters, digits, _ and / in it");
+    return wrong(each.topic, "is not a topic name: / followed by letters, digits, _ and /");
   if (colon == text.size()) return {};
   const auto name = text.substr(colon + 1);
   each.type = hc::ros::type_of(name);
@@ -52,19 +51,19 @@ hc::Status read_topic(std::string_view text, Mapping& each) {
     std::string known;
     for (const auto& schema : hc::ros::schemas())
       if (!hash_of(schema.type).empty()) known += (known.empty() ? "" : ", ") + schema.name;
-    return wrong(name, "is no type that is known here, which are " + known);
+    return wrong(name, "is not a supported type: " + known);
   }
   return {};
 }
 
-/// The words behind an entry's first. @param is_subscribed  it may have coord= and child=, too.
+/// Reads the options after an entry's first word. @param is_subscribed  also allows coord=, child=.
 hc::Status read_options(std::span<const std::string_view> words, bool is_subscribed,
                         Mapping& each) {
   for (const auto word : words) {
     const auto [key, value] = pair_of(word);
     if (key == "rate") {
       if (!hc::read_number(value, each.rate) || !(each.rate > 0) || !std::isfinite(each.rate))
-        return wrong(word, "is no rate above 0 [Hz]");
+        return wrong(word, "is not a rate > 0 [Hz]");
     } else if (key == "qos") {
       if (value != "reliable" && value != "best_effort")
         return wrong(word, "is neither qos=reliable nor qos=best_effort");
@@ -72,12 +71,13 @@ hc::Status read_options(std::span<const std::string_view> words, bool is_subscri
     } else if (key == "joints") {
       for (const auto joint : split(value, "+")) each.choice.joints.emplace_back(joint);
     } else if (key == "coord" && is_subscribed) {
-      if (!hc::read_number(value, each.coord) || each.coord < 0) return wrong(word, "is no coord");
+      if (!hc::read_number(value, each.coord) || each.coord < 0)
+        return wrong(word, "is not a coord");
     } else if (key == "child" && is_subscribed) {
       each.choice.child = value;
     } else {
-      return wrong(word, is_subscribed ? "is none of rate=, qos=, coord=, child=, joints="
-                                       : "is none of rate=, qos=, joints=");
+      return wrong(word, is_subscribed ? "is not one of rate=, qos=, coord=, child=, joints="
+                                       : "is not one of rate=, qos=, joints=");
     }
   }
   return {};
@@ -93,12 +93,12 @@ hc::Result<Mapping> parse_published(std::string_view entry) {
   if (auto good = read_topic(topic, each); !good) return good.error();
   const bool is_frames = each.port == "frames";
   if (!is_frames && each.port.find('.') == std::string::npos)
-    return wrong(each.port, "is no output: MODULE.PORT; or frames");
+    return wrong(each.port, "is neither an output MODULE.PORT nor frames");
   if (is_frames && each.type && *each.type != Type::TfMessage)
-    return wrong(entry, "is not of type tf2_msgs/msg/TFMessage, as frames are");
+    return wrong(entry, "needs the type tf2_msgs/msg/TFMessage");
   if (is_frames) each.type = Type::TfMessage;
   if (!is_frames && each.type == Type::TfMessage)
-    return wrong(entry, "is of a type that frames alone have: frames=/tf");
+    return wrong(entry, "has a type reserved for frames: frames=/tf");
   if (auto good = read_options(std::span(words).subspan(1), false, each); !good)
     return good.error();
   if (!each.choice.joints.empty() && !each.type) each.type = Type::JointState;
@@ -120,15 +120,15 @@ hc::Result<Mapping> parse_subscribed(std::string_view entry) {
   if (auto good = read_topic(topic, each); !good) return good.error();
   if (!each.type) each.type = source->types.front();
   if (std::ranges::count(source->types, *each.type) == 0)
-    return wrong(entry, "does not fit: " + hc::ros::schema(*each.type).name + " does not become " +
-                            each.port);
+    return wrong(entry, "does not fit: " + hc::ros::schema(*each.type).name +
+                            " does not convert to " + each.port);
   if (auto good = read_options(std::span(words).subspan(1), true, each); !good) return good.error();
   if ((each.type == Type::TfMessage) == each.choice.child.empty())
-    return wrong(entry, "says child=FRAME, or has to, as tf2_msgs/msg/TFMessage alone does");
+    return wrong(entry, "needs child=FRAME if and only if its type is tf2_msgs/msg/TFMessage");
   return each;
 }
 
-/// @param once  what each has of its own.
+/// @param once  the member that must be unique.
 hc::Result<std::vector<Mapping>> parse(std::string_view text,
                                        hc::Result<Mapping> (*parse_entry)(std::string_view),
                                        std::string Mapping::*once) {
@@ -140,8 +140,8 @@ hc::Result<std::vector<Mapping>> parse(std::string_view text,
     auto each = parse_entry(entry);
     if (!each) return each.error();
     if (!each->choice.joints.empty() && each->type != Type::JointState)
-      return wrong(entry, "says joints=, as sensor_msgs/msg/JointState alone does");
-    if (!seen.insert((*each).*once).second) return wrong((*each).*once, "is there twice");
+      return wrong(entry, "may have joints= only with the type sensor_msgs/msg/JointState");
+    if (!seen.insert((*each).*once).second) return wrong((*each).*once, "is repeated");
     all.push_back(std::move(*each));
   }
   if (all.size() > kMost)

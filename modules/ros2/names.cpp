@@ -34,7 +34,7 @@ std::string dds_topic(std::string_view topic) {
 }
 
 bool is_topic(std::string_view name) {
-  constexpr std::size_t kMost = 247;  // of DDS names, less what ROS puts before
+  constexpr std::size_t kMost = 247;  // maximum of DDS, less the prefix of ROS
   if (name.size() < 2 || name.size() > kMost || name.front() != '/') return false;
   while (!name.empty()) {
     name.remove_prefix(1);

@@ -16,10 +16,10 @@
 
 namespace {
 
-constexpr std::uint32_t kLastDomain = 232;  // whose ports there are
+constexpr std::uint32_t kLastDomain = 232;  // limited by port numbers
 constexpr std::size_t kSmall = std::size_t{1} << 20, kLarge = std::size_t{64} << 20;  // [byte]
 
-// rmw_dds_common/msg: an id has 16 bytes, of ROS before Iron 24.
+// rmw_dds_common/msg: an id has 16 bytes, before ROS Iron 24.
 template <std::size_t kSize>
 using Id = std::array<std::uint8_t, kSize>;
 
@@ -80,7 +80,7 @@ std::size_t max_bytes(std::string_view type) {
   return kSmall;
 }
 
-/// A topic, and its type as Cyclone keeps it.
+/// Creates a topic; returns it with Cyclone's type object.
 hc::Result<std::pair<hc::dds::Entity, const ddsi_sertype*>> open_topic(dds_entity_t participant,
                                                                        const std::string& name,
                                                                        const std::string& type) {
@@ -108,7 +108,7 @@ std::string configuration(std::string_view range) {
   const std::string loopback =
       "<General><AllowMulticast>false</AllowMulticast><Interfaces>"
       "<NetworkInterface address=\"127.0.0.1\"/></Interfaces></General>";
-  // 32 participants on a machine, as of ROS.
+  // 32 participants on a machine, as in ROS.
   const std::string many =
       "<ParticipantIndex>auto</ParticipantIndex>"
       "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>";
@@ -126,7 +126,7 @@ std::string configuration(std::string_view range) {
 hc::Status Writer::write(const hc::ros::Pieces& pieces) {
   const auto written = dds_writecdr(writer_.handle(), make_blob(*type_, pieces));
   if (written == DDS_RETCODE_TIMEOUT)
-    return hc::Error{hc::Code::System, "a subscriber reads too slowly"};
+    return hc::Error{hc::Code::System, "a subscriber is too slow"};
   if (written != DDS_RETCODE_OK) return hc::dds::failed("written", written);
   return {};
 }
@@ -143,7 +143,7 @@ void Reader::take(const Take& take) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       if (infos[i].valid_data) {
         if (is_too_large(*blobs[i]))
-          take(hc::Error{hc::Code::TooLarge, "larger than any message of its type is to be here"});
+          take(hc::Error{hc::Code::TooLarge, "larger than the limit for its type"});
         else
           take(bytes_of(*blobs[i]));
       }
@@ -158,11 +158,11 @@ hc::Result<std::unique_ptr<Participant>> Participant::open(
   const std::string config = configuration(options.range);
   if (config.empty())
     return hc::Error{hc::Code::Invalid, "\"" + options.range +
-                                            "\" is no range; there are LOCALHOST, SUBNET, "
-                                            "SYSTEM_DEFAULT and OFF"};
+                                            "\" is not one of LOCALHOST, SUBNET, "
+                                            "SYSTEM_DEFAULT, OFF"};
   if (options.domain > kLastDomain)
     return hc::Error{hc::Code::Invalid, "domain " + std::to_string(options.domain) +
-                                            " is none of 0 to " + std::to_string(kLastDomain)};
+                                            " is not in 0 to " + std::to_string(kLastDomain)};
   dds_set_log_sink(hand_over, const_cast<std::function<void(std::string_view)>*>(&log));
   std::unique_ptr<Participant> made(new Participant);
   made->options_ = options;
@@ -174,9 +174,9 @@ hc::Result<std::unique_ptr<Participant>> Participant::open(
   dds_qset_userdata(qos.get(), kEnclave.data(), kEnclave.size());
   const auto participant = dds_create_participant(options.domain, qos.get(), nullptr);
   if (participant < 0)
-    return hc::dds::failed("no participant of domain " + std::to_string(options.domain) +
-                               ", which has 33 on a machine",
-                           participant);
+    return hc::dds::failed(
+        "no participant of domain " + std::to_string(options.domain) + " (33 per machine)",
+        participant);
   made->participant_ = hc::dds::Entity(participant);
   auto discovery = made->open_writer("ros_discovery_info",
                                      dds_type("rmw_dds_common/msg/ParticipantEntitiesInfo"),

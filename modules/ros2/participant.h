@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// This module among the nodes of ROS 2: a participant of DDS with writers and readers, by Cyclone.
+// A ROS 2 node: a DDS participant with writers and readers, by Cyclone DDS.
 
 #include <cstdint>
 #include <functional>
@@ -20,14 +20,14 @@ struct ddsi_sertype;
 
 struct Qos {
   bool reliable = true;
-  bool transient_local = false;  ///< late readers get what was last
-  std::int32_t depth = 10;       ///< of the newest that are kept
+  bool transient_local = false;  ///< late subscribers get the last messages
+  std::int32_t depth = 10;       ///< messages kept
 };
 
-/// Writes a topic, from one thread at a time. Ends before its participant.
+/// Writes a topic, from one thread at a time. Must be destroyed before its participant.
 class Writer {
  public:
-  /// Errors: System (a reader takes them too slowly: the message is dropped after 0.1 s).
+  /// Errors: System (a subscriber is too slow: the message is dropped after 0.1 s).
   hc::Status write(const hc::ros::Pieces& pieces);
 
  private:
@@ -36,13 +36,13 @@ class Writer {
   const ddsi_sertype* type_ = nullptr;
 };
 
-/// Reads a topic. Ends before its participant.
+/// Reads a topic. Must be destroyed before its participant.
 class Reader {
  public:
-  /// A message: its bytes, valid within the call; or why there are none.
+  /// Gets the bytes of a message, valid within the call, or an error.
   using Take = std::function<void(const hc::Result<std::span<const std::byte>>&)>;
 
-  /// Takes what is there, as many as are kept at most.
+  /// Takes the messages available, at most `depth`.
   void take(const Take& take);
 
  private:
@@ -55,13 +55,13 @@ class Participant {
  public:
   struct Options {
     std::uint32_t domain = 0;
-    /// As ROS_AUTOMATIC_DISCOVERY_RANGE: LOCALHOST, by loopback alone; SUBNET, SYSTEM_DEFAULT; OFF.
+    /// As ROS_AUTOMATIC_DISCOVERY_RANGE: LOCALHOST (loopback only), SUBNET, SYSTEM_DEFAULT, OFF.
     std::string range = "LOCALHOST";
     std::string node = "hypercolumn";
-    bool is_humble = false;  ///< as ROS 2 before Iron: longer ids, no hashes of types
+    bool is_humble = false;  ///< ROS 2 before Iron: longer ids, no type hashes
   };
 
-  /// @param log  gets what Cyclone DDS warns of, from any thread; outlives the participant.
+  /// @param log  called on any thread with warnings of Cyclone DDS; must outlive the participant.
   /// Errors: Invalid (no such range or domain), System.
   static hc::Result<std::unique_ptr<Participant>> open(
       const Options& options, const std::function<void(std::string_view)>& log);
@@ -71,7 +71,7 @@ class Participant {
 
   /// From any thread. Errors: System.
   hc::Result<Writer> write(const std::string& topic, hc::ros::Type type, const Qos& qos);
-  /// @param arrived  called on a thread of Cyclone's when there is something to take; outlives the
+  /// @param arrived  called on a thread of Cyclone DDS when messages arrive; must outlive the
   ///   participant.
   /// Errors: System.
   hc::Result<Reader> read(const std::string& topic, hc::ros::Type type, const Qos& qos,
@@ -81,15 +81,15 @@ class Participant {
   Participant() = default;
   hc::Result<Writer> open_writer(const std::string& topic, const std::string& type,
                                  std::string_view hash, const Qos& qos);
-  /// Says to ROS which node this is, and what it writes and reads. @param added  to that list.
+  /// Announces the node and its topics to ROS, after adding a writer or reader to a list.
   hc::Status announce(std::vector<dds_guid_t>* list = nullptr, dds_entity_t added = 0);
 
   Options options_;
   hc::dds::Entity domain_, participant_;
   Writer discovery_;
-  std::mutex mutex_;  // for the lists
+  std::mutex mutex_;  // guards the lists
   std::vector<dds_guid_t> writers_, readers_;
 };
 
-/// The configuration of Cyclone DDS for a range; empty: there is none of that name.
+/// The configuration of Cyclone DDS for a range; empty if there is no such range.
 std::string configuration(std::string_view range);

@@ -13,13 +13,13 @@ namespace {
 
 using hc::ros::Type;
 
-/// What messages of a port become, by what its module says of itself.
+/// The default type for a port, from its module's description.
 hc::Result<Type> type_of(const hc::RunningGraph& graph, const std::string& port) {
   const auto dot = port.find('.');
   const auto answer = hc::ask(graph, {"describe " + port.substr(0, dot)});
   if (!answer) return answer.error();
-  const hc::Error unknown{hc::Code::Unsupported, "what it becomes is not known; name the type: " +
-                                                     port + "=/topic:std_msgs/msg/String"};
+  const hc::Error unknown{hc::Code::Unsupported,
+                          "unknown message type; name it: " + port + "=/topic:std_msgs/msg/String"};
   if (!answer->is_ok || answer->rows.empty()) return unknown;
   const auto description = hc::parse_description(answer->rows.front());
   if (!description) return unknown;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// An output of the graph as a topic of ROS.
+// An output of the graph as a ROS topic.
 
 #include <functional>
 #include <map>
@@ -13,16 +13,16 @@
 #include "mapping.h"
 #include "participant.h"
 
-/// What a topic is like to its other end.
+/// The QoS of a topic.
 Qos qos_of(const Mapping& published, hc::ros::Type type);
 
 class Publication {
  public:
-  /// Called on another thread: a problem, by its kind.
+  /// Logs a problem; called on another thread.
   using Log = std::function<void(const std::string& kind, const std::string& line)>;
 
-  /// @param frames  their names by number, for frame_ids.
-  /// @param participant, log  outlive it.
+  /// @param frames  names of frames by number, for frame_ids.
+  /// @param participant, log  must outlive the publication.
   Publication(hc::RunningGraph graph, Mapping published, std::map<std::int32_t, std::string> frames,
               Participant& participant, Log log);
 

@@ -12,7 +12,7 @@ SeenBefore::Entry* SeenBefore::set_of(Window& window, std::int64_t seq) {
   return window.entries.data() + static_cast<std::size_t>(seq % sets) * kWays;
 }
 
-/// Forgets the source that was silent longest.
+/// Forgets the source that has been silent longest.
 void SeenBefore::forget_silent(const Window* but) {
   auto silent = windows_.end();
   for (auto window = windows_.begin(); window != windows_.end(); ++window)
@@ -39,13 +39,13 @@ SeenBefore::Window& SeenBefore::window_of(std::int32_t src, hc::MonotonicTime no
   return *last_;
 }
 
-/// Doubles a window; false when it may not be larger.
+/// Doubles a window; false if it is at its maximum.
 bool SeenBefore::grow(Window& window) {
   const std::size_t size = window.entries.size();
   if (2 * size > max_of_source_) return false;
   while (room_ + size > max_ && windows_.size() > 1) forget_silent(&window);
   if (room_ + size > max_) return false;
-  // The entries of one set go to two, so there is room for each.
+  // The entries of one set are distributed over two, so each fits.
   auto old = std::exchange(window.entries, std::vector<Entry>(2 * size));
   room_ += size;
   for (const Entry& entry : old) {

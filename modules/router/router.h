@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a router does with a message, but for the way on: takes one off its ttl, and lets it pass
-// once. Pure: time is handed in and never goes back.
+// Decides whether a router forwards a message: decrements its ttl and drops duplicates. Pure: times
+// come from the caller and never go back.
 
 #include <cstdint>
 #include <memory>
@@ -12,26 +12,24 @@
 #include <hc/base/clock.h>
 #include <hc/mtp/header.h>
 
-/// Messages that came lately, to recognise one that comes again in a circle.
+/// Remembers recent messages, to recognise duplicates that return through a loop.
 ///
-/// Two are the same where src, dst, seq and time are. A message is remembered for a time, unless
-/// its source has sent `max_of_source` others since. What was not remembered is never taken for
-/// the same, so no fresh message is dropped; what was forgotten is let through once more, until its
-/// ttl ends it.
+/// Messages are equal if src, dst, seq and time are. A message is remembered for a time, unless its
+/// source has sent `max_of_source` others since. A new message is never taken for a duplicate; a
+/// duplicate of a forgotten message passes again, until its ttl is used up.
 ///
-/// Memory: 32 bytes for each message that is remembered, twice that at most, `max` in all; when
-/// there is no more, the source that was silent longest is forgotten.
+/// Memory: 32 to 64 bytes per remembered message, at most `max` messages. If full, the source that
+/// has been silent longest is forgotten.
 class SeenBefore {
  public:
   explicit SeenBefore(std::chrono::nanoseconds remember, std::size_t max_of_source = 1 << 16,
                       std::size_t max = 1 << 20)
       : remember_(remember), max_of_source_(max_of_source), max_(max) {}
 
-  /// Whether the message has come before; from now on it has. Cost: constant, but for a window that
-  /// grows.
+  /// Whether the message was seen before; remembers it. Cost: amortised constant.
   bool insert(const hc::Header& header, hc::MonotonicTime now);
 
-  /// Messages that there is room for now.
+  /// Allocated entries.
   [[nodiscard]] std::size_t room() const { return room_; }
 
  private:
@@ -41,8 +39,8 @@ class SeenBefore {
     hc::MonotonicTime came{};
     std::int32_t dst = 0;
   };
-  /// Of one source. A message can be at kWays places behind seq modulo the number of such sets, so
-  /// that the newest of a source that counts are all there.
+  /// The messages of one source: a set-associative table with kWays entries per set, indexed by seq
+  /// modulo the number of sets. So consecutive seq never evict each other.
   struct Window {
     std::vector<Entry> entries;
     hc::MonotonicTime latest{};
@@ -61,28 +59,27 @@ class SeenBefore {
   Window* last_ = nullptr;  // of last_src_
 };
 
-/// Messages by what became of them.
+/// Messages passed and dropped.
 struct RouterCounts {
   std::int64_t passed = 0;
-  std::int64_t ttl = 0;         ///< dropped: it had no router left to pass (R42)
-  std::int64_t seen = 0;        ///< dropped: came before
-  std::int64_t no_route = 0;    ///< dropped: no link leads to its dst
-  std::int64_t no_address = 0;  ///< dropped: dst 0, and no link takes those
+  std::int64_t ttl = 0;         ///< dropped: ttl used up (R42)
+  std::int64_t seen = 0;        ///< dropped: duplicate
+  std::int64_t no_route = 0;    ///< dropped: no link for its dst
+  std::int64_t no_address = 0;  ///< dropped: dst 0, and no link for those
 
   [[nodiscard]] std::int64_t total() const { return passed + ttl + seen + no_route + no_address; }
   /// "3 passed; dropped: 1 ttl, 0 seen before, 0 without a route, 0 without an address"
   [[nodiscard]] std::string text() const;
 };
 
-/// Judges messages and counts them.
+/// Filters messages and counts them.
 class Router {
  public:
   explicit Router(std::chrono::nanoseconds remember) : seen_(remember) {}
 
-  /// Whether the message is to be sent on. Then its ttl has been lowered, and sent() must be
-  /// called.
+  /// Whether to forward the message. If so, its ttl has been decremented, and sent() must follow.
   bool admit(hc::Header& header, hc::MonotonicTime now);
-  /// How many links have taken the message.
+  /// Counts a message by the number of links it was sent to.
   void sent(const hc::Header& header, std::size_t links);
 
   [[nodiscard]] const RouterCounts& counts() const { return counts_; }

@@ -64,8 +64,8 @@ TEST(SeenBefore, a_slow_source_takes_little_room) {
   EXPECT_EQ(seen.room(), 64U);
 }
 
-/// Beside a model that remembers everything: whatever comes, no fresh message is taken for one that
-/// was seen; and with room for all that is remembered, none that was seen for a fresh one.
+/// Compared with a model of unlimited memory: a new message is never taken for a repetition and,
+/// with enough memory, a repetition never for a new message.
 TEST(SeenBefore, random_messages_are_judged_as_by_a_memory_without_bound) {
   std::minstd_rand random(7);
   auto pick = [&](int least, int most) {

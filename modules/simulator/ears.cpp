@@ -16,7 +16,7 @@ void Ears::hear_until(std::int64_t until, const Eigen::Isometry3d& T_world_head)
   const auto end = (until - start_) * hc::room::kSoundRate / 1'000'000'000;
   if (end <= sample_) return;
   if (sound_.linked()) {
-    auto draft = sound_.loan(static_cast<std::int32_t>(end - sample_), 1);
+    auto draft = sound_.loan(1, static_cast<std::int32_t>(end - sample_));
     draft.header.time = start_ + period_end(sample_, hc::room::kSoundRate);
     for (const std::size_t side : {0U, 1U}) {
       const double distance = (T_world_head * places_[side] - kLoudspeaker).norm();

@@ -21,7 +21,7 @@ void Eyes::take(const View& view, cv::Mat* depth) {
 
 void Eyes::take(Eye& eye, const Eigen::Isometry3d& T_head_eye, const View& view, cv::Mat* depth) {
   if (!eye.output.linked() && depth == nullptr) return;
-  auto draft = eye.output.loan(camera_.width, camera_.height);
+  auto draft = eye.output.loan(camera_.height, camera_.width);
   draft.header.time = view.time;
   cv::Mat rgb = hc::as_mat(draft);
   auto light = view.light;

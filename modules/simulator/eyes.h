@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The eyes: draw what they see, as cameras would take it, and give it when a camera would.
+// The eyes: render images as the cameras would take them, and send them with a camera's latency.
 
 #include <cstdint>
 #include <deque>
@@ -13,31 +13,31 @@
 #include <room/sensor.h>
 #include "parameters.h"
 
-/// What a pair of images is taken of.
+/// The scene of a pair of images.
 struct View {
   std::int64_t time;    ///< [ns]
   std::int64_t number;  ///< of the pair
   Eigen::Isometry3d T_world_head;
   const std::vector<hc::graphics::Item>& items;
-  hc::graphics::Light light;  ///< with exposure 1
+  hc::graphics::Light light;  ///< at exposure 1
 };
 
 class Eyes {
  public:
-  using Kind = decltype(hc::rgb_image<std::uint8_t>());
+  using Kind = decltype(hc::rgb_image());
   using Output = hc::Output<Kind>;
 
   /// @param parameters, renderer  must outlive it.
   Eyes(const Parameters& parameters, const hc::room::Head& head, hc::graphics::Renderer& renderer,
        Output left, Output right);
 
-  /// Takes a pair; an image that nobody takes is not drawn, as that is most of the work.
+  /// Takes a pair. An image without a link is not rendered, which saves most of the work.
   ///
-  /// @param[out] depth  of the left image, (H, W) f32 [m], 0 where nothing is; null: unwanted.
+  /// @param[out] depth  of the left image, (H, W) f32 [m], 0 for background; may be null.
   void take(const View& view, cv::Mat* depth);
   /// Sends the images that are due [ns].
   void send_due(std::int64_t now);
-  /// Whether no image waits to be sent.
+  /// Whether all images have been sent.
   [[nodiscard]] bool empty() const { return late_.empty(); }
 
  private:
@@ -56,5 +56,5 @@ class Eyes {
   const hc::room::Head head_;
   const hc::graphics::PinholeCamera camera_;
   Eye left_, right_;
-  std::deque<std::pair<std::int64_t, Image>> late_;  // when each is to be sent [ns]
+  std::deque<std::pair<std::int64_t, Image>> late_;  // images and when to send them [ns]
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot head in a room: what its eyes see and its ears hear, and the ground truth.
+// Simulates a robot head in a room: images, sound, and the ground truth.
 #include <limits>
 #include <memory>
 #include <optional>
@@ -20,10 +20,10 @@
 
 namespace {
 
-constexpr double kTick = 250;  // how often it is looked whether an image is due [Hz]
-const Eigen::Vector3d kUnderground(0, 0, -10);  // where an absent ball is [m]
+constexpr double kTick = 250;                   // how often the schedule is checked [Hz]
+const Eigen::Vector3d kUnderground(0, 0, -10);  // position of an absent ball [m]
 
-/// What begins when the parameters are known.
+/// Made when the parameters are known.
 struct Scene {
   std::unique_ptr<hc::graphics::Renderer> renderer;
   hc::room::World world;
@@ -40,19 +40,19 @@ struct Scene {
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"simulator", "A robot head in a furnished room: eyes, ears and ground truth."};
-  auto gaze = module.input("gaze", hc::rotation<double>().in(hc::Coord::kGaze),
+  auto gaze = module.input("gaze", hc::rotation().in(hc::Coord::kGaze),
                            "roll, tilt, pan of the pan-tilt unit [rad]; straight ahead without");
   auto text = module.input("text", hc::string(), "text to write on the board");
   auto left =
-      module.output("left", hc::rgb_image<std::uint8_t>().in(hc::Coord::kLeftImage), "left eye");
+      module.output("left", hc::rgb_image().in(hc::Coord::kLeftImage), "left eye");
   auto right =
-      module.output("right", hc::rgb_image<std::uint8_t>().in(hc::Coord::kRightImage), "right eye");
-  auto sound = module.output("sound", hc::sound<std::int16_t>(2).in(hc::Coord::kSound16k),
-                             "what the ears hear, left and right");
+      module.output("right", hc::rgb_image().in(hc::Coord::kRightImage), "right eye");
+  auto sound = module.output("sound", hc::sound(2).in(hc::Coord::kSound16k),
+                             "sound at the left and right ear");
   Truth truth(module);
   const Parameters parameters{module};
 
-  // The unit says itself how the head is turned.
+  // The head's pose comes from the input `gaze`.
   hc::ModuleFrames frames{module, {.input = false}};
   std::unique_ptr<Scene> scene;
   std::string last_parameter;
@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
       if (!sound.linked()) return Eigen::Vector3d::Zero();
       return frames.fixed("head", name).translation();
     };
-    // Time begins when the world is there, which takes a while.
+    // Time starts only now, since making the world takes a while.
     const std::int64_t start = *parameters.start > 0 ? *parameters.start : module.now();
     scene.reset(new Scene{std::move(renderer), std::move(world),
                           hc::room::Ball(parameters.motion()), head, parameters.camera(),
@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
     auto fed = frames.feed("robot", "head", message.header.time, Eigen::Isometry3d(*q));
     if (!fed) module.log("gaze: " + fed.error().detail);
   });
-  module.on(text, [&](const auto& message) { write(std::string(message.characters())); });
+  module.on(text, [&](const auto& message) { write(std::string(message.text())); });
 
   auto look = [&](const Eigen::Vector3d& ball, const Eigen::Isometry3d& T_world_head) {
     const auto& camera = scene->camera;
@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
     const View view{time, scene->schedule.number(), T_world_head, scene->world.items(ball),
                     scene->world.light()};
     if (!truth.depth.linked() || *parameters.swapped) return scene->eyes.take(view, nullptr);
-    auto depth = truth.depth.loan(camera.width, camera.height);
+    auto depth = truth.depth.loan(camera.height, camera.width);
     depth.header.time = time;
     cv::Mat metres = hc::as_mat(depth);
     scene->eyes.take(view, &metres);
@@ -125,13 +125,12 @@ int main(int argc, char** argv) {
     scene->eyes.send_due(is_paced ? now : std::numeric_limits<std::int64_t>::max());
     auto& schedule = scene->schedule;
     if (*parameters.count > 0 && schedule.number() >= *parameters.count)
-      return !scene->eyes.empty();
+      return scene->eyes.empty() ? module.stop() : void();
     if (is_paced) schedule.catch_up(now);
     if (is_paced && !schedule.is_due(now, frames.awaits("world", "head", schedule.time())))
-      return true;
+      return;
     take();
     schedule.next();
-    return true;
   });
   return module.run(argc, argv);
 }

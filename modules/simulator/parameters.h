@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The simulator's parameters, and what the eyes, their faults and the ball are by them.
+// The simulator's parameters, and values derived from them.
 
 #include <string>
 
@@ -11,7 +11,7 @@
 #include <room/head.h>
 
 struct Parameters {
-  hc::Module& module;  ///< that has them
+  hc::Module& module;
 
   hc::Parameter<std::int64_t> seed = module.parameter(
       "seed", 1, "", "of the world, the ball and the noise", {.min = 0, .max = 1e9, .fixed = true});
@@ -40,10 +40,10 @@ struct Parameters {
   hc::Parameter<double> latency = module.parameter(
       "latency", 0.0, "s", "from taking an image to sending it", {.min = 0, .max = 2});
   hc::Parameter<bool> swapped =
-      module.parameter("swapped", false, "", "the cables of the eyes are mixed up");
+      module.parameter("swapped", false, "", "the eyes' cables are swapped");
 
   hc::Parameter<double> zero_pan =
-      module.parameter("zero_pan", 0.0, "rad", "where the eyes look with the unit at 0",
+      module.parameter("zero_pan", 0.0, "rad", "pan of the eyes with the unit at 0",
                        {.min = -0.5, .max = 0.5, .fixed = true});
   hc::Parameter<double> zero_tilt = module.parameter("zero_tilt", 0.0, "rad", "the same of tilt",
                                                      {.min = -0.5, .max = 0.5, .fixed = true});
@@ -58,7 +58,7 @@ struct Parameters {
                        {.min = -0.5, .max = 0.5, .fixed = true});
 
   hc::Parameter<std::string> ball =
-      module.parameter("ball", "roll", "", "what the ball does",
+      module.parameter("ball", "roll", "", "motion of the ball",
                        {.choices = {"still", "roll", "bounce", "hide", "absent"}, .fixed = true});
   hc::Parameter<double> ball_speed = module.parameter(
       "ball_speed", 0.349, "rad/s", "as seen from the robot", {.min = 0, .max = 10, .fixed = true});
@@ -74,7 +74,7 @@ struct Parameters {
   [[nodiscard]] hc::room::HeadFaults faults() const {
     return {*zero_pan, *zero_tilt, *offset_roll, *offset_pitch, *offset_yaw};
   }
-  /// Each eye's; its optical axis meets the middle of the image.
+  /// Of both eyes; the principal point is the centre of the image.
   [[nodiscard]] hc::graphics::PinholeCamera camera() const {
     hc::graphics::PinholeCamera camera;
     camera.width = static_cast<int>(*width);

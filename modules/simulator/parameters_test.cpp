@@ -11,7 +11,7 @@ namespace {
 class ParametersTest : public testing::Test {
  protected:
   void set(std::string_view name, std::string_view text) {
-    for (const auto& each : module.parameters())
+    for (const auto& each : hc::ModuleAccess::parameters(module))
       if (each->name == name) {
         ASSERT_TRUE(each->set(text)) << name;
         return;

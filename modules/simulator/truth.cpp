@@ -12,12 +12,12 @@ namespace {
 using hc::Coord;
 
 hc::TransformationKind<double> in_world(std::int32_t frame) {
-  return hc::transformation<double>(4, 4).in(hc::transform_coord(Coord::kWorld, frame));
+  return hc::transformation().in(hc::transform_coord(Coord::kWorld, frame));
 }
 
 template <typename Output>
 void send_pose(Output& output, std::int64_t time, const Eigen::Isometry3d& pose) {
-  if (output.linked()) output.send(hc::transformation(pose).at(time));
+  if (output.linked()) output.send(hc::numbers_of(pose), time);
 }
 
 }  // namespace
@@ -42,18 +42,18 @@ std::array<double, 10> row_of(const hc::room::RoomMarker& marker) {
 
 Truth::Truth(hc::Module& module)
     : depth(module.output("depth", hc::intensity_image<float>().in(Coord::kDepth),
-                          "truth: depth of the left image [m], 0 where nothing is")),
+                          "truth: depth of the left image [m], 0 for background")),
       head_pose_(module.output("head_pose", in_world(Coord::kHead),
                                "truth: T_world_head as the images were taken")),
       left_pose_(module.output("left_pose", in_world(Coord::kLeftEye), "truth: T_world_left_eye")),
       right_pose_(
           module.output("right_pose", in_world(Coord::kRightEye), "truth: T_world_right_eye")),
-      ball_(module.output("ball", hc::position<double>(6).in(Coord::kWorld),
+      ball_(module.output("ball", hc::position(6).in(Coord::kWorld),
                           "truth: the ball's middle [m] and velocity [m/s]")),
-      ball_seen_(module.output("ball_seen", hc::table<double>().of(4, 1),
+      ball_seen_(module.output("ball_seen", hc::table().of(1, 4),
                                "truth: u, v, radius of the ball in the left image [px], "
-                               "share of it that is seen")),
-      markers_(module.output("markers", hc::table<double>(),
+                               "visible share")),
+      markers_(module.output("markers", hc::table(),
                              "truth, a row each: kind (0 aruco, 1 apriltag, 2 colour), id, side "
                              "[m], x y z [m] and qx qy qz qw in the world")),
       board_(module.output("board", hc::string(), "truth: text on the board")) {}
@@ -75,15 +75,15 @@ void Truth::send_ball(std::int64_t time, const hc::room::Ball::State& ball, bool
     ball_.send(std::move(draft));
   }
   const auto [u, v, radius, share] = seen(ball.position, T_world_left, camera);
-  ball_seen_.send(hc::table({u, v, radius, is_there ? share : 0}).at(time));
+  ball_seen_.send({u, v, radius, is_there ? share : 0}, time);
 }
 
 void Truth::send_board(std::int64_t time, const std::string& text) {
-  board_.send(hc::string(text).at(time));
+  board_.send(text, time);
 }
 
 void Truth::send_markers(std::int64_t time, const std::vector<hc::room::RoomMarker>& markers) {
-  auto draft = markers_.loan(10, static_cast<std::int32_t>(markers.size()));
+  auto draft = markers_.loan(static_cast<std::int32_t>(markers.size()), 10);
   draft.header.time = time;
   for (std::size_t i = 0; i < markers.size(); ++i)
     std::ranges::copy(row_of(markers[i]), draft.matrix().row(i).begin());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How it really is: the outputs that a score is measured by.
+// The outputs with ground truth, for scoring.
 
 #include <array>
 #include <cstdint>
@@ -16,10 +16,9 @@
 #include <room/head.h>
 #include <room/markers.h>
 
-/// How the ball is seen: u, v, radius [px], share of it that is seen, 0 where it is not within the
-/// image [0 … 1].
+/// The ball in an image: u, v, radius [px], visible share (0 … 1; 0 outside the image).
 ///
-/// @param ball  its middle, in the world [m].
+/// @param ball  its centre in the world [m].
 std::array<double, 4> seen(const Eigen::Vector3d& ball, const Eigen::Isometry3d& T_world_eye,
                            const hc::graphics::PinholeCamera& camera);
 
@@ -35,18 +34,18 @@ class Truth {
 
   void send_poses(std::int64_t time, const Eigen::Isometry3d& T_world_head,
                   const hc::room::Head& head);
-  /// @param is_there  otherwise nothing of it is seen.
+  /// @param is_there  if false, the visible share is 0.
   void send_ball(std::int64_t time, const hc::room::Ball::State& ball, bool is_there,
                  const Eigen::Isometry3d& T_world_left, const hc::graphics::PinholeCamera& camera);
   void send_board(std::int64_t time, const std::string& text);
   void send_markers(std::int64_t time, const std::vector<hc::room::RoomMarker>& markers);
 
  private:
-  using Poses = hc::Output<decltype(hc::transformation<double>(4, 4))>;
-  using Tables = hc::Output<decltype(hc::table<double>())>;
+  using Poses = hc::Output<decltype(hc::transformation())>;
+  using Tables = hc::Output<decltype(hc::table())>;
 
   Poses head_pose_, left_pose_, right_pose_;
-  hc::Output<decltype(hc::position<double>(6))> ball_;
+  hc::Output<decltype(hc::position(6))> ball_;
   Tables ball_seen_, markers_;
   hc::Output<decltype(hc::string())> board_;
 };

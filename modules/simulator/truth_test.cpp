@@ -10,7 +10,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-/// A head in the world's origin, at the height of the ball, and looks along x, turned to the left.
+/// A head at the world's origin at the height of the ball, and gaze along x, turned to the left.
 Isometry3d eye(double pan) {
   Eigen::Matrix3d optical;
   optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A voice. This program is linked with eSpeak NG, which is under the GPL, version 3; the others are
-// not.
+// Speaks text. Unlike the other programs, this one links eSpeak NG, which is under the GPL 3.
 #include <optional>
 
 #include <hc/base/format.h>
@@ -14,24 +13,21 @@
 namespace {
 
 constexpr int kRate = 22050;                    // of eSpeak NG's voices [Hz]
-constexpr std::chrono::milliseconds kLook{20};  // how much later than it could a text begins
+constexpr std::chrono::milliseconds kLook{20};  // maximum gap between texts
 
 }  // namespace
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"speak", "Speaks text aloud, by eSpeak NG."};
-  auto text =
-      module.input("text", hc::string(), "what to say; UTF-8, at most 2000 characters of it");
-  module.keep(text, 16);  // as many as are said in a minute or two
-  auto sound = module.output("sound", hc::sound<std::int16_t>(1).in(hc::Coord::kSound22k),
+  auto text = module.input("text", hc::string(), "text to speak; UTF-8, cut after 2000 characters", {.keep = 16});
+  auto sound = module.output("sound", hc::sound(1).in(hc::Coord::kSound22k),
                              "a message for each text");
   auto words = module.output("words", hc::string().in(hc::Coord::kText),
                              "a message for each text, with the sound's time, and in it a row for "
                              "each word: START END WORD [s since the sound begins]; words that "
                              "eSpeak NG joins share their time by their letters");
-  auto voice =
-      module.parameter("voice", "en", "", "language or voice, as espeak-ng --voices has it");
+  auto voice = module.parameter("voice", "en", "", "language or voice, from espeak-ng --voices");
   auto rate = module.parameter("rate", 175, "1/min", "words a minute", {.min = 80, .max = 450});
   auto pitch = module.parameter("pitch", 50, "", "of the voice", {.min = 0, .max = 100});
   auto volume = module.parameter("volume", 100, "", "of the voice", {.min = 0, .max = 200});
@@ -45,7 +41,7 @@ int main(int argc, char** argv) {
   TextQueue queue;
   hc::MonotonicTime spoken_until{0};
   std::int64_t dropped = 0;
-  std::string problem;  // the last one that was logged
+  std::string problem;  // last logged
 
   module.on_start([&] {
     synthesis.emplace(hc::value_or_end(Synthesis::start()));
@@ -65,7 +61,7 @@ int main(int argc, char** argv) {
     problem.clear();
     const auto time = next.time != 0 ? next.time : module.now();
     const auto frames = speech->samples.size();
-    auto draft = sound.loan(static_cast<std::int32_t>(frames), 1);
+    auto draft = sound.loan(1, static_cast<std::int32_t>(frames));
     draft.header.time = time;
     draft.header.mode = next.mode;
     std::copy(speech->samples.begin(), speech->samples.end(), draft.matrix().numbers().begin());
@@ -79,7 +75,7 @@ int main(int argc, char** argv) {
                                                                  1'000'000'000 / kRate);
     ++said;
     last = utf8(next.characters);
-    words.send({std::move(table)});  // first, since a link may wait until the sound has been heard
+    words.send({std::move(table)});  // first, since sending the sound may block while it plays
     sound.send(std::move(draft));
   };
   auto speak_next = [&] {

@@ -17,13 +17,13 @@ namespace {
 
 constexpr std::size_t kLongest = 600;  // [s]
 
-/// What comes while a text is synthesised.
+/// Collected while a text is synthesised.
 struct Gathered {
   Speech speech;
-  std::vector<std::size_t> begins;  // of the words, in the text
+  std::vector<std::size_t> begins;  // positions of the words in the text
   std::u32string_view text;
   std::size_t most = 0;
-  double last = 0;  // the last event [s]
+  double last = 0;  // time of the last event [s]
 };
 
 void take(Gathered& gathered, const espeak_EVENT& event) {
@@ -60,8 +60,8 @@ std::vector<std::u32string_view> words_in(std::u32string_view text) {
   return words;
 }
 
-/// eSpeak NG reports some neighbours as one word, the first ("There are", "on the"): each gets a
-/// share of the time of both, by its letters.
+/// eSpeak NG reports some neighbouring words as one ("There are", "on the"). Splits them, in
+/// proportion to their letters.
 std::vector<SpokenWord> split_joined(std::u32string_view text, const std::vector<SpokenWord>& words,
                                      const std::vector<std::size_t>& begins) {
   std::vector<SpokenWord> all;
@@ -69,7 +69,7 @@ std::vector<SpokenWord> split_joined(std::u32string_view text, const std::vector
     const auto end = begins[i] + words[i].word.size();
     const auto next = i + 1 < words.size() ? std::max(end, begins[i + 1]) : text.size();
     const auto before = i == 0 ? words_in(text.substr(0, begins[0])) : words_in({});
-    // What follows without a space belongs to the same word.
+    // Text that follows without a space belongs to the same word.
     const auto space = std::min(next, text.find(U' ', end));
     const auto after = words_in(text.substr(space, next - space));
     std::vector<std::u32string_view> group = before;
@@ -104,10 +104,10 @@ extern "C" int gather(short* samples, int count, espeak_EVENT* events) {
 }  // namespace
 
 Result<Synthesis> Synthesis::start() {
-  // Once, and never ended: espeak_Terminate() waits for a thread that may have missed its call.
+  // Once, and never terminated: espeak_Terminate() can hang on a thread that missed its signal.
   static const int rate =
       espeak_Initialize(AUDIO_OUTPUT_SYNCHRONOUS, 0, nullptr, espeakINITIALIZE_DONT_EXIT);
-  if (rate <= 0) return Error{Code::System, "eSpeak NG does not start; are its data there?"};
+  if (rate <= 0) return Error{Code::System, "eSpeak NG cannot start; is its data installed?"};
   espeak_SetSynthCallback(gather);
   return Synthesis(rate);
 }
@@ -115,11 +115,11 @@ Result<Synthesis> Synthesis::start() {
 Result<Speech> Synthesis::say(std::u32string_view text, const Voice& voice) {
   static std::optional<std::string> current;
   if (voice.name != current) {
-    // It would look for a file of that name.
+    // eSpeak NG would open a file of that name.
     const bool is_name = !voice.name.empty() && voice.name.find('/') == std::string::npos &&
                          voice.name.find('.') == std::string::npos && voice.name.size() < 40;
     if (!is_name || espeak_SetVoiceByName(voice.name.c_str()) != EE_OK)
-      return Error{Code::NotFound, "there is no voice \"" + voice.name + "\""};
+      return Error{Code::NotFound, "no voice \"" + voice.name + "\""};
     current = voice.name;
   }
   espeak_SetParameter(espeakRATE, std::clamp(voice.rate, espeakRATE_MINIMUM, espeakRATE_MAXIMUM),

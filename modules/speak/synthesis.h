@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Speech out of text, by eSpeak NG.
+// Speech synthesis with eSpeak NG.
 
 #include <cstdint>
 #include <string>
@@ -9,40 +9,39 @@
 
 #include <hc/base/result.h>
 
-/// How to speak.
 struct Voice {
-  std::string name = "en";  ///< as `espeak-ng --voices` lists languages, "+f3" behind for a variant
+  std::string name = "en";  ///< as listed by `espeak-ng --voices`; with "+f3" for a variant
   int rate = 175;           ///< words a minute, 80 … 450
   int pitch = 50;           ///< 0 … 100
-  int volume = 100;         ///< 0 … 200; above 100 the loud is cut off
+  int volume = 100;         ///< 0 … 200; may clip above 100
 };
 
-/// A word, and when it is spoken [s since the beginning of the sound]. Of words that eSpeak NG
-/// joins ("on the"), each gets a share of their time by its letters.
+/// A word and its time [s since the start of the sound]. Words that eSpeak NG joins ("on the")
+/// share their time in proportion to their letters.
 struct SpokenWord {
   double start = 0, end = 0;
   std::u32string word;
 };
 
 struct Speech {
-  std::vector<std::int16_t> samples;  ///< one channel, of Synthesis::rate()
+  std::vector<std::int16_t> samples;  ///< mono, at Synthesis::rate()
   std::vector<SpokenWord> words;
 };
 
-/// eSpeak NG. A process has one of it, whose state all objects share: they are for one thread.
+/// eSpeak NG. Its state is global: all objects share it, and must be used on one thread.
 class Synthesis {
  public:
-  /// Errors: System (its data are not there).
+  /// Errors: System (its data is not installed).
   static hc::Result<Synthesis> start();
 
-  /// Speaks a text that speakable() has made, whole. SSML and phonemes in it are text like any
-  /// other. What is longer than 10 minutes is cut.
+  /// Synthesises a text from speakable(). SSML and phonemes in it are read as plain text. Cuts the
+  /// sound after 10 minutes.
   ///
   /// Errors: NotFound (no such voice), System.
-  /// Cost: about 4 ms for each second of sound.
+  /// Cost: about 4 ms per second of sound.
   hc::Result<Speech> say(std::u32string_view text, const Voice& voice);
 
-  /// Sample frames a second. [Hz]
+  /// Sample rate [Hz].
   [[nodiscard]] int rate() const { return rate_; }
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kLongestWord = 60;
 
-/// The character at the beginning of a text, with its length; nothing of what is not UTF-8.
+/// The first character of a text, and its length in bytes; nothing if it is not UTF-8.
 std::optional<std::pair<char32_t, std::size_t>> first_of(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const std::size_t size = hc::utf8_length(text);

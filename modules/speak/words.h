@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Text that is to be spoken: made harmless, and queued. Pure.
+// Sanitises and queues text to speak. Pure.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,32 +8,30 @@
 #include <string>
 #include <string_view>
 
-/// Text as it may be given to the synthesiser: what is not UTF-8, controls (which would command
-/// it), and line ends become spaces; a word longer than 60 characters is broken, and what is behind
-/// `most` characters is cut off.
+/// Text that is safe for the synthesiser: invalid UTF-8, control characters (which it would obey)
+/// and line ends become spaces; words are broken after 60 characters, and the text is cut after
+/// `most`.
 std::u32string speakable(std::string_view text, std::size_t most = 2000);
 
-/// A part of it as UTF-8.
 std::string utf8(std::u32string_view characters);
 
-/// Whether there is anything but spaces in it.
 bool is_blank(std::u32string_view characters);
 
-/// A text that waits for its turn.
+/// A queued text.
 struct WaitingText {
   std::u32string characters;
   std::int64_t time = 0;  ///< of its message
-  std::int32_t mode = 0;  ///< the same
+  std::int32_t mode = 0;  ///< of its message
 };
 
-/// Texts that wait: the newest are kept.
+/// A bounded queue of texts, which keeps the newest.
 class TextQueue {
  public:
-  /// @param most  how many may wait.
-  /// @returns  whether the oldest had to make room.
+  /// @param most  maximum length.
+  /// @returns  whether the oldest text was dropped.
   bool push(WaitingText text, std::size_t most);
   [[nodiscard]] bool empty() const { return texts_.empty(); }
-  /// The oldest; there is one.
+  /// Takes the oldest text; the queue must not be empty.
   WaitingText pop();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mouth: plays sound and writes it to a file.
+// Plays sound and writes it to a file.
 #include <client/running.h>
 #include <hc/module/module.h>
 #include <hc/os/program.h>
@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
                                  {.fixed = true});
   auto save = module.parameter(
       "save", "", "",
-      "WAV file to write, always a valid file; one that is there stays, and x_2.wav is written",
+      "WAV file to write, valid at any time; an existing x.wav is kept, and x_2.wav is written",
       {.fixed = true});
   auto rate =
       module.parameter("rate", 0, "Hz", "of the device and the file, 0: that of the first sound",
@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   auto channels =
       module.parameter("channels", 0, "", "the same", {.min = 0, .max = 8, .fixed = true});
   auto buffer =
-      module.parameter("buffer", 1.0, "s", "sound that may wait to be played before more is taken",
+      module.parameter("buffer", 1.0, "s", "sound queued for playing before the input blocks",
                        {.min = 0, .max = 60, .fixed = true});
 
   std::optional<Player> player;

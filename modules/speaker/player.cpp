@@ -13,7 +13,7 @@ using hc::audio::Format;
 
 namespace {
 
-constexpr int kPoll = 5;  // how often free room is looked for [ms]
+constexpr int kPoll = 5;  // how often the free space is checked [ms]
 
 }  // namespace
 
@@ -37,7 +37,7 @@ Status Player::play(const hc::Message& message, const Format& format) {
   return samples ? play(samples->numbers(), format) : samples.error();
 }
 
-/// Has the converter for a sound; what was converted otherwise is given out before.
+/// Prepares a converter for a format; first plays the rest of the previous one.
 Status Player::prepare(Converter::Scalar scalar, const Format& format) {
   if (!format_)
     format_ = Format{options_.rate > 0 ? options_.rate : format.rate,
@@ -53,7 +53,7 @@ Status Player::prepare(Converter::Scalar scalar, const Format& format) {
   return {};
 }
 
-/// Writes to the file; once it cannot be written, sound is played all the same.
+/// Writes to the file. After an error, sound is only played.
 void Player::save(std::span<const std::int16_t> samples) {
   if (options_.file.empty() || file_error_) return;
   Status written;

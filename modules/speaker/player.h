@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Where sound goes: a loudspeaker, which may be disconnected at any time, and a WAV file.
+// Plays sound on a loudspeaker, which may disconnect at any time, and writes it to a WAV file.
 
 #include <chrono>
 #include <cstdint>
@@ -20,36 +20,35 @@
 #include <sound/wav.h>
 
 struct PlayerOptions {
-  bool plays = true;   ///< false: to the file alone
-  std::string device;  ///< SDL's name; "" the default one
-  std::string file;    ///< "" for none
-  int rate = 0;        ///< what the device and the file get [Hz]; 0: that of the first sound
-  int channels = 0;    ///< the same
-  double buffer = 1;   ///< how much may wait to be played before more is taken [s]
+  bool plays = true;   ///< false: only writes the file
+  std::string device;  ///< SDL's name; "": the default
+  std::string file;    ///< "": none
+  int rate = 0;        ///< of the device and the file [Hz]; 0: that of the first sound
+  int channels = 0;    ///< of the device and the file; 0: those of the first sound
+  double buffer = 1;   ///< queued sound at which play() blocks [s]
 };
 
-/// Plays sound and writes it to a file. Each change of the device is logged once.
+/// Logs each change of the device once.
 class Player {
  public:
   static constexpr std::chrono::seconds kTimeout{1};
-  static constexpr std::chrono::milliseconds kLook{100};  ///< how often look() is to be called
-  /// @param stop  descriptor that is readable when waiting is to end.
+  static constexpr std::chrono::milliseconds kLook{100};  ///< period of look()
+  /// @param stop  descriptor that becomes readable to end a wait.
   Player(PlayerOptions options, hc::LogSink log, int stop)
       : options_(std::move(options)), log_(std::move(log)), stop_(stop) {}
 
-  /// Takes a sound; waits while more than `buffer` waits to be played. Without a device, or when it
-  /// has played nothing for kTimeout, the sound is dropped and counted; the file gets it all the
-  /// same.
+  /// Plays a sound; blocks while more than `buffer` is queued. If there is no device, or it has
+  /// played nothing for kTimeout, the sound is dropped and counted, but still written to the file.
   ///
-  /// Errors: Unsupported (such a format), System.
+  /// Errors: Unsupported (format), System.
   template <typename T>
   hc::Status play(std::span<const T> samples, const hc::audio::Format& format);
-  /// The same of a message of that format, i16 or f32.
+  /// Plays a message of that format, i16 or f32.
   hc::Status play(const hc::Message& message, const hc::audio::Format& format);
 
-  /// Checks whether the device is connected, and opens it again.
+  /// Checks whether the device is connected, and reopens it if not.
   void look();
-  /// Plays what is left, and waits until it has been played.
+  /// Plays the rest, and waits until it has been played.
   hc::Status finish();
 
   /// Messages dropped without a device.
@@ -67,13 +66,13 @@ class Player {
   PlayerOptions options_;
   hc::LogSink log_;
   int stop_;
-  std::optional<hc::audio::Format> format_;  // of device and file, once it is known
+  std::optional<hc::audio::Format> format_;  // of device and file, once known
   std::optional<hc::audio::Converter> converter_;
   std::optional<hc::audio::WavWriter> writer_;
   bool file_error_ = false;
   std::unique_ptr<hc::audio::Playback> playback_;
   hc::Backoff backoff_;
-  bool is_missing_ = false;               // and it is logged
-  std::optional<std::int64_t> stuck_at_;  // frames that wait in a device that plays none
+  bool is_missing_ = false;               // and logged
+  std::optional<std::int64_t> stuck_at_;  // frames queued in an unresponsive device
   std::int64_t dropped_ = 0, dropped_logged_ = 0;
 };

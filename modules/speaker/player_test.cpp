@@ -75,15 +75,15 @@ TEST_F(PlayerTest, takes_other_formats_after_the_first) {
 TEST_F(PlayerTest, takes_messages_of_either_scalar) {
   auto to_file = player({.plays = false, .device = "", .file = wav});
   const std::vector<float> halves = {0.5F, -0.5F};
-  ASSERT_TRUE(to_file.play(hc::sound<std::int16_t>(2, kSome), {8000, 2}));
-  ASSERT_TRUE(to_file.play(hc::sound<float>(2, halves), {8000, 2}));
+  ASSERT_TRUE(to_file.play(hc::sound(2).message(kSome), {8000, 2}));
+  ASSERT_TRUE(to_file.play(hc::sound<float>(2).message(halves), {8000, 2}));
   auto samples = written({8000, 2});
   ASSERT_EQ(samples.size(), 8);
   EXPECT_NEAR(samples[6], 16384, 1);
   EXPECT_NEAR(samples[7], -16384, 1);
   samples.resize(6);
   EXPECT_EQ(samples, kSome);
-  const auto failed = to_file.play(hc::table<double>({1}), {8000, 2});
+  const auto failed = to_file.play(hc::table().message({1}), {8000, 2});
   ASSERT_FALSE(failed);
   EXPECT_EQ(failed.error().code, hc::Code::Unsupported);
 }
@@ -116,7 +116,7 @@ TEST_F(PlayerTest, drops_and_counts_while_there_is_no_device) {
   auto both = player({.plays = true, .device = "", .file = wav});
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(both.play<std::int16_t>(kSome, {16000, 1}));
   EXPECT_EQ(both.dropped(), 3);
-  EXPECT_EQ(written({16000, 1}).size(), 18);  // what is not heard is written all the same
+  EXPECT_EQ(written({16000, 1}).size(), 18);  // written even if not audible
   ASSERT_EQ(log.size(), 1);
   EXPECT_TRUE(log[0].ends_with("; dropping sound")) << log[0];
   ::setenv("SDL_AUDIODRIVER", "disk", 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The geometry of two cameras, from images of a chessboard.
+// Calibrates two cameras from images of a chessboard.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -13,12 +13,12 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"stereo_calibration",
                     "Finds the geometry of two cameras from views of a chessboard."};
-  auto left = module.input("left", hc::any_image(hc::Coord::kLeftImage), "image of the left eye");
-  auto right = module.input("right", hc::any_image(hc::Coord::kRightImage),
-                            "the right eye's of the same time");
-  auto found = module.output("view", hc::table<double>(),
-                             "views so far, views wanted, with each that is taken");
-  auto result = module.output("score", hc::table<double>(),
+  auto left = module.input("left", hc::image(hc::Coord::kLeftImage), "image of the left eye");
+  auto right = module.input("right", hc::image(hc::Coord::kRightImage),
+                            "image of the right eye at the same time");
+  auto found =
+      module.output("view", hc::table(), "views taken, views wanted; after each view");
+  auto result = module.output("score", hc::table(),
                               "reprojection error of the pair, the left, the right camera [px], "
                               "mean difference of rows [px], baseline [m], views used");
   auto file = module.parameter("calibration_file", "calibration.yml", "", "where it is written",
@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
                                  {.min = hc::vision::kLeastViews, .max = 200});
   auto columns = module.parameter("columns", 9, "", "inner corners in a row of the board",
                                   {.min = 3, .max = 50, .fixed = true});
-  auto rows = module.parameter("rows", 6, "", "inner corners in a column, another number",
+  auto rows = module.parameter("rows", 6, "", "inner corners in a column, different from columns",
                                {.min = 3, .max = 50, .fixed = true});
   auto square = module.parameter("square", 0.025, "m", "side of a square",
                                  {.min = 1e-4, .max = 10, .fixed = true});
@@ -36,13 +36,13 @@ int main(int argc, char** argv) {
       "of the images' width: minimum distance of the corners from those of any other view's",
       {.min = 0, .max = 1});
 
-  std::optional<hc::vision::BoardViews> views;  // until they are calibrated by
+  std::optional<hc::vision::BoardViews> views;  // until the calibration
   std::int64_t time = 0;                        // of the last view
   auto finish = [&] {
     if (!views) return;
     const auto calibrated = hc::value_or_end(std::exchange(views, std::nullopt)->calibrate());
     hc::succeed_or_end(hc::vision::write_calibration(*file, calibrated.calibration));
-    result.send(hc::table<double>(calibrated.numbers()).at(time));
+    result.send(calibrated.numbers(), time);
     module.log(calibrated.text() + ": " + *file);
   };
   module.on_start([&] {
@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
                                        hc::value_or_drop(hc::as_mat(r)), *min_difference)))
       return;
     time = std::max(l.header.time, r.header.time);
-    found.send(hc::table({static_cast<double>(views->size()), static_cast<double>(*wanted)}));
+    found.send({static_cast<double>(views->size()), static_cast<double>(*wanted)});
     if (views->size() >= static_cast<std::size_t>(*wanted)) finish();
   });
   module.on_end(finish);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well a head follows a ball, by the truth of a simulation.
+// Scores how well a head follows a ball, against the ground truth of a simulation.
 #include <cmath>
 
 #include <frames/messages.h>
@@ -11,19 +11,17 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   constexpr auto kWorldLeftEye = hc::transform_coord(hc::Coord::kWorld, hc::Coord::kLeftEye);
-  hc::Module module{"track_score", "Compares where a head's eyes look with where a ball is."};
-  auto eye = module.input("left_pose", hc::transformation<double>(4, 4).in(kWorldLeftEye),
-                          "truth: T_world_left_eye");
+  hc::Module module{"track_score",
+                    "Compares the direction of a head's eyes with the position of a ball."};
+  auto eye = module.input("left_pose", hc::transformation().in(kWorldLeftEye),
+                          "truth: T_world_left_eye", {.keep = 64});
   auto ball =
-      module.input("ball", hc::position<double>(6).in(hc::Coord::kWorld), "truth: of the ball [m]");
-  auto seen = module.input("ball_seen", hc::table<double>().of(4, 1),
-                           "truth, of which the last number is the share that is seen");
-  auto begin = module.input("begin", hc::table<double>(),
+      module.input("ball", hc::position(6).in(hc::Coord::kWorld), "truth: of the ball [m]", {.keep = 64});
+  auto seen = module.input("ball_seen", hc::table().of(1, 4),
+                           "truth; the last number is the visible share", {.keep = 64});
+  auto begin = module.input("begin", hc::table(),
                             "the first message restarts the score: as calibrate's result");
-  module.keep(eye, 64);
-  module.keep(ball, 64);
-  module.keep(seen, 64);
-  auto result = module.output("score", hc::table<double>().of(5, 1),
+  auto result = module.output("score", hc::table().of(1, 5),
                               "RMS error [rad], time to acquire it [s], times that it came "
                               "back, longest time to acquire it then [s], samples");
   auto duration =
@@ -35,7 +33,7 @@ int main(int argc, char** argv) {
       module.parameter("timeout", 60.0, "s", "to wait for an image", {.min = 1, .max = 3600});
 
   hc::gaze::Track track;
-  std::int64_t waits = 0;  // looks since an image
+  std::int64_t waits = 0;  // periods since an image
   module.on(begin, [&](const auto&) { track.begin(); });
   module.on(
       hc::together(eye, ball, seen), [&](const auto& pose, const auto& place, const auto& share) {
@@ -47,16 +45,15 @@ int main(int argc, char** argv) {
         track.add({hc::seconds(pose.header.time), std::atan2(to.head<2>().norm(), to.z()),
                    share.numbers()[3]});
       });
-  module.generate([&] {
-    constexpr double kLook = 50;  // [Hz]
-    module.keep_rate(kLook);
-    if (static_cast<double>(++waits) > *timeout * kLook)
+  constexpr std::chrono::milliseconds kLook{20};
+  module.every(kLook, [&] {
+    if (++waits * kLook > hc::duration(*timeout))
       throw hc::ModuleError("no image within timeout");
-    if (track.duration() < *duration) return true;
+    if (track.duration() < *duration) return;
     const auto score = track.score(*within);
-    result.send(hc::table<double>(score.numbers()));
+    result.send(score.numbers());
     module.log(score.text(), hc::Level::Result);
-    return false;
+    module.stop();
   });
   return module.run(argc, argv);
 }

@@ -20,13 +20,13 @@
 
 namespace {
 
-/// Images of the same time by both eyes.
+/// Images of both eyes at the same time.
 struct Eyes {
   hc::Header header;
   cv::Mat left, right;
 };
 
-/// An image for a file, in blue, green, red.
+/// An image to save, (H, W, 3) u8 blue, green, red.
 struct Picture {
   std::filesystem::path path;
   cv::Mat bgr;
@@ -53,10 +53,10 @@ std::vector<std::string> layouts() {
 int main(int argc, char** argv) {
   hc::add_all_transports();
   namespace fs = std::filesystem;
-  hc::Module module{"view", "Shows images in a window and saves them as PNG files."};
+  hc::Module module{"view", "Shows images in a window and saves them as PNG files.", {.finish_when_stopped = true}};
   auto image =
       module.input("image",
-                   hc::any_of(hc::rgb_image<std::uint8_t>(), hc::intensity_image<std::uint8_t>(),
+                   hc::any_of(hc::rgb_image(), hc::intensity_image(),
                               hc::intensity_image<std::uint16_t>(), hc::intensity_image<float>()),
                    "an image; other than u8 in colours, blue for small values");
   auto save = module.parameter("save", "", "",
@@ -65,9 +65,8 @@ int main(int argc, char** argv) {
                                {.positional = true});
   auto window = module.parameter("window", "auto", "", "show a window",
                                  {.choices = {"auto", "yes", "no"}, .fixed = true});
-  auto monitor =
-      module.parameter("monitor", -1, "", "which windows fill, from 0 on; -1: windows do not",
-                       {.min = -1, .max = 15, .fixed = true});
+  auto monitor = module.parameter("monitor", -1, "", "monitor for full screen, from 0; -1: windows",
+                                  {.min = -1, .max = 15, .fixed = true});
   auto stay = module.parameter("stay", true, "",
                                "keep windows after the last image, until a key is pressed");
   auto stereo = module.parameter("stereo", "none", "",
@@ -79,13 +78,14 @@ int main(int argc, char** argv) {
       module.parameter("min", 0.0, "", "lower end of the colour scale; both 0: from the image");
   auto max =
       module.parameter("max", 0.0, "", "upper end of the colour scale; both 0: from the image");
-  auto count = module.parameter("count", 0, "", "end after so many images, 0: never", {.min = 0});
+  auto count =
+      module.parameter("count", 0, "", "end after this number of images, 0: never", {.min = 0});
 
   std::unique_ptr<hc::vision::Display> display;
   int seen = 0;
   Eyes eyes;
-  fs::path last;    // that was saved
-  Picture unsaved;  // the latest, where the file has an older one
+  fs::path last;    // saved
+  Picture unsaved;  // the latest, while the file has an older one
   bool has_failed = false;
   bool is_fresh = false;  // the file was replaced less than a pause ago
   module.on_start([&] {
@@ -117,16 +117,16 @@ int main(int argc, char** argv) {
     return hc::vision::with_legend(bgr, span.least, span.most, unit_of(header));
   };
   auto is_free = [](const std::string& path) {
-    std::error_code unknown;  // whether it can be written is seen then
+    std::error_code unknown;  // writing reports errors
     return !fs::exists(path, unknown);
   };
   auto write = [&](const Picture& picture) {
     auto saved = hc::vision::save_image(picture.path, picture.bgr);
     if (saved) last = picture.path;
-    if (!saved && !std::exchange(has_failed, true))  // a later one may be, and windows go on
+    if (!saved && !std::exchange(has_failed, true))  // continue: a later image may succeed
       module.log("not all images saved: " + saved.error().detail, hc::Level::Error);
   };
-  // To compress an image takes longer than to compute most.
+  // Compressing an image takes longer than computing most.
   auto write_latest = [&] {
     if (!unsaved.bgr.empty()) write(unsaved);
     unsaved = {};
@@ -149,7 +149,7 @@ int main(int argc, char** argv) {
       display->show("hypercolumn " + std::to_string(header.src), bgr);
       display->any_open();
     }
-    if (++seen == *count) std::raise(SIGTERM);  // as anybody else would end it
+    if (++seen == *count) std::raise(SIGTERM);
   };
   module.on(image, [&](const hc::Message& message) {
     const hc::Header& header = message.header;
@@ -161,17 +161,16 @@ int main(int argc, char** argv) {
     if (eyes.left.empty() || eyes.right.empty()) return;
     if (eyes.left.size() != eyes.right.size() || eyes.left.type() != eyes.right.type())
       return module.log_once("stereo", "the images of both eyes have different sizes or types");
-    // Rows keep their places only where nothing scales them afterwards.
+    // Interleaved rows must not be scaled afterwards, so scale before.
     if (display && *stereo == "rows" && !display->monitor_size().empty())
       for (cv::Mat* eye : {&eyes.left, &eyes.right})
         cv::resize(*eye, *eye, display->monitor_size());
     show(eyes.header, hc::vision::join_eyes(eyes.left, eyes.right, *stereo));
     eyes = {};
   });
-  module.finish_when_stopped();
   module.on_end([&] {
     write_latest();
-    constexpr std::chrono::milliseconds kPause{20};  // between looks for a signal
+    constexpr std::chrono::milliseconds kPause{20};  // between checks for a signal
     while (display && *stay && !hc::stop_requested() && display->any_open())
       std::this_thread::sleep_for(kPause);
   });

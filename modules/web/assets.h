@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The files of the page, which are part of the program; scripts/build_page writes the source file.
+// The page's files, compiled into the program; scripts/build_page writes the source file.
 
 #include <string_view>
 #include <vector>

@@ -30,11 +30,11 @@ std::span<const double> numbers_of(const hc::Message& message) {
 
 constexpr std::size_t kMaxText = 4096;  // [byte]
 
-/// What is wrong with a message; empty: nothing.
+/// The problem with a message; "" if none.
 std::string problem(Control control, const hc::Message& message,
                     const std::set<std::int32_t>& modes) {
   auto is_none = [&](std::int32_t mode) {
-    return "mode " + std::to_string(mode) + " is none of the graph's";
+    return "mode " + std::to_string(mode) + " is not in the graph";
   };
   const auto& header = message.header;
   switch (control) {
@@ -62,16 +62,16 @@ std::string problem(Control control, const hc::Message& message,
       return {};
     case Control::Bid:
       if (!is(message, hc::MatrixType::Table, 1) || header.mode <= 0)
-        return "a bid is a table 1 x 1 of 1 x f64 with the mode it is for";
+        return "a bid is a table 1 x 1 of 1 x f64 with a mode";
       if (numbers_of(message)[0] < 0 || numbers_of(message)[0] > 1) return "a bid is from 0 to 1";
       if (!modes.contains(header.mode)) return is_none(header.mode);
       return {};
   }
-  return "no control has this src";
+  return "unknown src";
 }
 
 hc::Message withdrawn(const hc::Message& bid) {
-  auto message = static_cast<hc::Message>(hc::table({0.0}));
+  auto message = static_cast<hc::Message>(hc::table().message({0.0}));
   message.header.mode = bid.header.mode;
   return message;
 }
@@ -83,8 +83,7 @@ hc::Result<std::vector<Order>> Driver::take(hc::Message message,
                                             hc::MonotonicTime now) {
   const auto src = message.header.src;
   const auto control = static_cast<Control>(src);
-  const std::string wrong =
-      src < kControls ? problem(control, message, modes) : "no control has this src";
+  const std::string wrong = src < kControls ? problem(control, message, modes) : "unknown src";
   if (!wrong.empty())
     return hc::Error{hc::Code::Malformed, "src " + std::to_string(src) + ": " + wrong};
   heard_ = now;
@@ -95,8 +94,7 @@ hc::Result<std::vector<Order>> Driver::take(hc::Message message,
     const auto limit = kOldest.count();
     if (header.time < wall - limit || header.time > wall + limit)
       return hc::Error{hc::Code::Invalid,
-                       "the image that was pointed at is not of now: its time differs by more than "
-                       "1 s"};
+                       "the image is not current: its time differs by more than 1 s"};
   } else {
     header.time = wall;
   }
@@ -105,7 +103,7 @@ hc::Result<std::vector<Order>> Driver::take(hc::Message message,
   if (control == Control::Stick)
     is_pushed_ = std::ranges::any_of(numbers_of(message), [](double x) { return x != 0; });
   if (control == Control::Bid) {
-    // A bid for another task takes the place of the one before, with no gap between them.
+    // Withdraw the previous task's bid after the new one is sent, so that there is no gap.
     const auto before = std::exchange(
         bid_, numbers_of(message)[0] > 0 ? std::optional(message.keep()) : std::nullopt);
     bid_sent_ = now;
@@ -130,7 +128,7 @@ std::vector<Order> Driver::tick(std::int64_t wall, hc::MonotonicTime now) {
 
 std::vector<Order> Driver::leave(std::int64_t wall) {
   std::vector<Order> orders;
-  if (std::exchange(is_pushed_, false)) orders.push_back({Control::Stick, hc::table({0.0, 0.0})});
+  if (std::exchange(is_pushed_, false)) orders.push_back({Control::Stick, hc::table().message({0.0, 0.0})});
   if (bid_) orders.push_back({Control::Bid, withdrawn(*std::exchange(bid_, std::nullopt))});
   for (auto& order : orders) order.message.header.time = wall;
   return orders;

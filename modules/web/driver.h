@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What one who drives commands, from a page's messages (spec/page.md, W12 and W13), and that
-// nothing is commanded when they stop. Pure: time is handed in.
+// Turns a page's messages into the driver's commands (spec/page.md, W12 and W13), and ends the
+// commands when the messages stop. Pure: times come from the caller.
 
 #include <optional>
 #include <set>
@@ -11,7 +11,7 @@
 #include <hc/base/result.h>
 #include <hc/mtp/message.h>
 
-/// The outputs of `web`, by the `src` of the page's messages.
+/// The outputs of `web`; the values are the `src` of the page's messages.
 enum class Control : std::int32_t { Alive, Stick, Rotation, Target, Text, Bid };
 inline constexpr int kControls = 6;
 
@@ -22,29 +22,28 @@ struct Order {
 
 class Driver {
  public:
-  /// A driver who has sent nothing for so long commands nothing.
+  /// After this silence, all commands end.
   static constexpr std::chrono::milliseconds kSilence{200};
-  /// How often a bid is repeated.
+  /// Period of a bid.
   static constexpr std::chrono::milliseconds kBid{100};
-  /// The image in which a target is may be so old, or ahead of the clock.
+  /// Maximum age of a target's image, and maximum time ahead of the clock.
   static constexpr std::chrono::nanoseconds kOldest{1'000'000'000};
 
-  /// Takes a message of the page, which gets the time of its arrival, but for a target: that has
-  /// the time of its image.
-  /// @param modes  the numbers of those that the graph has; @param wall  now [ns].
-  /// @returns  what is to be sent. Errors: Malformed (not as the table says), Invalid (a target in
-  ///     an image that is too old; nothing comes of it).
+  /// Takes a message of the page and stamps it with its arrival; a target keeps its image's time.
+  /// @param modes  of the graph. @param wall  now [ns].
+  /// @returns  the commands to send. Errors: Malformed (does not match the table), Invalid (the
+  ///     image of a target is too old; the target is ignored).
   hc::Result<std::vector<Order>> take(hc::Message message, const std::set<std::int32_t>& modes,
                                       std::int64_t wall, hc::MonotonicTime now);
 
-  /// To be called every few milliseconds: repeats the bid, or ends what is commanded after silence.
+  /// Call every few milliseconds: repeats the bid, or ends the commands after a silence.
   std::vector<Order> tick(std::int64_t wall, hc::MonotonicTime now);
 
-  /// Ends what is commanded: the driver has left.
+  /// Ends the commands when the driver leaves.
   std::vector<Order> leave(std::int64_t wall);
 
  private:
   hc::MonotonicTime heard_{}, bid_sent_{};
-  bool is_pushed_ = false;          // the stick is out of its middle
-  std::optional<hc::Message> bid_;  // that is repeated
+  bool is_pushed_ = false;          // the stick
+  std::optional<hc::Message> bid_;  // repeated
 };

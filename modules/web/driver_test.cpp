@@ -23,10 +23,10 @@ hc::Message from(Control control, hc::Message message, std::int32_t coord = 0,
 }
 
 hc::Message stick(double left, double down) {
-  return from(Control::Stick, hc::table({left, down}));
+  return from(Control::Stick, hc::table().message({left, down}));
 }
 hc::Message bid(double salience, int mode) {
-  return from(Control::Bid, hc::table({salience}), 0, mode);
+  return from(Control::Bid, hc::table().message({salience}), 0, mode);
 }
 
 double number(const Order& order, std::size_t i = 0) {
@@ -41,19 +41,19 @@ TEST(Driver, what_is_commanded_is_passed_on_with_a_time) {
   EXPECT_EQ(orders.front().message.header.time, kWall);
   EXPECT_EQ(number(orders.front(), 1), -1);
   using hc::Coord;
-  EXPECT_TRUE(driver.take(from(Control::Rotation, hc::rotation(0.1, 0.2, 0.3), Coord::kSupervisor),
+  EXPECT_TRUE(driver.take(from(Control::Rotation, hc::rotation().message({0.1, 0.2, 0.3}), Coord::kSupervisor),
                           kModes, kWall, {}));
-  EXPECT_TRUE(driver.take(from(Control::Target, hc::position(400., 300., 0.), Coord::kRightImage),
+  EXPECT_TRUE(driver.take(from(Control::Target, hc::position().message({400., 300., 0.}), Coord::kRightImage),
                           kModes, kWall, {}));
-  EXPECT_TRUE(driver.take(from(Control::Text, hc::string("hello")), kModes, kWall, {}));
+  EXPECT_TRUE(driver.take(from(Control::Text, hc::string().message("hello")), kModes, kWall, {}));
 }
 
 TEST(Driver, what_comes_is_of_now_and_addressed_to_nobody) {
   constexpr std::int64_t kHour = 3'600'000'000'000, kSecond = 1'000'000'000;
   Driver driver;
   for (const std::int64_t time : {std::int64_t{1}, kWall - kHour, kWall + kHour}) {
-    hc::Message messages[] = {stick(1, 0), bid(1, 5), from(Control::Text, hc::string("hello")),
-                              from(Control::Rotation, hc::rotation(0., 0., 0.), 14)};
+    hc::Message messages[] = {stick(1, 0), bid(1, 5), from(Control::Text, hc::string().message("hello")),
+                              from(Control::Rotation, hc::rotation().message({0., 0., 0.}), 14)};
     for (auto& message : messages) {
       message.header.time = time;
       message.header.dst = 7;
@@ -61,8 +61,8 @@ TEST(Driver, what_comes_is_of_now_and_addressed_to_nobody) {
       EXPECT_EQ(orders.front().message.header.time, kWall);
       EXPECT_EQ(orders.front().message.header.dst, 0);
     }
-    // A target keeps the time of its image, which is to be a recent one.
-    auto target = from(Control::Target, hc::position(1., 1., 0.), 7, 5);
+    // A target keeps the time of its image, which must be recent.
+    auto target = from(Control::Target, hc::position().message({1., 1., 0.}), 7, 5);
     target.header.time = time;
     EXPECT_EQ(hc::refused(driver.take(target, kModes, kWall, {})).code, hc::Code::Invalid);
     target.header.time = kWall - kSecond / 2;
@@ -78,19 +78,19 @@ TEST(Driver, anything_else_is_refused) {
   const hc::Message wrong[] = {
       stick(1.1, 0),
       stick(kNan, 0),
-      from(Control::Stick, hc::table({0.0})),
-      from(Control::Stick, hc::table({0.f, 0.f})),
-      from(Control::Rotation, hc::rotation(0., 0., 0.), 3),
-      from(Control::Target, hc::position(0., 0., 0.), hc::Coord::kWorld),
-      from(Control::Target, hc::position(kNan, 0., 0.), hc::Coord::kLeftImage),
-      from(Control::Text, hc::table({0.0})),
-      from(Control::Text, hc::string(std::string(4097, 'a'))),
+      from(Control::Stick, hc::table().message({0.0})),
+      from(Control::Stick, hc::table<float>().message({0, 0})),
+      from(Control::Rotation, hc::rotation().message({0., 0., 0.}), 3),
+      from(Control::Target, hc::position().message({0., 0., 0.}), hc::Coord::kWorld),
+      from(Control::Target, hc::position().message({kNan, 0., 0.}), hc::Coord::kLeftImage),
+      from(Control::Text, hc::table().message({0.0})),
+      from(Control::Text, hc::string().message(std::string(4097, 'a'))),
       bid(2, 1),
       bid(0.5, 0),
-      bid(0.5, 2),  // a mode that the graph has not
-      from(Control::Text, hc::string("hello"), 0, 2),
-      from(static_cast<Control>(6), hc::table({0.0})),
-      from(static_cast<Control>(2147483647), hc::table({0.0}))};
+      bid(0.5, 2),  // a mode unknown to the graph
+      from(Control::Text, hc::string().message("hello"), 0, 2),
+      from(static_cast<Control>(6), hc::table().message({0.0})),
+      from(static_cast<Control>(2147483647), hc::table().message({0.0}))};
   for (const auto& message : wrong) {
     EXPECT_EQ(hc::refused(driver.take(message, kModes, kWall, {})).code, hc::Code::Malformed);
   }
@@ -116,7 +116,7 @@ TEST(Driver, who_is_silent_for_200_ms_commands_nothing) {
   EXPECT_EQ(ended[1].message.header.mode, 5);
   EXPECT_EQ(number(ended[1]), 0);
   EXPECT_TRUE(driver.tick(kWall, begin + milliseconds(300)).empty());
-  // And is obeyed again.
+  // And its bids are accepted again.
   EXPECT_EQ(driver.take(stick(1, 0), kModes, kWall, begin + milliseconds(400))->size(), 1U);
 }
 
@@ -125,7 +125,7 @@ TEST(Driver, a_sign_of_life_keeps_what_is_commanded) {
   const hc::MonotonicTime begin{};
   ASSERT_TRUE(driver.take(stick(1, 0), kModes, kWall, begin));
   EXPECT_TRUE(
-      driver.take(from(Control::Alive, hc::table({0.0})), kModes, kWall, begin + milliseconds(150))
+      driver.take(from(Control::Alive, hc::table().message({0.0})), kModes, kWall, begin + milliseconds(150))
           ->empty());
   EXPECT_TRUE(driver.tick(kWall, begin + milliseconds(300)).empty());
   EXPECT_EQ(driver.tick(kWall, begin + milliseconds(351)).size(), 1U);
@@ -136,7 +136,7 @@ TEST(Driver, another_task_takes_the_place_of_the_one_before) {
   ASSERT_TRUE(driver.take(bid(1, 4), kModes, kWall, {}));
   const auto orders = driver.take(bid(1, 5), kModes, kWall, {});
   ASSERT_EQ(orders->size(), 2U);
-  // First the new one, so that no other task has the focus between them.
+  // The new bid comes first, so that no other task gets the focus in between.
   EXPECT_EQ((*orders)[0].message.header.mode, 5);
   EXPECT_EQ(number((*orders)[0]), 1);
   EXPECT_EQ((*orders)[1].message.header.mode, 4);

@@ -88,14 +88,14 @@ struct Vp8Encoder::Codec {
     settings.g_threads = 1;
     settings.g_lag_in_frames = 0;
     settings.rc_end_usage = VPX_CBR;
-    // 0.15 bit a pixel of 20 images a second is seldom distinguished from the original.
+    // 0.15 bit per pixel at 20 Hz is hardly distinguishable from the original.
     settings.rc_target_bitrate = static_cast<unsigned>(wanted.area() * 20.0 * 0.15 / 1000) + 100;
     settings.rc_max_quantizer = 40;
-    settings.kf_mode = VPX_KF_DISABLED;  // key frames are asked for
+    settings.kf_mode = VPX_KF_DISABLED;  // key frames only on request
     if (vpx_codec_enc_init(&context, vpx_codec_vp8_cx(), &settings, 0) != VPX_CODEC_OK)
       return hc::Error{hc::Code::System, std::string("VP8: ") + vpx_codec_error(&context)};
     size = wanted;
-    constexpr int kFastest = -10;  // of -16 … 16, by the processor: fast, and still good
+    constexpr int kFastest = -10;  // of -16 … 16: fast, with good quality
     vpx_codec_control(&context, VP8E_SET_CPUUSED, kFastest);
     return {};
   }
@@ -121,7 +121,7 @@ hc::Result<hc::Message> Vp8Encoder::encode(const hc::Message& message, bool is_k
                colours.channels() == 4 ? cv::COLOR_RGBA2YUV_I420 : cv::COLOR_RGB2YUV_I420);
   vpx_img_wrap(&codec.image, VPX_IMG_FMT_I420, static_cast<unsigned>(size.width),
                static_cast<unsigned>(size.height), 1, codec.planes.data);
-  constexpr int kPeriod = 50;  // [ms], by which the rate is kept
+  constexpr int kPeriod = 50;  // assumed by the rate control [ms]
   if (vpx_codec_encode(&codec.context, &codec.image, codec.frames++ * kPeriod, kPeriod,
                        is_key ? VPX_EFLAG_FORCE_KF : 0, VPX_DL_REALTIME) != VPX_CODEC_OK)
     return hc::Error{hc::Code::System, std::string("VP8: ") + vpx_codec_error(&codec.context)};
@@ -130,7 +130,7 @@ hc::Result<hc::Message> Vp8Encoder::encode(const hc::Message& message, bool is_k
     if (packet->kind != VPX_CODEC_CX_FRAME_PKT) continue;
     const auto& frame = packet->data.frame;
     hc::Message coded =
-        hc::table<std::uint8_t>(std::span(static_cast<const std::uint8_t*>(frame.buf), frame.sz));
+        hc::table<std::uint8_t>().message(std::span(static_cast<const std::uint8_t*>(frame.buf), frame.sz));
     const auto info = coded.header.info;
     const auto width = coded.header.width;
     coded.header = message.header;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Messages as a page wants them: scaled down, JPEG, VP8 (spec/page.md, W9).
+// Converts messages for a page: scales down, encodes as JPEG or VP8 (spec/page.md, W9).
 
 #include <memory>
 #include <string>
@@ -10,16 +10,16 @@
 
 enum class Form { Raw, Jpeg, Vp8 };
 
-/// Whether a message is an image that JPEG and VP8 can hold: colour or grey, of u8.
+/// Whether a message is an image for JPEG and VP8: u8, colour or grey.
 bool is_picture(const hc::Header& header);
 
-/// A message of an image, a vector field or a map with at most `width` elements in a row: images of
-/// u8 by area, others by every n-th element. All other messages, and with width 0, as they are.
+/// Scales an image, vector field or map to at most `width` elements in a row: u8 images by area,
+/// others by every n-th element. Other messages are unchanged, and all with width 0.
 ///
-/// Errors: Unsupported (OpenCV has no matrix of its scalar).
+/// Errors: Unsupported (OpenCV has no such scalar).
 hc::Result<hc::Message> scaled(const hc::Message& message, int width);
 
-/// Encodes images of one stream as VP8 (RFC 6386), for one frame at a time without delay.
+/// Encodes the images of one stream as VP8 (RFC 6386), frame by frame without delay.
 class Vp8Encoder {
  public:
   Vp8Encoder();
@@ -27,9 +27,9 @@ class Vp8Encoder {
   Vp8Encoder(const Vp8Encoder&) = delete;
   Vp8Encoder& operator=(const Vp8Encoder&) = delete;
 
-  /// @param message  where is_picture(). An odd last column or row is cut off.
-  /// @param is_key  encode a key frame; the first one, and one of another size, always is.
-  /// @returns  a table of u8, 1 × N, the frame's bytes, with the header's src, seq, time, mode,
+  /// @param message  is_picture(). An odd last column or row is cut off.
+  /// @param is_key  encode a key frame; the first frame, and the first of a new size, always is.
+  /// @returns  a table 1 × N of u8, the frame's bytes, with the image's src, seq, time, mode,
   /// coord. Errors: Unsupported (less than 2 × 2), System.
   hc::Result<hc::Message> encode(const hc::Message& message, bool is_key);
 
@@ -38,5 +38,5 @@ class Vp8Encoder {
   std::unique_ptr<Codec> codec_;
 };
 
-/// Whether a VP8 frame can be shown without those before it.
+/// Whether a VP8 frame can be decoded without earlier frames.
 bool is_key_frame(const hc::Message& vp8);

@@ -16,7 +16,7 @@ hc::Message ramp(int width, int height) {
   std::vector<std::uint8_t> pixels;
   for (int i = 0; i < width * height; ++i)
     pixels.insert(pixels.end(), 3, static_cast<std::uint8_t>(i % width));
-  hc::Message message = hc::rgb_image<std::uint8_t>(width, height, pixels);
+  hc::Message message = hc::rgb_image().message(height, width, pixels);
   message.header.seq = 7;
   message.header.time = 5;
   message.header.coord = hc::Coord::kLeftImage;
@@ -37,14 +37,14 @@ TEST(Scaled, images_shrink_by_area) {
 TEST(Scaled, other_fields_are_sampled_and_all_else_stays) {
   std::vector<float> depth(6 * 4);
   for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = static_cast<float>(i);
-  const auto small = scaled(hc::intensity_image<float>(6, 4, depth), 2);
+  const auto small = scaled(hc::intensity_image<float>().message(4, 6, depth), 2);
   ASSERT_TRUE(small);
   EXPECT_EQ(small->header.width, 2);
   EXPECT_EQ(small->header.height, 2);
   EXPECT_EQ(small->view<float>()->at(1, 1), depth[3 * 6 + 3]);
   EXPECT_EQ(scaled(ramp(200, 100), 0)->header.width, 200);
   EXPECT_EQ(scaled(ramp(200, 100), 200)->header.width, 200);
-  EXPECT_EQ(scaled(hc::table({1.0, 2.0, 3.0}), 1)->header.width, 3);
+  EXPECT_EQ(scaled(hc::table().message({1.0, 2.0, 3.0}), 1)->header.width, 3);
 }
 
 TEST(Vp8, frames_decode_to_what_was_encoded) {

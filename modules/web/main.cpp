@@ -19,10 +19,10 @@
 
 namespace {
 
-constexpr std::uint32_t kTexts = 8;  // to be spoken, that wait at most
-constexpr std::uint32_t kBids = 4;   // the newest and those that it takes the place of
+constexpr std::uint32_t kTexts = 8;  // queue of texts to speak
+constexpr std::uint32_t kBids = 4;   // queue of bids: the newest and withdrawals
 
-/// An output by which a driver commands.
+/// An output for the driver's commands.
 struct Commanded {
   std::function<void(const hc::Message&)> send;
   std::function<bool()> linked;
@@ -33,7 +33,7 @@ void open_in_browser(const std::string& url) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
   const pid_t child = ::fork();
   if (child != 0) return;
-  ::close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);  // the server's sockets
+  ::close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);  // so that it does not inherit the server's sockets
   ::execlp("xdg-open", "xdg-open", url.c_str(), nullptr);
   ::_exit(127);
 }
@@ -42,31 +42,24 @@ void open_in_browser(const std::string& url) {
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"web", "Serves a page: the graph live, its streams, and the driver's seat."};
+  hc::Module module{"web", "Serves a page: the graph live, its streams, and the driver's seat.", {.keep_running = true}};
   auto stopped = module.input("stopped", hc::table<std::uint8_t>().of(1, 1),
-                              "from workspace: 1 while the robot is stopped");
-  module.keep(stopped);
-  auto stick = module.output("stick", hc::table<double>().of(2, 1),
-                             "left > 0, down > 0, each -1 to 1, from who drives");
-  auto rotation = module.output("rotation", hc::rotation<double>().in(hc::Coord::kSupervisor),
-                                "roll, pitch, yaw of their head [rad]");
-  auto target = module.output("target", hc::position<double>(),
-                              "where they point: x, y in the left (7) or right (8) image [px]");
-  auto text = module.output("text", hc::string(), "to be spoken");
-  auto bid = module.output("bid", hc::table<double>(), "for the task they have chosen");
+                              "from workspace: 1 while the robot is stopped", {.keep = 1});
+  auto stick = module.output("stick", hc::table().of(1, 2),
+                             "left > 0, down > 0, each -1 to 1, from the driver", {.keep = 1});
+  auto rotation = module.output("rotation", hc::rotation().in(hc::Coord::kSupervisor),
+                                "roll, pitch, yaw of the driver's head [rad]", {.keep = 1});
+  auto target = module.output("target", hc::position(),
+                              "selected point: x, y in the left (7) or right (8) image [px]", {.keep = 1});
+  auto text = module.output("text", hc::string(), "to speak", {.keep = kTexts});
+  auto bid = module.output("bid", hc::table(), "for the task chosen by the driver", {.keep = kBids});
   auto stop = module.output("stop", hc::table<std::uint8_t>().of(1, 1),
-                            "1, repeated: the robot is to stop; 0, repeated: not, but a page is "
-                            "open; 2: a person clears all stops; 3: no page is open any more");
-  // The stop is never held up by who does not take what a driver sends.
-  module.never_waits(stick);
-  module.never_waits(rotation);
-  module.never_waits(target);
-  module.never_waits(text, kTexts);
-  module.never_waits(bid, kBids);
-  module.never_waits(stop);
+                            "1, repeated: stop the robot; 0, repeated: no stop, and a page is "
+                            "open; 2: a person clears all stops; 3: no page is open any more", {.keep = 1});
+  // A slow reader of the driver's commands must never delay the stop.
   auto listen = module.parameter(
       "listen", "127.0.0.1", "",
-      "IP address; other machines can reach any but 127.0.0.1, with TLS alone", {.fixed = true});
+      "IP address; any but 127.0.0.1 is open to other machines, with TLS only", {.fixed = true});
   auto port = module.parameter("port", 8470, "", "the next nine are tried too; 0: any",
                                {.min = 0, .max = 65526, .fixed = true});
   auto tls = module.parameter("tls", false, "", "use TLS on 127.0.0.1 too", {.fixed = true});
@@ -80,18 +73,18 @@ int main(int argc, char** argv) {
   auto frames =
       module.parameter("frames", "", "", "coordinate systems, by `hc run`", {.fixed = true});
   auto leave =
-      module.parameter("leave", 0.0, "s", "end when no page has been open for so long; 0: never",
+      module.parameter("leave", 0.0, "s", "end after this time without an open page; 0: never",
                        {.min = 0, .max = 1e6});
 
   const auto make_loop = [] { return hc::value_or_end(hc::Loop::make()); };
-  const auto stops = make_loop(), loop = make_loop();  // the stop comes first
+  const auto stops = make_loop(), loop = make_loop();  // stops have priority
   Robot robot;
   std::optional<Stop> wanted;
-  hc::MonotonicTime seen{};  // when a page was open
+  hc::MonotonicTime seen{};  // when a page was last open
 
-  std::int64_t ordered = 0;  // when a person stopped the robot or cleared that [ns]
+  std::int64_t ordered = 0;  // when a person last stopped the robot or cleared the stop [ns]
   auto send_stop = [&](Stop::Word word, std::int64_t said) {
-    stop.send(hc::table({static_cast<std::uint8_t>(word)}).at(said));
+    stop.send({static_cast<std::uint8_t>(word)}, said);
   };
   const auto control_of = [](auto& output) -> Commanded {
     return {[&](const hc::Message& message) { output.send({message}); },
@@ -139,14 +132,13 @@ int main(int argc, char** argv) {
               });
             },
             [&](hc::Level level, std::string_view line) {
-              // What fails for a page is no failure of the run.
+              // An error of a page is not an error of the run.
               const auto told = level == hc::Level::Notice ? level : hc::Level::Info;
               loop->post([&, told, kept = std::string(line)] { module.log(kept, told); });
             }}));
     if (*browser && web::is_local(*listen)) open_in_browser(url);
     seen = module.monotonic();
   });
-  module.keep_running();
   for (auto* each : {stops.get(), loop.get()})
     module.on_readable([each] { return each->descriptor(); },
                        [each] { hc::succeed_or_end(each->turn(std::chrono::milliseconds(0))); });
@@ -158,7 +150,7 @@ int main(int argc, char** argv) {
     wanted->hear(message.numbers()[0] != 0, module.monotonic());
     show_stopped();
   });
-  // Nothing while the server hangs: a stop could not arrive.
+  // Nothing while the server hangs, since a stop could not arrive.
   auto is_guarded = [&]() -> std::optional<bool> {
     if (module.monotonic() - robot.served.load() > Stop::kHung) return std::nullopt;
     return robot.sessions > 0;

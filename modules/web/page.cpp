@@ -19,11 +19,11 @@ namespace {
 
 using Rows = std::vector<std::string>;
 
-// The src of what a page is sent; the first two are the graph's (GraphReport).
+// The src of messages to a page; the first two are the graph's (GraphReport).
 constexpr std::int32_t kState = 1, kLog = 2, kSession = 3, kAnswer = 4;
-constexpr std::size_t kMaxLog = 200;                          // lines for a page that opens
-constexpr std::size_t kMaxStates = 8, kMaxWaiting = 512;      // messages that wait for a slow page
-constexpr int kGoing = 1001, kInvalid = 1007, kTaken = 4409;  // as kEnd
+constexpr std::size_t kMaxLog = 200;                          // lines sent when a page opens
+constexpr std::size_t kMaxStates = 8, kMaxWaiting = 512;      // messages queued for a slow page
+constexpr int kGoing = 1001, kInvalid = 1007, kTaken = 4409;  // close codes, as kEnd
 
 constexpr const char* kPolicyText =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
@@ -46,18 +46,18 @@ web::Reply made_of(int status, decltype(web::Reply::fields) fields, std::string 
   return reply;
 }
 
-/// Why a session with a right may not do what needs another.
+/// The error for a session that lacks a right.
 std::string lacks(web::Right has, web::Right needed) {
   return "this session may " + std::string(name_of(has)) + "; that needs the right to " +
          std::string(name_of(needed));
 }
 
-/// What is no UTF-8, of the streams of a file, is replaced.
+/// Replaces invalid UTF-8, e.g. in the names of recorded streams.
 std::string dump(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// One of the recordings in a folder, or a list of them.
+/// Serves a recording in a folder, or the list of them.
 web::Reply reply_with_recording(const std::string& folder, const std::string& path) {
   web::Reply reply;
   reply.aside = [folder, path] {
@@ -111,12 +111,12 @@ Page::Page(Options options, web::Access& access, web::Server& server, Robot& rob
       {[this](const auto& state, std::string_view json) { take_state(state, json); },
        [this](const auto&, std::string_view json) { take_log(json); }, [this] { close(); }});
   if (!watched)
-    callbacks_.log(hc::Level::Info, "the graph cannot be seen: " + watched.error().detail);
+    callbacks_.log(hc::Level::Info, "cannot observe the graph: " + watched.error().detail);
 }
 
 Page::~Page() = default;
 
-// What is asked for by HTTP.
+// HTTP.
 
 web::Reply Page::reply(const web::Request& request) {
   if (!access_.is_host(request.host))
@@ -127,17 +127,17 @@ web::Reply Page::reply(const web::Request& request) {
   const auto right = access_.right_of(request.cookies);
   if (!right)
     return refusal(401,
-                   "This page needs the URL that was printed when the graph started; each counts "
+                   "This page needs the URL that was printed when the graph started; each works "
                    "once, and the log has a new one.");
   if (request.is_socket) {
     if (!access_.is_origin(request.origin, request.host))
-      return refusal(403, "a page from elsewhere may not use this server");
+      return refusal(403, "a page from another origin may not use this server");
     if (request.path == "/drive" && *right < web::Right::Drive)
       return refusal(403, lacks(*right, web::Right::Drive));
     const bool is_known =
         request.path == "/graph" || request.path == "/drive" ||
         (request.path.starts_with("/streams/") && hc::is_port_name(request.path.substr(9)));
-    return is_known ? made_of(101, {}) : refusal(404, "there is no such socket");
+    return is_known ? made_of(101, {}) : refusal(404, "no such socket");
   }
   if (request.path == "/recordings" || request.path.starts_with("/recordings/"))
     return reply_with_recording(options_.recordings, request.path);
@@ -145,14 +145,14 @@ web::Reply Page::reply(const web::Request& request) {
 }
 
 web::Reply Page::reply_to_token(const web::Request& request) {
-  // A link that opens a browser is in that program's command line.
+  // A URL that opens a browser is visible to other users in the browser's command line.
   if (request.is_another_user)
-    return refusal(403, "on this machine the page is for the user who runs the graph");
+    return refusal(403, "on this machine only the user running the graph may open the page");
   const auto session = access_.redeem(web::option(request.query, "token"));
   if (!session) {
-    // Whoever has a session already opened the link once more.
+    // With a session, the same link was opened again.
     if (!access_.right_of(request.cookies))
-      return refusal(401, "this token is wrong, or was used before; the log has a new one");
+      return refusal(401, "the token is wrong or already used; the log has a new one");
     return made_of(303, {{"Location", "/"}});
   }
   callbacks_.log(hc::Level::Notice,
@@ -168,7 +168,7 @@ web::Reply Page::reply_with_file(const web::Request& request) const {
       request.path == "/" ? std::string_view("/index.html") : std::string_view(request.path);
   const auto found = std::ranges::find_if(
       page_assets(), [&](const Asset& asset) { return asset.path == path.substr(1); });
-  if (found == page_assets().end()) return refusal(404, "there is no such file");
+  if (found == page_assets().end()) return refusal(404, "no such file");
   // Assets live as long as the program.
   return made_of(200,
                  {{"Content-Encoding", "gzip"},
@@ -256,7 +256,7 @@ web::Bytes Page::rows_message(const Rows& rows, std::int32_t src, std::int64_t s
   return text(hc::encode(message));
 }
 
-// A page that does not read gets no more: of states the newest is worth sending, of lines few.
+// A page that does not read gets no more messages; only the newest states and few lines matter.
 
 void Page::take_state(const hc::GraphState& state, std::string_view json) {
   modes_.clear();
@@ -324,12 +324,12 @@ Rows Page::invite(const Rows& words) {
 
 std::optional<Rows> Page::record(const Asked& asked, const Rows& words) {
   if (!recording_job_.expired())
-    return Rows{"a recording is just beginning or ending; try again in a moment"};
+    return Rows{"a recording is being started or ended; try again in a moment"};
   if (words.size() == 2 && words[1] == "end") {
     if (!recorder_) return Rows{"nothing is being recorded"};
     return end_recording([this, asked] { answer(asked, {"ok"}); });
   }
-  if (recorder_) return Rows{"there is a recording already: " + recorder_->name()};
+  if (recorder_) return Rows{"already recording: " + recorder_->name()};
   if (words.size() < 3)
     return Rows{"record is followed by a name and outputs, MODULE.PORT, or by end"};
   return record_aside([this, asked, words] {

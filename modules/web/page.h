@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the server serves: the page, the graph, its streams, the driver's seat and recordings
-// (spec/page.md). For the server's thread, but for what is said otherwise.
+// Serves the page, the graph, its streams, the driver's seat and recordings (spec/page.md). For the
+// server's thread, except as noted.
 
 #include <atomic>
 #include <cstdint>
@@ -23,15 +23,15 @@
 
 namespace web = hc::web;
 
-/// What the workspace says of the robot; Unknown: the graph has none, or it is silent.
+/// The stop reported by the workspace; Unknown if there is no workspace or it is silent.
 enum class Stopped : std::uint8_t { Unknown, No, Yes };
 
-/// What the module and its page share. From any thread.
+/// State shared by the module and its page. From any thread.
 struct Robot {
   std::atomic<unsigned> linked{0};  ///< a bit for each Control whose output is linked
   std::atomic<Stopped> stopped{Stopped::Unknown};
-  std::atomic<unsigned> sessions{0};        ///< pages that are open
-  std::atomic<hc::MonotonicTime> served{};  ///< when the server's thread ran
+  std::atomic<unsigned> sessions{0};        ///< open pages
+  std::atomic<hc::MonotonicTime> served{};  ///< when the server's thread last ran
 };
 
 class Page final : public web::Site {
@@ -44,8 +44,8 @@ class Page final : public web::Site {
   };
   /// Called on the server's thread.
   struct Callbacks {
-    std::function<void(Order)> order;  ///< something is commanded
-    /// The robot is to be stopped, or the stop is cleared; answered on the module's thread.
+    std::function<void(Order)> order;
+    /// Stops the robot, or clears the stop; answered on the module's thread.
     std::function<void(bool stops, Stop::Answer answer)> stop;
     hc::LogSink log;  ///< from any thread
   };
@@ -63,10 +63,10 @@ class Page final : public web::Site {
   struct Session {
     std::shared_ptr<web::WebSocket> socket;
     web::Right right = web::Right::View;
-    std::string sent;           // of what it is, the last
-    std::int64_t commands = 0;  // that came
+    std::string sent;           // last session state sent
+    std::int64_t commands = 0;  // received
   };
-  /// A command: its session, and its number among those of the session, from 0 on.
+  /// A command: its session, and its number in the session, from 0.
   struct Asked {
     std::uint64_t session = 0;
     std::int64_t number = 0;
@@ -85,16 +85,16 @@ class Page final : public web::Site {
                                         std::int64_t seq) const;
   void take_command(std::uint64_t session, const std::string& command);
   std::vector<std::string> invite(const std::vector<std::string>& words);
-  // These give what is wrong, or nothing: it is done, and answered, later.
-  /// Stops the robot, or clears that.
+  // These return the error, or nothing if they are executed and answered later.
+  /// Stops the robot, or clears the stop.
   std::optional<std::vector<std::string>> stop(const Asked& asked,
                                                const std::vector<std::string>& words);
-  /// Begins a recording, or ends it.
+  /// Starts or ends a recording.
   std::optional<std::vector<std::string>> record(const Asked& asked,
                                                  const std::vector<std::string>& words);
   /// Ends the recording, and then calls back.
   std::optional<std::vector<std::string>> end_recording(const std::function<void()>& ended);
-  /// As Server::aside(), for what begins or ends a recording.
+  /// As Server::aside(), to start or end a recording.
   std::optional<std::vector<std::string>> record_aside(web::Work work);
   void answer(const Asked& asked, const std::vector<std::string>& rows);
   void tick();
@@ -108,16 +108,16 @@ class Page final : public web::Site {
   Robot& robot_;
   const Callbacks callbacks_;
   const hc::SystemClock clock_;
-  std::uint64_t next_ = 1;  // number of a session
+  std::uint64_t next_ = 1;  // session number
   Sessions sessions_;
   std::map<std::string, std::shared_ptr<Stream>> streams_;  // by port
   std::shared_ptr<web::WebSocket> driver_socket_;
   Driver driver_;
   std::shared_ptr<Recorder> recorder_;
-  std::weak_ptr<web::Work> recording_job_;  // that begins or ends it
-  web::Bytes state_;                        // the last
-  std::set<std::int32_t> modes_;            // numbers of those that the graph has
-  std::deque<web::Bytes> log_;              // the last lines
+  std::weak_ptr<web::Work> recording_job_;  // starts or ends the recording
+  web::Bytes state_;                        // latest
+  std::set<std::int32_t> modes_;            // of the graph
+  std::deque<web::Bytes> log_;              // last lines
   std::int64_t states_ = 0, lines_ = 0;     // sent
   hc::GraphClient graph_;
 };

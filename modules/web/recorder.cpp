@@ -49,12 +49,12 @@ std::vector<Recorded> list_recordings(const std::string& folder) {
 web::Reply recorded_file(const std::string& folder, const std::string& file) {
   web::Reply reply;
   struct stat about {};
-  // Never waits for the other end of a FIFO.
+  // O_NONBLOCK, so as not to wait for the writer of a FIFO.
   if (file.ends_with(kEnding) && is_recording_name(file.substr(0, file.size() - kEnding.size())))
     reply.file =
         hc::Descriptor(::open((folder + "/" + file).c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   if (!reply.file || ::fstat(reply.file.get(), &about) != 0 || !S_ISREG(about.st_mode))
-    return web::refusal(404, "there is no such recording");
+    return web::refusal(404, "no such recording");
   reply.size = static_cast<std::uint64_t>(about.st_size);
   reply.type = "application/octet-stream";
   reply.fields = {{"Content-Disposition", "attachment; filename=\"" + file + "\""}};
@@ -67,17 +67,18 @@ hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& gr
                                                       const std::vector<std::string>& ports) {
   using hc::Code;
   if (!is_recording_name(name))
-    return hc::Error{Code::Invalid, "the name of a recording is 1 to 40 letters, digits, - and _"};
+    return hc::Error{Code::Invalid,
+                     "the name of a recording must have 1 to 40 letters, digits, - and _"};
   if (ports.empty() || ports.size() > kMaxPorts ||
       std::set<std::string>(ports.begin(), ports.end()).size() < ports.size())
-    return hc::Error{Code::Invalid, "1 to 64 different outputs are recorded, as MODULE.PORT"};
+    return hc::Error{Code::Invalid, "give 1 to 64 different outputs MODULE.PORT"};
   for (const auto& port : ports)
     if (!hc::is_port_name(port))
       return hc::Error{Code::Invalid, "\"" + port + "\" is not MODULE.PORT"};
   const auto place = hc::record::place_of(options.folder + "/" + name + std::string(kEnding));
   std::error_code failed;
   if (fs::symlink_status(place.path, failed).type() != fs::file_type::not_found)
-    return hc::Error{Code::Invalid, "there is a recording " + name + " already"};
+    return hc::Error{Code::Invalid, "recording " + name + " exists already"};
   fs::create_directories(options.folder, failed);
   if (failed) return hc::Error{Code::System, options.folder + ": " + failed.message()};
   hc::record::WriterOptions writer_options;
@@ -113,7 +114,7 @@ void Recorder::end() {
 
 void Recorder::write(std::size_t stream, const hc::Message& message) {
   if (has_failed_) return;
-  // Images of u8 would fill the disk; all else, and what cannot be read, is kept as it is.
+  // Raw u8 images would fill the disk: record them as JPEG, all else unchanged.
   auto kept = hc::expand(message);
   if (kept && is_picture(kept->header) && kept->header.info.components != 4)
     kept = hc::compress(*kept, hc::Encoding::Jpeg);
@@ -125,7 +126,7 @@ void Recorder::write(std::size_t stream, const hc::Message& message) {
 void Recorder::fail(const hc::Error& error) {
   if (!has_failed_.exchange(true))
     log_(hc::Level::Error,
-         "recording of " + name_ + " ended: " + error.detail + "; what was written before is kept");
+         "recording of " + name_ + " ended: " + error.detail + "; the file keeps all before");
 }
 
 double Recorder::seconds() const {

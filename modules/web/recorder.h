@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Recordings that a page makes: a file of MCAP each (spec/page.md, section 6).
+// Recordings made by a page, each an MCAP file (spec/page.md, section 6).
 
 #include <atomic>
 #include <chrono>
@@ -23,24 +23,24 @@ struct Recorded {
   std::vector<std::string> streams;  ///< MODULE.PORT
 };
 
-// All that waits for the disk is for a thread beside the server's, which takes stops.
+// Functions that wait for the disk must not run on the server's thread, which also handles stops.
 
 /// The recordings in a folder, by name.
 std::vector<Recorded> list_recordings(const std::string& folder);
 
-/// The recording in a file NAME.mcap, as long as it is now; 404: there is none.
+/// The recording in a file NAME.mcap, in its current length; 404 if there is none.
 web::Reply recorded_file(const std::string& folder, const std::string& file);
 
-/// A recording that is being made, until end(). What cannot be written, on a full disk, ends it:
-/// what was written before is kept. Its destructor may wait for the disk, unless it has ended.
+/// A running recording, until end(). A write error, e.g. on a full disk, ends it; the file keeps
+/// all before. Its destructor may wait for the disk, unless it has ended.
 class Recorder {
  public:
   struct Options {
-    std::string folder, frames;  ///< for recordings; of the graph, as text
-    hc::LogSink log;             ///< called on other threads too
+    std::string folder, frames;  ///< of recordings; of the graph, as text
+    hc::LogSink log;             ///< called on any thread
   };
 
-  /// Errors: Invalid (a name or port that is none; the recording exists), System.
+  /// Errors: Invalid (invalid name or port; the recording exists), System.
   static hc::Result<std::unique_ptr<Recorder>> begin(const hc::RunningGraph& graph,
                                                      const Options& options,
                                                      const std::string& name,
@@ -56,13 +56,13 @@ class Recorder {
   [[nodiscard]] const std::vector<std::string>& ports() const { return ports_; }
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   [[nodiscard]] double seconds() const;
-  /// False: the file could not be written, and the recording is to be ended.
+  /// False after a write error: call end().
   [[nodiscard]] bool goes_on() const { return !has_failed_; }
 
  private:
   Recorder(std::unique_ptr<hc::record::Writer> writer, hc::LogSink log, std::string name,
            std::vector<std::string> ports);
-  /// On the threads of taps.
+  /// Called on the threads of taps.
   void write(std::size_t stream, const hc::Message& message);
   void fail(const hc::Error& error);
 
@@ -72,7 +72,7 @@ class Recorder {
   const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   std::atomic<std::uint64_t> bytes_{0};
   std::atomic<bool> has_failed_{false};
-  std::mutex mutex_;  // of the writer
+  std::mutex mutex_;  // guards the writer
   std::unique_ptr<hc::record::Writer> writer_;
   std::vector<std::unique_ptr<hc::Tap>> taps_;
 };

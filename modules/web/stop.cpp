@@ -37,7 +37,7 @@ void Stop::hear(bool is_stopped, hc::MonotonicTime now) {
 std::optional<Stop::Word> Stop::tick(std::optional<bool> is_guarded, hc::MonotonicTime now) {
   answer([&](const Order& order) { return now >= order.due; },
          [&](const Order& order) { return problem(order); });
-  // What clears is not to be overtaken by what follows it.
+  // The clear sent by order() must not be overtaken by another word.
   const bool has_cleared = std::exchange(has_cleared_, false);
   if (!is_wanted_ && !orders_.empty() && heard_) return Word::Clear;
   if (has_cleared) return std::nullopt;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The stop, as the pages want it, and what the workspace says of it (spec/page.md, W8). Pure: time
-// is handed in.
+// The stop requested by the pages, and its confirmation by the workspace (spec/page.md, W8). Pure:
+// times come from the caller.
 
 #include <functional>
 #include <optional>
@@ -13,50 +13,50 @@
 
 class Stop {
  public:
-  /// What is sent by the output `stop`.
+  /// Sent by the output `stop`.
   enum class Word : std::uint8_t {
-    Free = 0,       ///< no stop, but somebody is there who could press it
-    Stop = 1,       ///< to be repeated for as long as it is wanted
+    Free = 0,       ///< no stop, and a page is open where it can be pressed
+    Stop = 1,       ///< repeated until cleared
     Clear = 2,      ///< a person clears the stops of all sources; see tick()
-    Unguarded = 3,  ///< nobody is there any more
+    Unguarded = 3,  ///< no page is open any more
   };
-  /// How often what is wanted is repeated.
+  /// Period of the word.
   static constexpr std::chrono::milliseconds kPeriod{50};
-  /// So long the workspace has to confirm an order.
+  /// Timeout for the workspace's confirmation of an order.
   static constexpr std::chrono::milliseconds kPatience{500};
-  /// From the first page on that opens, so that others repeat what was pressed without a server.
+  /// Delay of Free after the first page opens, so that others can first repeat a stop that was
+  /// pressed while there was no server.
   static constexpr std::chrono::milliseconds kFirst{1500};
-  /// The server thread hangs after this time without a turn.
+  /// The server's thread counts as hung after this time without a turn.
   static constexpr std::chrono::milliseconds kHung{200};
-  /// How often it is said that nobody is there any more.
+  /// Number of times that Unguarded is sent.
   static constexpr int kFarewells = 3;
-  /// What it said counts for so long.
+  /// How long a report of the workspace is valid.
   static constexpr std::chrono::milliseconds kSilence{1000};
 
-  /// Called once: with an empty text when the workspace has confirmed, else with what is wrong.
+  /// Called once: with "" when the workspace has confirmed the order, else with the error.
   using Answer = std::function<void(const std::string& problem)>;
 
-  /// @param module  name of the module in the graph, for what is told to persons.
+  /// @param module  name of the module in the graph, for error texts.
   explicit Stop(std::string module) : module_(std::move(module)) {}
 
-  /// A person wants the robot to stop, or clears all stops. An order before that is not confirmed
-  /// yet is answered: as confirmed later where it is the same, else that it is not wanted any more.
+  /// A person stops the robot, or clears all stops. Unconfirmed earlier orders of the same kind are
+  /// confirmed together with it; the others are answered as superseded.
   /// @param is_linked  whether the output `stop` has a link.
-  /// @returns  what is to be sent at once.
+  /// @returns  the word to send at once.
   Word order(bool stops, bool is_linked, hc::MonotonicTime now, Answer answer);
 
-  /// The workspace says whether the robot is stopped.
+  /// Takes the workspace's report whether the robot is stopped.
   void hear(bool is_stopped, hc::MonotonicTime now);
 
-  /// To be called each kPeriod.
-  /// @param is_guarded  whether a page is open; nothing: the server thread hangs, and only a stop
-  /// is repeated.
-  /// @returns  the word to be sent, if any. Clear is repeated until a workspace that can confirm it
-  /// does, which may have restarted without it, and with the time of its order, so that newer stops
-  /// hold.
+  /// Call each kPeriod.
+  /// @param is_guarded  whether a page is open; nothing if the server's thread hangs: then only a
+  /// stop is repeated.
+  /// @returns  the word to send, if any. Clear is repeated until confirmed, since the workspace may
+  /// have restarted meanwhile, and with the time of its order, so that newer stops hold.
   std::optional<Word> tick(std::optional<bool> is_guarded, hc::MonotonicTime now);
 
-  /// What the workspace said last; nothing: it is silent, or was never heard.
+  /// The last report of the workspace; nothing if it is silent.
   [[nodiscard]] std::optional<bool> is_stopped(hc::MonotonicTime now) const;
 
  private:
@@ -66,7 +66,7 @@ class Stop {
     Answer answer;
   };
 
-  /// Answers those orders of which `is_settled` is true.
+  /// Answers the orders for which `is_settled` is true.
   template <typename IsSettled, typename Problem>
   void answer(const IsSettled& is_settled, const Problem& problem_of);
   [[nodiscard]] std::string problem(const Order& order) const;
@@ -74,8 +74,8 @@ class Stop {
   const std::string module_;
   bool is_wanted_ = false;
   bool has_cleared_ = false;                // since the last tick
-  std::optional<hc::MonotonicTime> first_;  // when a page was open
-  int farewells_ = 0;                       // still to be sent
+  std::optional<hc::MonotonicTime> first_;  // when a page was first open
+  int farewells_ = 0;                       // Unguarded still to send
   std::optional<bool> heard_;
   hc::MonotonicTime heard_at_{};
   std::vector<Order> orders_;  // not confirmed yet

@@ -10,7 +10,7 @@ namespace {
 using std::chrono::milliseconds;
 using Word = Stop::Word;
 
-/// A stop, its clock and what was answered.
+/// A stop, its clock and its answers.
 struct Page {
   Stop stop{"web"};
   hc::MonotonicTime now{milliseconds(1000)};
@@ -33,7 +33,7 @@ struct Page {
 
 TEST(Stop, is_answered_when_the_workspace_says_so_after_the_order) {
   Page page;
-  page.stop.hear(true, page.now);  // by another source, before
+  page.stop.hear(true, page.now);  // earlier, by another source
   EXPECT_EQ(page.order(true), Word::Stop);
   EXPECT_TRUE(page.answers.empty());
   page.stop.hear(false, page.now);
@@ -117,7 +117,7 @@ TEST(Stop, that_a_page_has_kept_comes_before_its_guard) {
 
 TEST(Stop, of_another_source_is_not_taken_over) {
   Page page;
-  page.open();  // the workspace remembers the stop of the process before, and who else has stopped
+  page.open();  // the workspace remembers the stops of the previous process and of other sources
   page.stop.hear(true, page.now);
   EXPECT_EQ(page.tick(), Word::Free);
 }

@@ -11,9 +11,9 @@
 namespace {
 
 constexpr std::chrono::milliseconds kHeader{500};       // between header lines
-constexpr std::chrono::milliseconds kBetweenKeys{500};  // of VP8, for a page that missed frames
+constexpr std::chrono::milliseconds kBetweenKeys{500};  // of VP8
 constexpr int kQuality = 80;                            // of JPEG
-constexpr int kNoStream = 4404;                         // as kEnd
+constexpr int kNoStream = 4404;                         // close code, as kEnd
 
 template <typename Number>
 bool read_number(std::string_view text, Number max, Number& number) {
@@ -23,7 +23,7 @@ bool read_number(std::string_view text, Number max, Number& number) {
   return true;
 }
 
-/// A message in binary encoding, which it may be in already.
+/// The bytes of a message, with text encoding replaced by binary.
 web::Bytes bytes_of(hc::Message message) {
   if (message.header.info.encoding == hc::Encoding::Text)
     message.header.info.encoding = hc::Encoding::Binary;
@@ -57,7 +57,7 @@ hc::Result<Wanted> parse_wanted(std::string_view options, Wanted wanted) {
     if (!is_known)
       return hc::Error{hc::Code::Invalid,
                        "\"" + std::string(option) +
-                           "\" is none of as=raw, as=jpeg, as=vp8, width=0 … 65500, rate=0 … 1000"};
+                           "\" is not as=raw, as=jpeg, as=vp8, width=0 … 65500 or rate=0 … 1000"};
   }
   return wanted;
 }
@@ -98,7 +98,7 @@ void Stream::view(const Wanted& wanted, std::shared_ptr<web::WebSocket> socket) 
 }
 
 void Stream::hear(const std::shared_ptr<Viewer>& viewer, std::string_view said) {
-  // This thread alone changes what is wanted.
+  // Only this thread changes `wanted`, so it may be read without the mutex.
   const auto changed =
       said == "ok" ? hc::Result<Wanted>(viewer->wanted) : parse_wanted(said, viewer->wanted);
   if (!changed) return close(viewer, kPolicy, changed.error().detail);
@@ -203,7 +203,7 @@ void Stream::serve_alike(const Wanted& wanted, const Viewers& viewers) {
   const std::string header = hc::text(newest_.header);
   for (const auto& viewer : viewers) {
     if (video != nullptr) {
-      if (!is_key && viewer->frame + 1 != video->frames) {  // it could not show this one
+      if (!is_key && viewer->frame + 1 != video->frames) {  // it missed a frame
         const std::lock_guard lock(mutex_);
         --viewer->under_way;
         continue;

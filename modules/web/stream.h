@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// An output of the graph as pages see it (spec/page.md, section 4): observed once, encoded once for
-// all pages that want it alike, and each page gets the newest message when it is done with those
-// before.
+// An output of the graph for pages (spec/page.md, section 4): observed once, encoded once for all
+// pages with the same options. A page gets the newest message when it is ready.
 
 #include <chrono>
 #include <functional>
@@ -21,17 +20,17 @@
 
 namespace web = hc::web;
 
-/// Why a socket is closed: its end, or what was asked over it.
+/// Close codes: the stream has ended; the request was invalid.
 inline constexpr int kEnd = 1000, kPolicy = 1008;
 
-/// What a page wants of a stream.
+/// A page's options for a stream.
 struct Wanted {
   Form form = Form::Raw;
-  int width = 0;    ///< elements in a row at most, 0: all
-  double rate = 0;  ///< messages a second at most, 0: all
+  int width = 0;    ///< maximum elements in a row, 0: all
+  double rate = 0;  ///< maximum [Hz], 0: unlimited
 };
 
-/// "as=jpeg&width=400"; Errors: Invalid.
+/// Reads "as=jpeg&width=400". Errors: Invalid.
 hc::Result<Wanted> parse_wanted(std::string_view options, Wanted wanted = {});
 
 class Stream {
@@ -39,44 +38,44 @@ class Stream {
   Stream(hc::RunningGraph graph, std::string port, web::Post post);
 
   // On the server's thread.
-  /// Has a page see it until its socket closes, or the stream is at its end. Over that it says `ok`
-  /// for each message that it is done with, or what it wants from then on.
+  /// Serves a page until its socket closes or the stream ends. The page answers each processed
+  /// message with `ok`, or sends new options.
   void view(const Wanted& wanted, std::shared_ptr<web::WebSocket> socket);
-  /// Ends it for all.
+  /// Ends it for all pages.
   void close(const std::string& why);
   [[nodiscard]] bool is_viewed() const { return !sockets_.empty(); }
 
-  /// Ends the stream after its last viewer: waits for the image being encoded. From any thread.
+  /// Ends the stream after its last viewer; waits for the image being encoded. From any thread.
   void stop() { tap_.reset(); }
 
  private:
   using Clock = hc::Tap::Clock;
-  static constexpr int kMaxUnderWay = 2;  // messages that a page is not done with
+  static constexpr int kMaxUnderWay = 2;  // messages sent but not yet processed by a page
 
-  /// A page, as the stream's thread sees it: without its socket, which has to end on the server's.
+  /// A page. Its socket is separate, since it must be destroyed on the server's thread.
   struct Viewer {
     // Guarded by the mutex.
     Wanted wanted;
     int under_way = 0;
-    bool has_changed = true;  // what it wants
+    bool has_changed = true;  // `wanted`
     // Of the stream's thread.
-    std::uint64_t seen = 0;  // number of the newest message it was given
+    std::uint64_t seen = 0;  // number of the last message sent to it
     Clock::time_point due{}, header_due{};
-    std::uint64_t frame = 0;  // number of the last frame of VP8 it was given, 0: none
+    std::uint64_t frame = 0;  // number of the last VP8 frame sent to it, 0: none
   };
   using Viewers = std::vector<std::shared_ptr<Viewer>>;
   struct Video {
     Vp8Encoder encoder;
     std::uint64_t frames = 0;     // encoded
-    Clock::time_point key_due{};  // before, no other key frame is made
+    Clock::time_point key_due{};  // earliest time of the next key frame
   };
 
   // On the tap's thread.
-  /// Gives the newest message to those who are ready for it. @returns  when the next one is.
+  /// Sends the newest message to pages that are ready. @returns  when the next page is due.
   Clock::time_point serve();
   void serve_alike(const Wanted& wanted, const Viewers& viewers);
   void end(const std::string& why, bool is_error);
-  /// Calls on the server's thread, if the page is still there then.
+  /// Calls on the server's thread, unless the page has closed by then.
   void post(const std::shared_ptr<Viewer>& viewer,
             std::function<void(const std::shared_ptr<Viewer>&)> call);
   void close_soon(const std::shared_ptr<Viewer>& viewer, int code, const std::string& why);
@@ -91,11 +90,11 @@ class Stream {
   std::map<std::shared_ptr<Viewer>, std::shared_ptr<web::WebSocket>> sockets_;
   std::mutex mutex_;
   Viewers viewers_;
-  std::string ended_;  // why; empty: it has not
-  int ended_as_ = 0;   // the code that says so
+  std::string ended_;  // reason; empty while running
+  int ended_as_ = 0;   // close code
   // Of the tap's thread.
   hc::Message newest_;
-  std::uint64_t number_ = 0;     // of the newest message; 0: there is none
+  std::uint64_t number_ = 0;     // of the newest message; 0: none yet
   std::map<int, Video> videos_;  // by width
   std::optional<hc::Tap> tap_;   // last: its thread calls the above
 };

@@ -14,7 +14,7 @@
 
 namespace {
 
-/// A running graph with one output, `m.p`, as far as its observers need it.
+/// A stand-in for a running graph with one output, `m.p`.
 class Observed {
  public:
   const hc::RunningGraph graph{"stream_test", static_cast<int>(::getpid())};
@@ -24,7 +24,7 @@ class Observed {
  private:
   static hc::Uri uri(const std::string& text) { return *hc::parse_uri(text); }
 
-  /// Answers who asks for the output, and sends a number from it.
+  /// Accepts a connection to the output and sends a number.
   void run() {
     hc::Message asked;
     while (*commands_->take(asked) != hc::Got::Message) ASSERT_TRUE(commands_->wait());
@@ -33,7 +33,7 @@ class Observed {
     const auto reply = *hc::open_sink(uri(hc::read_request(asked).reply));
     ASSERT_TRUE(reply->send(answer));
     ASSERT_TRUE(reply->close());
-    ASSERT_TRUE(numbers_->send(hc::table({1.0})));
+    ASSERT_TRUE(numbers_->send(hc::table().message({1.0})));
   }
 
   const std::string place_ = "@" + graph.socket_name() + ".m.p";
@@ -43,7 +43,7 @@ class Observed {
   std::thread thread_{[this] { run(); }};
 };
 
-/// A page's socket, which says on which thread it ended.
+/// A page's socket, which records the thread of its end.
 class PageSocket final : public web::WebSocket {
  public:
   explicit PageSocket(std::thread::id& ended) : ended_(ended) {}
@@ -62,7 +62,7 @@ TEST(Stream, the_socket_of_a_page_ends_on_the_servers_thread_though_the_tap_serv
   std::promise<void> serves;
   std::latch left(1);
   std::once_flag once;
-  // Called on the tap's thread, which holds what it knows of the page meanwhile.
+  // Called on the tap's thread, which keeps its state of the page alive.
   Stream stream(observed.graph, "m.p", [&](const std::function<void()>&) {
     std::call_once(once, [&] { serves.set_value(); });
     left.wait();

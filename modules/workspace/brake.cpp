@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-/// A source, which is new if need be; null: there are too many that matter.
+/// Finds or adds a source; null if there are too many that stop or guard.
 Brake::Source* Brake::find(std::int32_t number) {
   if (const auto known = sources_.find(number); known != sources_.end()) return &known->second;
   if (sources_.size() >= kMostSources)
@@ -17,7 +17,8 @@ hc::Status Brake::take(const Message& message, hc::MonotonicTime now) {
                                               std::to_string(static_cast<int>(message.word))};
   const bool is_stop = message.word == kStop;
   const bool is_timely = message.said > now - kOld && message.said <= now + kAhead;
-  if (!is_stop && !is_timely) return hc::Error{hc::Code::Malformed, "its time is not of now"};
+  if (!is_stop && !is_timely)
+    return hc::Error{hc::Code::Malformed, "its time is too old or in the future"};
   const auto said = is_stop ? now : std::min(message.said, now);
   if (message.word == kClearAll) clear_all(message.source, said);
   if (Source* source = find(message.source); source != nullptr) {
@@ -25,8 +26,8 @@ hc::Status Brake::take(const Message& message, hc::MonotonicTime now) {
   } else {
     others_stop_ = others_stop_ || is_stop;
     if (!is_stop)
-      return hc::Error{hc::Code::TooLarge,
-                       std::to_string(kMostSources) + " others stop or guard the robot already"};
+      return hc::Error{hc::Code::TooLarge, std::to_string(kMostSources) +
+                                               " other sources stop or guard the robot already"};
   }
   return {};
 }
@@ -49,8 +50,8 @@ void Brake::hear(Source& source, const Message& message, hc::MonotonicTime said)
   if (!source.stops) source.is_forgetful = false;
 }
 
-/// @param by  its own messages come in their order; those of others may have come before, and been
-/// said later.
+/// @param by  the source that clears. Its own messages arrive in order; another source's stop may
+/// have arrived before this message and yet be newer, and then holds.
 void Brake::clear_all(std::int32_t by, hc::MonotonicTime said) {
   others_stop_ = false;
   for (auto& [number, source] : sources_) {
@@ -83,7 +84,7 @@ hc::Stops Brake::stops() const {
 std::string Brake::reason(hc::MonotonicTime now) const {
   for (const auto& [number, source] : sources_)
     if (source.stops) return "stopped by " + name(number);
-  if (others_stop_) return "stopped by one of too many sources";
+  if (others_stop_) return "stopped by a source beyond the limit";
   for (const auto& [number, source] : sources_)
     if (source.guards && source.is_silent(now))
       return name(number) + " is silent: its stop could not arrive";

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Who has stopped the robot, and who guards it. Pure: time is handed in.
+// The sources that stop or guard the robot. Pure: times come from the caller.
 //
-// The rules, for each source of the input `stop` by itself:
-// - A 1 stops the robot. It holds until the same process of that source sends a 0, or any source a
-//   2: a person clears all stops made before. A source that repeated its 1 and was then silent for
-//   kSilence, or has left, or whose `seq` has begun again, may have forgotten its stop: its 0
+// The rules, for each source of the input `stop` separately:
+// - 1 stops the robot, until the same process of that source sends 0, or any source sends 2, with
+//   which a person clears all earlier stops. A source may have forgotten its stop if it repeated
+//   its 1 and was then silent for kSilence, if it has left, or if its `seq` restarted: then its 0
 //   clears nothing until it has stopped the robot again.
-// - A source guards from the second of two 0 on that are no further apart than kSilence: it can
-//   stop the robot at any time, and says so. While it is silent for longer, nobody may move the
-//   robot, since a stop could not arrive. A 3 says that it leaves and guards no more; a 2 of
-//   another source dismisses it while it is silent.
-// - A 1 always counts. Another word counts from when it was said, and not at all when that was kOld
-//   ago or kAhead to come.
+// - A source guards from the second of two 0 that are at most kSilence apart: it announces that it
+//   can stop the robot at any time. While a guard is silent for longer, no mode may have the focus,
+//   since its stop could not arrive. A 3 ends its guarding, and so does another source's 2 while it
+//   is silent.
+// - 1 always counts. Other words count from the time they were sent, and are refused if older than
+//   kOld or more than kAhead in the future.
 
 #include <chrono>
 #include <cstdint>
@@ -26,29 +26,29 @@
 
 class Brake {
  public:
-  /// What a source may say.
+  /// The words of a source.
   static constexpr std::uint8_t kFree = 0, kStop = 1, kClearAll = 2, kLeave = 3;
   static constexpr std::chrono::milliseconds kSilence{300}, kOld{1000}, kAhead{200};
-  /// Sources that are known at the same time. A stop of one more holds until all are cleared.
+  /// Maximum number of sources. A stop of one more holds until all stops are cleared.
   static constexpr std::size_t kMostSources = 64;
-  static constexpr std::int32_t kOthers = -1;  ///< no source: those beyond, in stops()
+  static constexpr std::int32_t kOthers = -1;  ///< in stops(): sources beyond the limit
 
-  /// What a source says.
+  /// A message of a source.
   struct Message {
     std::int32_t source = 0;
     std::uint8_t word = kStop;
-    std::int64_t seq = 0;  ///< of the message; falls when another process has begun to count
+    std::int64_t seq = 0;  ///< decreases when the source's process has restarted
     hc::MonotonicTime said{};
   };
 
-  /// Errors: Malformed (no such word; said at another time), TooLarge (one source too many, which
-  /// does not stop).
+  /// Errors: Malformed (unknown word; too old or from the future), TooLarge (too many sources, and
+  /// not a stop).
   hc::Status take(const Message& message, hc::MonotonicTime now);
 
-  /// What the process before has left: its stops hold until they are cleared as after a silence,
+  /// Restores the state of the previous process: its stops hold until cleared as after a silence,
   /// and its guards are silent.
   void restore(const hc::Stops& stops);
-  /// What is to outlive this process.
+  /// The state for restore() in the next process.
   [[nodiscard]] hc::Stops stops() const;
 
   [[nodiscard]] bool is_stopped() const { return hc::any_stops(stops()); }
@@ -56,11 +56,10 @@ class Brake {
     const auto found = sources_.find(source);
     return found != sources_.end() && found->second.stops;
   }
-  /// The reason why no mode may have the focus: "stopped by web.stop", "source 14 is silent: its
-  /// stop could not arrive"; empty: there is none.
+  /// Why no mode may have the focus: "stopped by web.stop", "source 14 is silent: its stop could
+  /// not arrive"; empty if one may.
   [[nodiscard]] std::string reason(hc::MonotonicTime now) const;
 
-  /// The names of sources.
   void set_names(std::map<std::int32_t, std::string> names) { names_ = std::move(names); }
   /// A source's name, or "source 14".
   [[nodiscard]] std::string name(std::int32_t source) const {
@@ -71,9 +70,9 @@ class Brake {
  private:
   struct Source {
     bool stops = false, guards = false;
-    bool is_forgetful = false;   // its 0 ends no stop
-    std::uint8_t word = kLeave;  // the last
-    bool repeats = false;        // the last word was said twice within kSilence
+    bool is_forgetful = false;   // its 0 does not clear its stop
+    std::uint8_t word = kLeave;  // last
+    bool repeats = false;        // the last word was sent twice within kSilence
     std::int64_t seq = 0;
     hc::MonotonicTime heard{std::chrono::hours(-1)};
 
@@ -87,5 +86,5 @@ class Brake {
 
   std::map<std::int32_t, std::string> names_;
   std::map<std::int32_t, Source> sources_;
-  bool others_stop_ = false;  // a source beyond kMostSources
+  bool others_stop_ = false;  // stopped by a source beyond kMostSources
 };

@@ -20,7 +20,7 @@ struct Robot {
         .has_value();
   }
   void say(std::int32_t source, int word) { ASSERT_TRUE(takes(source, word)); }
-  /// Says a word again and again for so long.
+  /// Repeats a command for this time.
   void repeat(std::int32_t source, int word, milliseconds duration) {
     for (const auto end = now + duration; now < end; now += milliseconds(50)) say(source, word);
   }
@@ -63,7 +63,7 @@ TEST(Brake, a_stop_that_is_newer_than_what_clears_all_holds) {
   const auto said = robot.now += milliseconds(500);
   robot.now += milliseconds(100);
   robot.say(kButton, 1);
-  robot.now += milliseconds(100);  // for which it was on its way
+  robot.now += milliseconds(100);  // its transit time
   ASSERT_TRUE(robot.brake.take({kPage, Brake::kClearAll, 0, said}, robot.now));
   EXPECT_EQ(robot.reason(), "stopped by source 7");
   EXPECT_FALSE(robot.brake.stops_robot(99));
@@ -96,7 +96,7 @@ TEST(Brake, a_guard_may_leave_or_be_dismissed_while_it_is_silent) {
     if (word == 2) robot.say(kButton, word);
     EXPECT_EQ(robot.reason(), "") << word;
   }
-  Robot robot;  // one that speaks is not dismissed
+  Robot robot;  // an active one is not dismissed
   robot.repeat(kPage, 0, milliseconds(200));
   robot.say(kButton, 2);
   robot.now += std::chrono::seconds(1);
@@ -115,7 +115,7 @@ TEST(Brake, who_says_a_word_now_and_then_guards_nothing) {
 }
 
 TEST(Brake, who_may_have_forgotten_that_it_stopped_does_not_clear_by_guarding) {
-  // Silent for a while; restarted at once, and so counting anew; left by its last page.
+  // Silent for a while; restarted at once with a new count; left by its last page.
   for (int how : {0, 1, 2}) {
     Robot robot;
     robot.repeat(kPage, 1, milliseconds(200));
@@ -187,10 +187,10 @@ TEST(Brake, any_number_of_sources_is_borne_and_none_is_unheard) {
   EXPECT_EQ(robot.brake.stops().size(), Brake::kMostSources + 1);
   EXPECT_FALSE(robot.takes(99, 0));
   for (std::int32_t source = 0; source < 64; ++source) robot.say(source, 0);
-  EXPECT_EQ(robot.reason(), "stopped by one of too many sources");
+  EXPECT_EQ(robot.reason(), "stopped by a source beyond the limit");
   Robot restarted;
   restarted.brake.restore(*hc::parse_stops(hc::stops_text(robot.brake.stops())));
-  EXPECT_EQ(restarted.reason(), "stopped by one of too many sources");
+  EXPECT_EQ(restarted.reason(), "stopped by a source beyond the limit");
   for (Robot* each : {&robot, &restarted}) {
     each->say(99, 2);
     EXPECT_EQ(each->reason(), "");

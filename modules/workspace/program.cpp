@@ -13,23 +13,20 @@
 #include "workspace.h"
 
 int run_workspace(int argc, char** argv, const hc::Clock& clock) {
-  hc::Module module{"workspace", "Grants the focus to the highest bid and publishes it.", clock};
-  auto bids = module.input("bids", hc::table<double>(),
-                           "salience 0 … 1 of the message's mode and src; 0 withdraws that one");
-  auto person = module.input("person", hc::table<double>(),
-                             "the same from a person, above all others while it is valid");
+  hc::Module module{"workspace", "Grants the focus to the highest bid and publishes it.", {.clock = &clock}};
+  auto bids = module.input("bids", hc::table(),
+                           "salience 0 … 1 for the message's mode and src; 0 withdraws that bid", {.keep = 16});
+  auto person = module.input("person", hc::table(),
+                             "the same from a person; overrides all tasks while valid", {.keep = 16});
   auto stop = module.input("stop", hc::table<std::uint8_t>().of(1, 1),
-                           "of its src, 1: no mode has the focus until the same src says 0; 0, "
-                           "repeated: it guards, and its silence halts too; 2: a person clears all "
-                           "stops; 3: it guards no more");
-  // More than one, since bids for several modes, and stops of several sources, may share a link.
-  module.keep(bids, 16);
-  module.keep(person, 16);
-  module.keep(stop, 16);
+                           "1: stops the robot until the same src sends 0; 0, repeated: the src "
+                           "guards, and its silence stops too; 2: a person clears all stops; 3: "
+                           "the src ends guarding", {.keep = 16});
+  // Queues, since bids for several modes, and stops of several sources, may share a link.
   auto focus = module.output("focus", hc::table<std::int32_t>().of(1, 1),
                              "number of the mode in focus, 0 none; each period");
   auto standings = module.output(
-      "standings", hc::table<double>(),
+      "standings", hc::table(),
       "a row for each mode with a bid: mode, salience, age [s], in focus 0/1, a person's 0/1");
   auto stopped =
       module.output("stopped", hc::table<std::uint8_t>().of(1, 1),
@@ -39,10 +36,10 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
       "how often the focus is decided and repeated; an exclusive input trusts it for 0.12 s",
       {.min = 20, .max = 1000});
   auto margin =
-      module.parameter("margin", 0.1, "", "a challenger must bid more than the focus does by this",
+      module.parameter("margin", 0.1, "", "by which a challenger must exceed the bid in focus",
                        {.min = 0, .max = 1});
   auto dwell =
-      module.parameter("dwell", 1.0, "s", "how long a mode keeps the focus at least, while it bids",
+      module.parameter("dwell", 1.0, "s", "minimum time a mode keeps the focus while it bids",
                        {.min = 0, .max = 86400});
   auto expiry =
       module.parameter("expiry", 1.0, "s", "how long a bid is valid", {.min = 0.001, .max = 86400});
@@ -50,9 +47,10 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
       "person_expiry", 60.0, "s", "how long a person's bid is valid", {.min = 0.001, .max = 86400});
   auto modes = module.parameter(hc::kModeNames, "", "",
                                 "names of modes, e.g. read=5,track=4: set by `hc run`");
-  auto sources = module.parameter(hc::kSourceNames, "", "",
-                                  "names of who bids and stops, by src, e.g. web.stop=12: set by "
-                                  "`hc run`");
+  auto sources =
+      module.parameter(hc::kSourceNames, "", "",
+                       "names of sources of bids and stops, by src, e.g. web.stop=12: set by "
+                       "`hc run`");
   auto stops = module.parameter(hc::kStops, "", "",
                                 "sources that have stopped (1) or guard (0) the robot, by src, "
                                 "e.g. 12=1,14=0: set by `hc run` at a "
@@ -60,7 +58,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
                                 {.fixed = true});
 
   Workspace workspace;
-  std::optional<hc::MonotonicTime> complained;  // of a refused bid, once a second at most
+  std::optional<hc::MonotonicTime> complained;  // last log of a refused bid, at most once a second
   std::string modes_read, sources_read;
   auto read_names = [&](auto checked) {
     if (std::exchange(modes_read, *modes) != *modes)
@@ -70,12 +68,12 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
       if (auto names = checked(hc::parse_mode_names(sources_read, hc::kSourceNames)))
         workspace.brake.set_names(std::move(*names));
   };
-  auto report = [&] { module.report_focus(workspace.focus(), workspace.brake.stops()); };
+  auto report = [&] { hc::ModuleAccess::report_focus(module, workspace.focus(), workspace.brake.stops()); };
   auto send_stopped = [&] {
     const std::uint8_t is_stopped = workspace.brake.is_stopped() ? 1 : 0;
-    stopped.send(hc::table({is_stopped}).at(module.now()));
+    stopped.send({is_stopped}, module.now());
   };
-  /// When a message was made, by the clock of bids.
+  /// Time of a message on the monotonic clock.
   auto made_at = [&](const hc::Header& header) {
     const auto age = header.time == 0 ? 0 : module.now() - header.time;
     return module.monotonic() - std::chrono::nanoseconds(age);
@@ -89,7 +87,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   auto take = [&](const hc::Message& message, auto bid) {
     const auto now = module.monotonic();
     const auto numbers = hc::value_or_drop(message.view<double>()).numbers();
-    // Without its one number a bid has a salience that is refused as any other.
+    // Not exactly one number: refused like an invalid salience.
     const double salience = numbers.size() == 1 ? numbers[0] : -1;
     const Bidder who{message.header.mode, message.header.src};
     auto taken = (workspace.*bid)(who, salience, made_at(message.header), now);
@@ -123,7 +121,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   module.every(std::chrono::milliseconds(100), send_stopped);
   module.every(rate, [&] {
     auto now = module.monotonic();
-    read_names([&](auto names) {  // while it runs, wrong ones end nothing
+    read_names([&](auto names) {  // invalid names do not end a running module
       if (!names) module.log_once("invalid names", names.error().detail);
       return names;
     });
@@ -132,9 +130,9 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
     if (workspace.decide(now)) module.log("focus: " + workspace.last_change());
     report();
     const std::int64_t time = module.now();
-    focus.send(hc::table({workspace.focus()}).at(time));
+    focus.send({workspace.focus()}, time);
     auto rows = workspace.standings(now);
-    auto draft = standings.loan(5, static_cast<std::int32_t>(rows.size()));
+    auto draft = standings.loan(static_cast<std::int32_t>(rows.size()), 5);
     draft.header.time = time;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       auto row = draft.matrix().row(i);
@@ -151,7 +149,7 @@ int run_workspace(int argc, char** argv, const hc::Clock& clock) {
   if (const Refused& refused = workspace.refused(); refused.total() > 0)
     module.log(
         hc::format("bids refused: {} for their salience, {} for their mode, {} for their "
-                   "time, {} that were too many",
+                   "time, {} over the limit",
                    refused.salience, refused.mode, refused.time, refused.crowded));
   return status;
 }

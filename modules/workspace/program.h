@@ -4,6 +4,6 @@
 
 #include <hc/base/clock.h>
 
-/// The program, on a process's main thread or on one of a test.
-/// @param clock  by which bids expire and decisions are due.
+/// Runs the program, on a main thread or a test's.
+/// @param clock  for the expiry of bids and the period of decisions.
 int run_workspace(int argc, char** argv, const hc::Clock& clock);

@@ -21,7 +21,7 @@ std::string two_digits(double value) {
 }  // namespace
 
 hc::Status Workspace::check(const Bidder& who, double salience) {
-  if (!(salience >= 0 && salience <= 1)) {  // nor is not-a-number
+  if (!(salience >= 0 && salience <= 1)) {  // true for NaN, too
     ++refused_.salience;
     return hc::Error{hc::Code::Malformed, "salience " + std::to_string(salience) + " of mode " +
                                               std::to_string(who.mode) + " is not from 0 to 1"};
@@ -29,7 +29,7 @@ hc::Status Workspace::check(const Bidder& who, double salience) {
   if (who.mode <= 0) {
     ++refused_.mode;
     return hc::Error{hc::Code::Malformed,
-                     "a bid is for a mode from 1 on, not " + std::to_string(who.mode)};
+                     "the mode of a bid must be at least 1, not " + std::to_string(who.mode)};
   }
   if (!names_.empty() && !names_.contains(who.mode)) {
     ++refused_.mode;
@@ -44,7 +44,7 @@ hc::Status Workspace::take(const Bidder& who, double salience, hc::MonotonicTime
   if (now - made >= expiry || made - now > kAhead) {
     ++refused_.time;
     return hc::Error{hc::Code::Malformed, "mode " + std::to_string(who.mode) +
-                                              ": the bid has expired, or is of the future"};
+                                              ": the bid has expired or is from the future"};
   }
   const auto known = bids.find(who.mode);
   if (salience == 0) {
@@ -57,8 +57,7 @@ hc::Status Workspace::take(const Bidder& who, double salience, hc::MonotonicTime
                                                     !known->second.contains(who.source);
   if (is_crowded) {
     ++refused_.crowded;
-    return hc::Error{hc::Code::TooLarge,
-                     "mode " + std::to_string(who.mode) + ": too many others have bids"};
+    return hc::Error{hc::Code::TooLarge, "mode " + std::to_string(who.mode) + ": too many bids"};
   }
   made = std::min(made, now);
   const auto [bid, is_new] = bids[who.mode].try_emplace(who.source, Bid{salience, made, now});
@@ -82,7 +81,7 @@ void Workspace::drop_expired(Bids& bids, hc::MonotonicTime now, std::chrono::nan
   std::erase_if(bids, [](const auto& of_mode) { return of_mode.second.empty(); });
 }
 
-/// The mode that persons want; 0: they want none.
+/// The mode of the winning person's bid; 0: none.
 std::int32_t Workspace::wanted_by_persons() const {
   using Rank = std::tuple<double, bool, hc::MonotonicTime>;
   std::int32_t best = 0;

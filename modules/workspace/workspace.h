@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Which mode has the focus: tasks bid with a salience each, one wins. Pure: time is handed in and
-// never goes back.
+// Decides which mode has the focus: tasks bid with a salience, and one wins. Pure: times come from
+// the caller and never go back.
 //
-// The rules, judged by decide() and at no other time:
-// - A bid is of a mode and a source. It is valid until it expires or the same source bids for the
-//   mode again; one of salience 0 withdraws it, and no other. A mode's bid is the greatest of its
-//   sources.
-// - While the mode in focus has a bid, a challenger takes focus with a salience that is greater by
-//   more than the margin, when the focus has been where it is for the dwell time.
-// - A focus whose bid has ended goes at once, within its dwell time too, to the greatest bid, of
-//   equal ones to that of the lowest mode; when there is none, to 0: none.
-// - Persons' bids are above all others, whatever the dwell time and margin say. Of several the
-//   greatest wins; of equal ones the mode that has the focus keeps it, else the one whose bid began
-//   last wins. To repeat a bid does not begin it anew, so persons who contradict each other do not
-//   take turns.
-// - While the brake holds no mode has the focus. Bids are taken meanwhile.
+// The rules, applied only by decide():
+// - A bid belongs to a mode and a source. It is valid until it expires or the source bids for the
+//   mode again; salience 0 withdraws this bid only. A mode's bid is the greatest of its sources.
+// - While the mode in focus has a bid, a challenger takes the focus if its salience is greater by
+//   more than the margin, and the focus has not changed for the dwell time.
+// - When the bid in focus ends, the focus goes at once, even within the dwell time, to the greatest
+//   bid; among equal ones to the lowest mode; without any to 0 (none).
+// - Persons' bids override all others, regardless of dwell time and margin. The greatest wins. Of
+//   equal ones the mode in focus keeps it, else the bid that began last wins. Repeating a bid does
+//   not restart it, so contradicting persons do not alternate.
+// - While the brake holds, no mode has the focus. Bids are still taken.
 
 #include <cstdint>
 #include <map>
@@ -38,7 +36,7 @@ struct WorkspaceOptions {
 /// The state of a mode.
 struct Standing {
   std::int32_t mode = 0;
-  double salience = 0;             ///< the person's where the bid is a person's
+  double salience = 0;             ///< a person's bid if there is one
   std::chrono::nanoseconds age{};  ///< since the bid was made
   bool in_focus = false;
   bool is_of_person = false;
@@ -46,56 +44,55 @@ struct Standing {
 
 /// Bids that were refused, by reason.
 struct Refused {
-  std::int64_t salience = 0;  ///< not a number, or not from 0 to 1
-  std::int64_t mode = 0;      ///< 0 or below, or not of the graph
-  std::int64_t time = 0;      ///< expired already, or of the future
-  std::int64_t crowded = 0;   ///< kMostModes have bids already, or kMostSources bid for the mode
+  std::int64_t salience = 0;  ///< NaN or not in 0 … 1
+  std::int64_t mode = 0;      ///< <= 0, or not in the graph
+  std::int64_t time = 0;      ///< expired or from the future
+  std::int64_t crowded = 0;   ///< more than kMostModes, or than kMostSources for the mode
 
   [[nodiscard]] std::int64_t total() const { return salience + mode + time + crowded; }
 };
 
-/// Who bids, and for what.
+/// The mode and source of a bid.
 struct Bidder {
   std::int32_t mode = 0, source = 0;
 };
 
 class Workspace {
  public:
-  /// Modes that may have bids at the same time, and sources that may bid for one of them.
+  /// Maximum number of modes with bids, and of sources for each.
   static constexpr std::size_t kMostModes = 1024, kMostSources = 32;
-  /// By how much the clock of who bids may be ahead of ours.
+  /// How far a bidder's clock may be ahead.
   static constexpr std::chrono::milliseconds kAhead{200};
 
   explicit Workspace(const WorkspaceOptions& options = {}) : options_(options) {}
 
   void set_options(const WorkspaceOptions& options) { options_ = options; }
-  /// The modes that there are, with their names. None: any mode may have bids.
+  /// Sets the graph's modes and their names. If empty, any mode may have bids.
   void set_modes(std::map<std::int32_t, std::string> names) { names_ = std::move(names); }
 
-  /// A task's bid. @param salience  0 … 1; 0 withdraws. @param made  its age counts from there.
-  ///
-  /// Errors: Malformed, TooLarge; the bid is counted as refused and changes nothing.
+  /// Takes a task's bid. @param salience  0 … 1; 0 withdraws. @param made  its expiry counts from
+  /// then. Errors: Malformed, TooLarge; the bid is counted as refused and ignored.
   hc::Status bid(const Bidder& who, double salience, hc::MonotonicTime made,
                  hc::MonotonicTime now) {
     return take(who, salience, made, now, tasks_, options_.expiry);
   }
-  /// A person's bid, in the same way.
+  /// Takes a person's bid.
   hc::Status bid_of_person(const Bidder& who, double salience, hc::MonotonicTime made,
                            hc::MonotonicTime now) {
     return take(who, salience, made, now, persons_, options_.person_expiry);
   }
 
-  /// Applies the rules; true when the focus has changed. To be called each period.
+  /// Applies the rules; true if the focus changed. Call each period.
   bool decide(hc::MonotonicTime now);
 
   /// The last change of focus and the bids behind it: "track (0.60) over read (0.40), margin 0.10",
   /// "none; stopped by web.stop".
   [[nodiscard]] std::string last_change() const;
 
-  /// The mode in focus as decide() left it; 0: none.
+  /// The mode in focus since the last decide(); 0: none.
   [[nodiscard]] std::int32_t focus() const { return focus_; }
 
-  /// Modes that had a bid when decide() was called, and those that came since, by their numbers.
+  /// The modes with a bid at the last decide() or since, in ascending order.
   [[nodiscard]] std::vector<Standing> standings(hc::MonotonicTime now) const;
 
   [[nodiscard]] const Refused& refused() const { return refused_; }
@@ -122,7 +119,7 @@ class Workspace {
   std::map<std::int32_t, std::string> names_;
   Bids tasks_, persons_;
   std::int32_t focus_ = 0, before_ = 0;
-  std::string held_back_;      // why no mode has the focus though there are bids
-  hc::MonotonicTime since_{};  // of the focus
+  std::string held_back_;      // why the brake holds, else empty
+  hc::MonotonicTime since_{};  // last change of focus
   Refused refused_;
 };

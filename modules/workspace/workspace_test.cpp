@@ -30,7 +30,7 @@ struct Table {
   void stop(std::uint8_t word, std::int32_t source = 1) {
     ASSERT_TRUE(workspace.brake.take({source, word, 0, now}, now).has_value());
   }
-  /// The focus after so long.
+  /// The focus after this time.
   std::int32_t after(milliseconds wait) {
     now += wait;
     workspace.decide(now);
@@ -44,7 +44,7 @@ TEST(Workspace, the_greatest_bid_has_the_focus_and_none_is_0) {
   table.bid(1, 0.2);
   table.bid(3, 0.9);
   table.bid(2, 0.9);
-  EXPECT_EQ(table.after(kPeriod), 2);  // of equal ones the lowest
+  EXPECT_EQ(table.after(kPeriod), 2);  // the lowest of equal ones
   table.bid(2, 0);
   EXPECT_EQ(table.after(kPeriod), 3);
   EXPECT_EQ(table.after(milliseconds(1000)), 0);
@@ -103,7 +103,7 @@ TEST(Workspace, a_mode_has_the_greatest_bid_of_its_sources_and_each_expires_alon
   table.bid(2, 0.5, 3);
   EXPECT_EQ(table.after(milliseconds(499)), 1);
   EXPECT_EQ(table.workspace.standings(table.now).at(0).salience, 0.9);
-  EXPECT_EQ(table.after(milliseconds(1)), 2);  // of mode 1, 0.3 is left
+  EXPECT_EQ(table.after(milliseconds(1)), 2);  // 0.3 of mode 1 is left
 }
 
 TEST(Workspace, persons_who_contradict_each_other_do_not_take_turns) {
@@ -130,7 +130,7 @@ TEST(Workspace, of_persons_the_greater_wins_and_of_new_ones_the_last_to_begin) {
   table.person(3, 0.6, 2);
   EXPECT_EQ(table.after(kPeriod), 3);
   table.stop(1);
-  table.person(2, 0.6, 1);  // which began before
+  table.person(2, 0.6, 1);  // started earlier
   EXPECT_EQ(table.after(kPeriod), 0);
   table.stop(0);
   EXPECT_EQ(table.after(kPeriod), 3);
@@ -306,7 +306,7 @@ class Sequence {
   void bid() {
     now_ += milliseconds(pick(0, 10));
     const Bidder who{pick(1, 4), pick(1, 3)};
-    // Few numbers, so that there are equal ones.
+    // Few different numbers, so that some are equal.
     const double salience = pick(0, 5) == 0 ? 0 : 0.1 * pick(1, 10);
     const auto which = pick(0, 19);
     if (which < 6) {

@@ -5,14 +5,14 @@ import type { Server } from "./server";
 export interface Output {
   /** MODULE.PORT */
   readonly port: string;
-  /** What it sends, as in "rgb_image of 3 × u8"; empty: not known. */
+  /** Type of its messages, such as "rgb_image of 3 × u8"; empty: unknown. */
   readonly type: string;
   readonly doc: string;
 }
 
 const asked = new Map<string, Promise<Description | undefined>>();
 
-/** The outputs of all modules, by name: what they say of themselves, and what is linked. */
+/** The outputs of all modules, by name: described and linked ones. */
 export async function outputsOf(server: Server): Promise<Output[]> {
   const { state } = server;
   const outputs = new Map<string, Output>();

@@ -9,11 +9,11 @@
 
     @module.on(numbers)
     def double(message):
-        twice.send(2 * message.array)
+        twice.send(2 * message.matrix)
 
     module.run()
 
-doc/python.md is a tour of ten minutes.
+doc/python.md is a ten-minute tour.
 """
 
 import importlib.util
@@ -24,11 +24,11 @@ if importlib.util.find_spec("numpy") is None:
     raise ImportError(no_numpy())
 try:
     from hypercolumn._hypercolumn import (
-        Frames,
         Input,
         Kind,
         Loan,
         Message,
+        ModuleFrames,
         Output,
         Parameter,
         Stream,
@@ -65,7 +65,7 @@ setattr(Message, "_repr_png_", png)  # how notebooks show an image
 __all__ = [
     "BadMessage",
     "Error",
-    "Frames",
+    "ModuleFrames",
     "Graph",
     "Input",
     "Kind",

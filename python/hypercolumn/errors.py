@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What this package raises."""
+"""Exceptions."""
 
 import pathlib
 import sys
 
 
 class Error(RuntimeError):
-    """A failure of the world, with the text that C++ and the commands have for it.
+    """An error of the world outside the program, with the text of C++ and commands.
 
-    Raised by a handler, it ends the module with this one line and status 1; with the code "Invalid"
+    Raised in a handler, it ends the module with this one line and status 1; with the code "Invalid"
     with status 2, since a restart would fail again.
 
     `code` is one of Malformed, Unsupported, TooLarge, Truncated, Closed, Stopped, NotFound, Invalid,
@@ -21,32 +21,32 @@ class Error(RuntimeError):
 
 
 class BadMessage(Exception):
-    """Raised by a handler since the message that it got says what it cannot use.
+    """Raised in a handler to refuse a message.
 
-    That message is dropped, counted and logged, once for each input, and the module goes on.
+    The message is dropped, counted, and logged once per input; the module continues.
     """
 
 
 class Stopped(BaseException):
-    """Ends the module cleanly: nobody reads its outputs any more, or it was asked to stop.
+    """Ends the module cleanly: its outputs have no reader any more, or it was asked to stop.
 
-    It passes through handlers as KeyboardInterrupt does; no `except Exception` catches it.
+    Like KeyboardInterrupt, it is not caught by `except Exception`.
     """
 
 
 def other_python() -> str:
-    """Says that the package was built for another version of Python than this one."""
+    """The error if the package was built for another version of Python."""
     folder = pathlib.Path(__file__).parent
     built = ", ".join(sorted(path.name for path in folder.glob("_hypercolumn.*.so"))) or "nothing"
     return (
         "hypercolumn was built for another Python than %s (%d.%d): %s has %s; start the program with "
-        "the Python of that, or build with cmake -D Python_EXECUTABLE=%s"
+        "that Python, or build with cmake -D Python_EXECUTABLE=%s"
         % (sys.executable, *sys.version_info[:2], folder, built, sys.executable)
     )
 
 
 def no_numpy() -> str:
-    """Says that this Python has no numpy."""
+    """The error if this Python has no numpy."""
     return (
         "hypercolumn needs numpy, which %s does not have: start the program with a Python that does, "
         "such as /usr/bin/python3 with Debian's python3-numpy" % sys.executable

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Graphs that run on this host: attached to, or started."""
+"""Attaches to running graphs on this host, or starts them."""
 
 import contextlib
 import json
@@ -17,7 +17,7 @@ from hypercolumn import _hypercolumn
 from hypercolumn._hypercolumn import Message, RunningGraph, Stream
 from hypercolumn.errors import Error
 
-_SILENCE = 5.0  # seconds after which a graph that says nothing may be stopped
+_SILENCE = 5.0  # seconds without state until an error
 _REPORT = 2.0  # seconds within which a module reports a new value
 _STATE_LIMIT = 16 << 20  # bytes
 
@@ -40,14 +40,14 @@ def _is_same(value: Any, other: Any) -> bool:
 
 
 class Parameters:
-    """The parameters of a running graph by MODULE.PARAMETER: what they are, and to be set."""
+    """The parameters of a running graph by MODULE.PARAMETER, to read and set."""
 
     def __init__(self, graph: "Graph") -> None:
         self._graph = graph
         self._types: Dict[str, Dict[str, str]] = {}  # of parameters, by program
 
     def as_dict(self) -> Dict[str, Any]:
-        """All of them now, each of the type that its module has declared."""
+        """All current values, each of its declared type."""
         found = {}
         for module in self._graph.modules.values():
             for name, text in module.parameters.items():
@@ -69,8 +69,8 @@ class Parameters:
         return values[name]
 
     def __setitem__(self, name: str, value: Union[bool, int, float, str]) -> None:
-        """Sets it, and returns when its module has reported that. Errors: those of the command
-        `set`; Closed, where the module does not report it within 2 s."""
+        """Sets a parameter, and waits until its module reports the new value. Errors: those of the
+        command `set`; Closed if the module does not report it within 2 s."""
         text = _text_of(value)
         self._graph.command("set %s=%s" % (name, text))
         module, _, parameter = name.partition(".")
@@ -78,7 +78,7 @@ class Parameters:
         end = time.monotonic() + _REPORT
         while not _is_same(wanted, self[name]):
             if time.monotonic() >= end:
-                what = "%s=%s was sent, and is not confirmed after %g s: " % (name, text, _REPORT)
+                what = "%s=%s was sent, but not confirmed after %g s: " % (name, text, _REPORT)
                 raise Error("Closed: " + what + "the module is stopped or busy", "Closed")
             time.sleep(0.02)
 
@@ -90,10 +90,9 @@ class Parameters:
 
 
 class Port:
-    """An output of a running graph, read without disturbing it: what graph["head_eyes.left"] gives.
+    """An output of a running graph, graph["head_eyes.left"], observed without disturbing it.
 
-    Each loop over it reads from now on; a reader that is slow misses messages, and no module waits
-    for it.
+    Each loop over it starts with new messages. A slow reader misses some; no module waits for it.
     """
 
     def __init__(self, graph: RunningGraph, name: str) -> None:
@@ -103,7 +102,7 @@ class Port:
         return self._messages(math.inf)
 
     def _messages(self, end: float) -> Iterator[Message]:
-        """Messages until the graph ends; after a time by time.monotonic() no more."""
+        """Messages until the graph ends, or until a time of time.monotonic()."""
         try:
             with _hypercolumn.open_tap(self._graph, self.name) as stream:
                 while True:
@@ -116,7 +115,7 @@ class Port:
             return
 
     def read(self, seconds: float = math.inf) -> Message:
-        """The next message; an error, Closed, after so many seconds without one."""
+        """The next message. Error: Closed after `seconds` without one."""
         end = time.monotonic() + seconds
         for message in self._messages(end):
             return message
@@ -129,7 +128,7 @@ class Port:
 
 
 class Graph:
-    """A graph that runs here: one `hc run`."""
+    """A running graph on this host: one `hc run`."""
 
     def __init__(self, running_graph: RunningGraph) -> None:
         self._running = running_graph
@@ -137,7 +136,7 @@ class Graph:
         self.process: int = running_graph.process
 
     def state(self) -> Dict[str, Any]:
-        """What the graph says of itself now, as spec/graph.md has it (G45)."""
+        """The current state of the graph (spec/graph.md, G45)."""
         with Stream(self._running.state_uri, _STATE_LIMIT) as stream:
             end = time.monotonic() + _SILENCE
             while time.monotonic() < end:
@@ -167,11 +166,11 @@ class Graph:
         return Parameters(self)
 
     def command(self, *rows: str) -> List[str]:
-        """Has it do what `hc graph` can, a row each: all of them or none (spec/graph.md, G47)."""
+        """Executes commands of `hc graph`, one per row: all or none (spec/graph.md, G47)."""
         return _hypercolumn.ask(self._running, list(rows))
 
     def __getitem__(self, port: str) -> Port:
-        """An output, MODULE.PORT, to be read."""
+        """An output, MODULE.PORT."""
         return Port(self._running, port)
 
     def __repr__(self) -> str:
@@ -179,13 +178,13 @@ class Graph:
 
 
 def running() -> List[Graph]:
-    """The graphs that run here."""
+    """The running graphs on this host."""
     return [Graph(each) for each in _hypercolumn.find_running()]
 
 
 def attach(name: str = "") -> Graph:
-    """The graph of that name, or NAME.PROCESS, that runs here; without a name, the one of $HC_GRAPH,
-    or the only one."""
+    """The running graph NAME or NAME.PROCESS on this host; without a name, that of $HC_GRAPH, or
+    the only one."""
     name = name or os.environ.get("HC_GRAPH", "")
     graphs = running()
     found = [each for each in graphs if name in ("", each.name, repr(each._running))]
@@ -199,7 +198,7 @@ def attach(name: str = "") -> Graph:
 
 
 def _command() -> str:
-    """The command hc that came with this package, or else that of the PATH."""
+    """The command hc installed with this package, else the one in PATH."""
     parents = pathlib.Path(__file__).parents
     for prefix in (parents[2], parents[4] if len(parents) > 4 else parents[2]):
         if os.access(prefix / "bin" / "hc", os.X_OK):
@@ -212,13 +211,13 @@ def _command() -> str:
 
 @contextlib.contextmanager
 def start(file: "Union[str, os.PathLike[str]]", *options: str, wait: float = 60) -> Iterator[Graph]:
-    """Runs a graph for as long as a `with`, such as in a test:
+    """Runs a graph during a `with`, e.g. in a test:
 
         with hc.start("graphs/depth.toml", "--set", "depth.disparities=96") as graph:
             assert graph["depth.depth"].read().height == 600
 
-    `options` are those of `hc run`. The graph is up when it is entered: each module runs, or has
-    ended. A graph that cannot run raises what `hc run` has said.
+    `options` are those of `hc run`. At entry each module runs or has ended. If the graph cannot
+    run, raises an error with the output of `hc run`.
     """
     words = [_command(), "run", os.fspath(file), *options]
     with tempfile.TemporaryFile() as log:
@@ -257,6 +256,6 @@ def _wait_for_graph(process: "subprocess.Popen[bytes]", wait: float) -> Optional
 def _is_up(graph: Graph) -> bool:
     try:
         states = [each.status for each in graph.modules.values()]
-    except Error:  # it has ended
+    except Error:  # the graph has ended
         return False
     return all(each in ("running", "ended") for each in states)

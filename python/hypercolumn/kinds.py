@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Kinds of messages: what a port takes or gives.
+"""Kinds of messages that a port accepts or sends.
 
     hc.rotation().of(1, 1).in_("gaze").finite()   # one rotation, in the coordinate system gaze
 
-`scalar` is what a number is: "u8" … "f64" as in the specification, or what numpy takes for a dtype.
-Shapes are numpy's: height first.
+`scalar` is the type of the numbers: "u8" … "f64" as in the specification, or anything that numpy
+accepts as dtype. Shapes are as in numpy: height first.
 """
 
 from typing import Any, Dict
@@ -28,18 +28,18 @@ def rgb_image(scalar: Any = "u8") -> Kind:
     return _hypercolumn.kind("rgb_image", 3, scalar)
 
 
-def image() -> Kind:
-    """A colour image of bytes, (height, width, 3): rgb_image("u8")."""
-    return rgb_image()
-
-
 def intensity_image(scalar: Any = "u8") -> Kind:
     """A grey image or a depth map, (height, width)."""
     return _hypercolumn.kind("intensity_image", 1, scalar)
 
 
+def image() -> Kind:
+    """An image of bytes, in colour or grey, for an input: (height, width, 3) or (height, width)."""
+    return _hypercolumn.any_of(rgb_image(), intensity_image())
+
+
 def vector_field(components: int, scalar: Any = "f32") -> Kind:
-    """A vector for every place of a grid, (height, width, components)."""
+    """A vector for each cell of a grid, (height, width, components)."""
     return _hypercolumn.kind("vector_field", components, scalar)
 
 
@@ -69,25 +69,25 @@ def sound(channels: int, scalar: Any = "i16") -> Kind:
 
 
 def map(components: int = 1, scalar: Any = "f64") -> Kind:
-    """A grid over a place, (height, width, components): occupancy, cost, place cells."""
+    """A grid map of an area, (height, width, components): occupancy, cost, place cells."""
     return _hypercolumn.kind("map", components, scalar)
 
 
 def table(components: int = 1, scalar: Any = "f64") -> Kind:
-    """Numbers that are nothing else: counters, scores, bids."""
+    """Other numbers: counters, scores, bids."""
     return _hypercolumn.kind("table", components, scalar)
 
 
 def any_of(*kinds: Kind) -> Kind:
-    """Several kinds that one input takes; message.type and message.scalar say which came."""
+    """Several kinds for one input; message.type and message.scalar tell which one arrived."""
     return _hypercolumn.any_of(*kinds)
 
 
 def anything() -> Kind:
-    """Every kind of message, for an input."""
+    """Any kind of message, for an input."""
     return _hypercolumn.any_of()
 
 
 def coords() -> Dict[str, int]:
-    """The coordinate systems of the specification: their numbers by name."""
+    """Numbers of the coordinate systems of the specification, by name."""
     return _hypercolumn.coords()

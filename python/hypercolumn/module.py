@@ -5,7 +5,7 @@ import sys
 from typing import Any, Callable, List, Optional, Sequence, TypeVar, Union
 
 from hypercolumn import _hypercolumn
-from hypercolumn._hypercolumn import Frames, Input, Kind, Output, Parameter, Timeout
+from hypercolumn._hypercolumn import Input, Kind, Output, Parameter, Timeout
 from hypercolumn.errors import Error
 
 Handler = TypeVar("Handler", bound=Callable[..., Any])
@@ -13,14 +13,14 @@ Value = TypeVar("Value", bool, int, float, str)
 
 
 class Together:
-    """Inputs whose messages of equal times are taken together: what together() gives."""
+    """Synchronised inputs, returned by together()."""
 
     def __init__(self, inputs: Sequence[Input]) -> None:
         self.inputs: List[Input] = list(inputs)
 
 
 def together(*inputs: Input) -> Together:
-    """Two to eight inputs, for Module.on(): one message of each, all of one time."""
+    """Synchronises two to eight inputs for Module.on(): one message of each, with equal times."""
     if len(inputs) < 2:
         raise Error("Invalid: together() takes two inputs or more", "Invalid")
     return Together(inputs)
@@ -29,13 +29,27 @@ def together(*inputs: Input) -> Together:
 class Module(_hypercolumn.Module):
     """A program with input ports, output ports and parameters, declared once.
 
-    Its handlers run one after the other on the thread that calls run(). All options of a module,
-    such as --help, --describe, --in and --out, are there as for one in C++ (doc/modules.md).
+    Its handlers run one after another on the thread that calls run(). It has all options of a
+    module in C++, such as --help, --describe, --in and --out (doc/modules.md).
     """
 
-    def __init__(self, name: str, summary: str) -> None:
-        """`name` is in snake_case, as in the graph; `summary` is one sentence."""
-        super().__init__(name, summary)
+    def __init__(
+        self,
+        name: str,
+        summary: str,
+        *,
+        background: bool = False,
+        keep_running: bool = False,
+        finish_when_stopped: bool = False,
+    ) -> None:
+        """`name` is in snake_case, as in the graph; `summary` is one sentence.
+
+        In the `background`, the process yields the processor to closed loops: for a module that is
+        in no hurry. With `keep_running` it runs until it is stopped, though its inputs have ended:
+        for a device that sends unasked. With `finish_when_stopped` it first takes the messages that
+        still come from modules that end beside it.
+        """
+        super().__init__(name, summary, background, keep_running, finish_when_stopped)
         self._handled: List[str] = []
 
     def input(
@@ -43,15 +57,22 @@ class Module(_hypercolumn.Module):
     ) -> Input:
         """Declares an input.
 
-        An `actor` moves something: several writers need an arbiter then. With `keep`, only so many
-        of the newest messages count while the module is busy, so that no link to it in a graph
-        makes its writer wait, unless the link says otherwise.
+        An `actor` moves something, so several writers need an arbiter. `keep` limits the queue to
+        that number of the newest messages, so that a link in a graph does not block its writer
+        unless the link has another `keep`.
         """
         return self._input(name, kind, doc, actor, keep)
 
-    def output(self, name: str, kind: Kind, doc: str) -> Output:
-        """Declares an output, of one kind."""
-        return self._output(name, kind, doc)
+    def output(
+        self, name: str, kind: Kind, doc: str, *, on_demand: bool = False, keep: int = 0
+    ) -> Output:
+        """Declares an output, of one kind.
+
+        One `on_demand` is sent only by a link to it alone, and has no part in the standard output
+        that outputs share. With `keep`, sending never waits: for a slow reader so many of the
+        newest messages wait, and without a reader a message is lost.
+        """
+        return self._output(name, kind, doc, on_demand, keep)
 
     def parameter(
         self,
@@ -67,18 +88,18 @@ class Module(_hypercolumn.Module):
         positional: bool = False,
         fixed: bool = False,
     ) -> "Parameter[Value]":
-        """Declares a parameter, of the type of its default; its `value` is what it is now.
+        """Declares a parameter, of the type of its default; `value` is its current value.
 
         `unit` is "m", "rad", "px", "s", or "" for none. A number may have `min` and `max`, an
         integer also a `step`, a string `choices`. A `positional` one may be given without its name.
-        A `fixed` one is read at the start alone: the module is restarted to change it.
+        A `fixed` one is only read at the start; changing it restarts the module.
         """
         return self._parameter(
             name, default, unit, doc, min, max, step, list(choices), positional, fixed
         )
 
     def on(self, inputs: Union[Input, Together]) -> Callable[[Handler], Handler]:
-        """Has a function called with each message of an input, or with those that belong together:
+        """Calls a function with each message of an input, or with synchronised messages of several:
 
         @module.on(image)
         def look(message): ...
@@ -102,8 +123,8 @@ class Module(_hypercolumn.Module):
         return attach
 
     def every(self, period: "Union[float, Parameter[float]]") -> Callable[[Handler], Handler]:
-        """Has a function called every `period` seconds, or at the rate of a parameter [Hz]; between
-        messages, first a period after the start. Periods that were missed are skipped."""
+        """Calls a function every `period` seconds, or at the rate of a parameter [Hz]; between
+        messages, first one period after the start. Missed periods are skipped."""
 
         def attach(handler: Handler) -> Handler:
             self._every(period, handler)
@@ -112,7 +133,7 @@ class Module(_hypercolumn.Module):
         return attach
 
     def after(self, seconds: float) -> Callable[[Callable[[], Any]], Timeout]:
-        """Has a function called once, so long after the start; again after its restart():
+        """Calls a function once, `seconds` after the start, and again after each restart():
 
         @module.after(3)
         def silence():
@@ -123,32 +144,26 @@ class Module(_hypercolumn.Module):
         return lambda handler: self._after(seconds, handler)
 
     def generate(self, handler: Handler) -> Handler:
-        """For a module that makes messages unasked: the function is called again and again while
-        no message waits, until it gives False. The module ends then."""
+        """For a source: calls a function repeatedly while no message is queued, until stop()."""
         self._generate(handler)
         return handler
 
     def on_start(self, handler: Handler) -> Handler:
-        """Has a function called once, when parameters are set and links are open."""
+        """Calls a function once, when parameters are set and links are open."""
         self._on_start(handler)
         return handler
 
     def on_end(self, handler: Handler) -> Handler:
-        """Has a function called once, when all inputs have ended. Not after an error."""
+        """Calls a function once, when all inputs have ended; not after an error."""
         self._on_end(handler)
         return handler
 
-    def frames(self) -> Frames:
-        """The frames of the module's graph: where its eyes, its head and all else are (doc/frames.md).
-        Declares a parameter and an input `frames`."""
-        return Frames(self)
-
     def run(self, arguments: Optional[Sequence[str]] = None) -> None:
-        """Runs the module as the command line says, or `arguments` without a program's name, until
-        its inputs end, nobody reads it any more, or it is asked to stop (Ctrl-C). What fails is
-        said in one line on standard error, and ends the program with its status, 1 or 2.
+        """Runs the module with the command line, or with `arguments` (no program name), until its
+        inputs end, its outputs lose their readers, or it is asked to stop (Ctrl-C). An error is
+        printed as one line on standard error, and ends the program with status 1 or 2.
 
-        What handlers print goes to standard error: standard output belongs to the links.
+        Output of handlers goes to standard error, since standard output belongs to the links.
         """
         words = sys.argv if arguments is None else [self.name, *arguments]
         outside, sys.stdout = sys.stdout, sys.stderr

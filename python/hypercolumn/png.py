@@ -7,13 +7,13 @@ from typing import Any, Optional
 
 
 def png(message: Any) -> Optional[bytes]:
-    """A message that is an image as a PNG file; None of anything else. Images of other numbers than
-    bytes are shown from their least to their greatest finite one."""
+    """An image message as a PNG file; None for other messages. Images that are not u8 are scaled
+    from their minimum to their maximum finite value."""
     import numpy
 
-    if message.type not in ("rgb_image", "intensity_image") or message.array.size == 0:
+    if message.type not in ("rgb_image", "intensity_image") or message.matrix.size == 0:
         return None
-    pixels = message.array
+    pixels = message.matrix
     if pixels.dtype != numpy.uint8:
         known = pixels[numpy.isfinite(pixels)].astype(float)
         low, high = (known.min(), known.max()) if known.size else (0.0, 0.0)

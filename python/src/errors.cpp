@@ -77,7 +77,7 @@ void set_current_exception() noexcept try {
   } catch (...) {
     PyErr_SetNone(stopped_type());
   }
-} catch (...) {  // its text had no room
+} catch (...) {  // no memory for its text
   PyErr_NoMemory();
 }
 

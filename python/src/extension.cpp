@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The extension _hypercolumn, of which the package's Python files make what people use.
+// The extension _hypercolumn, on which the package's Python files build.
 #include <exception>
 #include <utility>
 

@@ -9,7 +9,7 @@
 namespace python {
 namespace {
 
-/// The scalar of a name as the specification has it, or of what numpy takes for a dtype.
+/// The scalar type of a name in the specification, or of anything that numpy accepts as dtype.
 hc::Scalar scalar_of(const py::object& scalar) {
   if (py::isinstance<py::str>(scalar))
     if (auto found = hc::scalar_of(scalar.cast<std::string>())) return *found;
@@ -18,11 +18,12 @@ hc::Scalar scalar_of(const py::object& scalar) {
   const int bits = 8 * dtype.attr("itemsize").cast<int>();
   const auto found = hc::scalar_of(kind + std::to_string(bits));
   if (!found)
-    raise({hc::Code::Unsupported, "no scalar of messages: " + py::str(dtype).cast<std::string>()});
+    raise({hc::Code::Unsupported,
+           "not a scalar type of messages: " + py::str(dtype).cast<std::string>()});
   return *found;
 }
 
-/// Small things are written as text, as those of hc::Kind.
+/// Small messages are written as text, as in hc::Kind.
 hc::Encoding encoding_of(hc::MatrixType type) {
   using hc::MatrixType;
   for (auto small : {MatrixType::Position, MatrixType::Rotation, MatrixType::String,
@@ -46,7 +47,7 @@ Kind make_kind(const std::string& type, int components, const py::object& scalar
 }
 
 Kind with_shape(Kind kind, std::int32_t height, std::int32_t width) {
-  if (height < 0 || width < 0) raise({hc::Code::Invalid, "a side of a shape is negative"});
+  if (height < 0 || width < 0) raise({hc::Code::Invalid, "negative shape"});
   for (auto& type : kind.types) {
     type.height = height;
     type.width = width;
@@ -94,14 +95,13 @@ std::int32_t coord_of(const py::object& coord) {
 }
 
 void add_kinds(py::module_& extension) {
-  py::class_<Kind>(extension, "Kind", "What a port takes or gives: a type of matrix and scalar.")
+  py::class_<Kind>(extension, "Kind", "The messages of a port: a type of matrix and scalar.")
       .def("of", with_shape, py::arg("height"), py::arg("width"),
            "The same with a fixed shape, so that a handler need not check it; 0: any.")
       .def("in_", with_coord, py::arg("coord"),
            "The same in a coordinate system: its name or number, or 1000 * to + from.")
       .def("finite", with_finite,
-           "The same of finite numbers: an input drops messages with NaN or infinity, and counts "
-           "them.")
+           "The same with finite numbers: an input drops and counts messages with NaN or infinity.")
       .def("__repr__", [](const Kind& kind) { return "<Kind " + hc::in_words(kind.types) + ">"; });
   extension.def("kind", make_kind);
   extension.def("any_of", any_of);

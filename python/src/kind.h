@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// hypercolumn.Kind: what a port takes or gives.
+// hypercolumn.Kind: the messages that a port accepts or sends.
 
 #include <vector>
 
@@ -10,15 +10,15 @@
 
 namespace python {
 
-/// One type, or several of which an input takes any; none: anything.
+/// One type, or several alternatives for an input; none: anything.
 struct Kind {
   std::vector<hc::PortType> types;
 
-  /// The type of an output, or where only one makes sense. Raises when there are several or none.
+  /// The only type, e.g. of an output. Raises if there are several or none.
   [[nodiscard]] const hc::PortType& only(const char* wanted_by) const;
 };
 
-/// The number of a coordinate system: of an int, or by its name. Raises.
+/// The number of a coordinate system, given by number or name. Raises.
 std::int32_t coord_of(const py::object& coord);
 
 }  // namespace python

@@ -17,12 +17,12 @@ namespace {
 
 constexpr int kContiguous = 0x1, kAligned = 0x100, kWriteable = 0x400;  // flags of numpy arrays
 
-/// Its fields are made and ended by hand, as Python allocates it.
+/// Fields are constructed and destroyed by hand, since Python allocates the object.
 struct PyMessage {
   PyObject_HEAD hc::Message message;
   std::shared_ptr<Keeper> keeper;
-  std::size_t place;   // among those that are kept
-  PyCodeObject* code;  // where an array of it was taken, once many are kept; null: not known
+  std::size_t place;   // in keeper->kept
+  PyCodeObject* code;  // where its array was taken, noted once many are kept; may be null
   int line;
 };
 
@@ -34,7 +34,7 @@ const hc::Message& message_of(PyObject* self) {
   return reinterpret_cast<PyMessage*>(self)->message;
 }
 
-/// Notes the line of Python at which an array of a message is taken.
+/// Notes the Python line at which a message's array is taken.
 void note_line(PyMessage& self) {
   PyFrameObject* frame = PyEval_GetFrame();  // borrowed
   if (frame == nullptr || self.code != nullptr) return;
@@ -42,7 +42,7 @@ void note_line(PyMessage& self) {
   self.line = PyFrame_GetLineNumber(frame);
 }
 
-/// Warns that too many messages are kept. What a warning raises is raised where it was given.
+/// Warns that too many messages are kept. False if Python turns the warning into an exception.
 bool warn_kept(Keeper& keeper) {
   keeper.has_warned = true;
   Line line{py::str("<unknown>")};
@@ -59,8 +59,8 @@ bool warn_kept(Keeper& keeper) {
     line = current_line().value_or(line);
   }
   const std::string text = hc::format(
-      "{} messages of {} are kept in the memory of their publisher; while it is so, further ones "
-      "are copied. To keep numbers, keep a copy: message.array.copy()",
+      "{} messages of {} are kept in the memory of their publisher; until some are released, "
+      "further ones are copied. To keep numbers, keep a copy: message.matrix.copy()",
       keeper.kept.size(), keeper.name);
   return PyErr_WarnExplicitObject(PyExc_RuntimeWarning, py::str(text).ptr(), line.file.ptr(),
                                   line.number, nullptr, nullptr) == 0;
@@ -88,7 +88,7 @@ void end_message(PyObject* self) {
   Py_DECREF(type);
 }
 
-/// The dtype of a scalar; borrowed.
+/// The dtype of a scalar; a borrowed reference.
 PyObject* dtype_of(hc::Scalar scalar) {
   static std::array<PyObject*, 10> types{};
   PyObject*& type = types.at(static_cast<std::size_t>(scalar));
@@ -105,7 +105,7 @@ bool must_be_plain(const hc::Message& message) {
   return false;
 }
 
-PyObject* get_array(PyObject* self, void*) {
+PyObject* get_matrix(PyObject* self, void*) {
   auto& each = *reinterpret_cast<PyMessage*>(self);
   if (!must_be_plain(each.message)) return nullptr;
   if (each.keeper != nullptr && each.keeper->kept.size() > Keeper::kMostKept / 4) note_line(each);
@@ -151,7 +151,7 @@ PyObject* get_text(PyObject* self, void*) {
     return nullptr;
   }
   if (!must_be_plain(message)) return nullptr;
-  if (message.header.height <= 1) return decode(message.characters());
+  if (message.header.height <= 1) return decode(message.text());
   std::string text;
   for (const auto& row : hc::rows_of(message)) text += (text.empty() ? "" : "\n") + row;
   return decode(text);
@@ -161,7 +161,6 @@ PyObject* text_of(std::string_view text) {
   return PyUnicode_InternFromString(std::string(text).c_str());
 }
 
-/// A getter of a field of the header.
 template <auto kField>
 PyObject* get_field(PyObject* self, void*) {
   return PyLong_FromLongLong(message_of(self).header.*kField);
@@ -192,24 +191,23 @@ PyObject* describe(PyObject* self) {
 }
 
 PyGetSetDef fields[] = {
-    {"array", guarded<get_array>, nullptr,
-     "The elements as a numpy array, read-only and without a copy: (height, width, components),\n"
-     "without the last where it is 1. While an array lives, so does its memory; the publisher of\n"
-     "shared memory lends few messages, so keep array.copy() of what is to be kept for long.",
+    {"matrix", guarded<get_matrix>, nullptr,
+     "The elements as a read-only numpy array without a copy: (height, width, components), or\n"
+     "(height, width) for one component. An array keeps its memory alive, and a publisher lends\n"
+     "few messages of shared memory: to keep elements for long, keep matrix.copy().",
      nullptr},
     {"numbers", guarded<get_numbers>, nullptr,
-     "All numbers, row by row, as a tuple of Python numbers: for few. Of many take array.",
+     "All numbers, row by row, as a tuple of Python numbers. For many numbers use matrix.", nullptr},
+    {"text", guarded<get_text>, nullptr, "The text of a string; rows are separated by line feeds.",
      nullptr},
-    {"text", guarded<get_text>, nullptr,
-     "The text of a string; its rows have a line feed between them.", nullptr},
     {"src", guarded<get_field<&hc::Header::src>>, nullptr, "Address of the output that sent it.",
      nullptr},
     {"dst", guarded<get_field<&hc::Header::dst>>, nullptr,
-     "Address of whom it is for; 0: who is linked.", nullptr},
+     "Address of the receiver; 0: the linked inputs.", nullptr},
     {"seq", guarded<get_field<&hc::Header::seq>>, nullptr, "Counts up by one per src.", nullptr},
     {"ttl", guarded<get_field<&hc::Header::ttl>>, nullptr, "Routers left to pass.", nullptr},
     {"time", guarded<get_field<&hc::Header::time>>, nullptr,
-     "When the sensed thing happened [ns since the Unix epoch]; 0: unknown.", nullptr},
+     "Time of the sensed event [ns since the Unix epoch]; 0: unknown.", nullptr},
     {"mode", guarded<get_field<&hc::Header::mode>>, nullptr, "System mode of the sender; 0: none.",
      nullptr},
     {"coord", guarded<get_field<&hc::Header::coord>>, nullptr,
@@ -219,13 +217,13 @@ PyGetSetDef fields[] = {
     {"components", guarded<get_components>, nullptr, "Numbers in an element.", nullptr},
     {"type", guarded<get_type>, nullptr, "Type of the matrix, such as rgb_image or table.",
      nullptr},
-    {"scalar", guarded<get_scalar>, nullptr, "What a number is, such as u8 or f64.", nullptr},
+    {"scalar", guarded<get_scalar>, nullptr, "Type of the numbers, such as u8 or f64.", nullptr},
     {"encoding", guarded<get_encoding>, nullptr, "How it was written: text, binary, zstd or jpeg.",
      nullptr},
     {}};
 
 PyMethodDef methods[] = {{"copy", guarded<copy>, METH_NOARGS,
-                          "The same message with elements of its own, to be kept for long."},
+                          "A copy of the message and its elements, to keep for long."},
                          {}};
 
 PyType_Slot slots[] = {
@@ -233,8 +231,7 @@ PyType_Slot slots[] = {
     {Py_tp_getset, fields},
     {Py_tp_methods, methods},
     {Py_tp_repr, reinterpret_cast<void*>(guarded<describe>)},
-    {Py_tp_doc, const_cast<char*>("A message: a header, and a matrix of numbers that nobody "
-                                  "changes any more.")},
+    {Py_tp_doc, const_cast<char*>("A message: a header and an immutable matrix of numbers.")},
     {0, nullptr}};
 
 PyType_Spec spec = {"hypercolumn.Message", sizeof(PyMessage), 0,
@@ -275,10 +272,10 @@ PyObject* view_elements(const hc::Header& header, const std::byte* elements, boo
   const auto& numpy = py::detail::npy_api::get();
   PyObject* dtype = dtype_of(header.info.scalar);
   const std::array<Py_intptr_t, 3> sides = {header.height, header.width, header.info.components};
-  static std::byte nothing[8]{};  // an array without elements has an address all the same
+  static std::byte nothing[8]{};  // an empty array needs an address, too
   auto* data = const_cast<std::byte*>(elements != nullptr ? elements : nothing);
   const int flags = kContiguous | kAligned | (is_writable ? kWriteable : 0);
-  Py_INCREF(dtype);  // which the array takes over
+  Py_INCREF(dtype);  // the array takes this reference
   PyObject* array =
       numpy.PyArray_NewFromDescr_(numpy.PyArray_Type_, dtype, header.info.components == 1 ? 2 : 3,
                                   sides.data(), nullptr, data, flags, nullptr);

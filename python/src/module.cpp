@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hypercolumn._hypercolumn.Module: what hypercolumn/module.py makes its own Module of.
+// hypercolumn._hypercolumn.Module, the base of Module in hypercolumn/module.py.
 #include <pybind11/chrono.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -18,7 +18,7 @@ namespace {
 
 using Input = hc::Input<hc::AnyKind>;
 constexpr std::size_t kMostTogether = 8;
-/// Messages up to this size may come so fast that to take the GIL for each would count. [byte]
+/// Up to this size, messages can be so frequent that taking the GIL for each matters [byte].
 constexpr std::size_t kQuick = 4096;
 
 struct PyInput {
@@ -26,18 +26,18 @@ struct PyInput {
   Input input;
 };
 
-/// A parameter of any type, as Python sees it.
+/// A parameter of any type.
 struct PyParameter {
   const Program* program;
   std::shared_ptr<const hc::ParameterState> state;
 
   [[nodiscard]] py::object value() const {
-    program->check_thread();  // its loop sets the value without the GIL
+    program->check_thread();  // the loop sets the value without the GIL
     return std::visit([](const auto& each) -> py::object { return py::cast(each); }, state->value);
   }
 };
 
-/// A timer, of the module that it is of.
+/// A timer and its module.
 struct PyTimeout {
   const Program* program;
   hc::Timeout timeout;
@@ -56,11 +56,11 @@ struct PyTimeout {
 };
 
 std::chrono::nanoseconds period_of(double seconds) {
-  if (!(seconds > 0)) raise({hc::Code::Invalid, "a period is above 0 s"});
+  if (!(seconds > 0)) raise({hc::Code::Invalid, "a period must be above 0 s"});
   return hc::duration(seconds);
 }
 
-/// What every handler of messages is made of: the Python function, and what it keeps of each input.
+/// A handler of messages: the Python function, and a Keeper for each input.
 struct Handler {
   Program* program;
   Function function;
@@ -72,7 +72,7 @@ struct Handler {
       keepers.push_back(std::make_shared<Keeper>(Keeper{input.name, callee.ptr(), {}, false}));
   }
 
-  /// Hands messages to the function, one of each input.
+  /// Calls the function with messages, one of each input.
   template <std::size_t... kIndex, typename... Messages>
   void operator()(std::index_sequence<kIndex...>, Messages&&... messages) const {
     const bool is_quick = (... && (messages.elements.size() <= kQuick));
@@ -104,7 +104,7 @@ void on_each(std::index_sequence<kIndex...> indices, Program& program,
 template <std::size_t kCount = 2>
 void on_together(Program& program, const std::vector<PyInput>& inputs, const py::object& function) {
   if constexpr (kCount > kMostTogether) {
-    raise({hc::Code::Invalid, "inputs are taken together by two to eight"});
+    raise({hc::Code::Invalid, "together() takes two to eight inputs"});
   } else if (inputs.size() == kCount) {
     on_each(std::make_index_sequence<kCount>(), program, inputs, function);
   } else {
@@ -112,7 +112,7 @@ void on_together(Program& program, const std::vector<PyInput>& inputs, const py:
   }
 }
 
-/// A Python function without arguments, as the loop calls it.
+/// Wraps a Python function without arguments for the loop.
 std::function<void()> action(Program& program, const py::object& function) {
   return [&program, held = hold(function)] {
     const Program::Inside inside(program);
@@ -121,19 +121,16 @@ std::function<void()> action(Program& program, const py::object& function) {
 }
 
 PyInput add_input(Program& program, const std::string& name, const Kind& kind,
-                  const std::string& doc, bool is_actor, std::uint32_t keep) {
-  auto& module = program.module();
-  PyInput port{name, module.input(name, hc::AnyKind{kind.types}, doc)};
-  if (is_actor) module.actor(port.input);
-  if (keep > 0) module.keep(port.input, keep);
-  return port;
+                  const std::string& doc, bool actor, std::uint32_t keep) {
+  return {name, program.module().input(name, hc::AnyKind{kind.types}, doc, {actor, keep})};
 }
 
 py::object add_output(const py::object& self, const std::string& name, const Kind& kind,
-                      const std::string& doc) {
+                      const std::string& doc, bool on_demand, std::uint32_t keep) {
   auto& program = self.cast<Program&>();
-  program.module().output(name, hc::AnyKind{{kind.only("an output")}}, doc);
-  return make_output(program, program.module().outputs().back(), self);
+  auto& module = program.module();
+  module.output(name, hc::AnyKind{{kind.only("an output")}}, doc, {on_demand, keep});
+  return make_output(program, hc::ModuleAccess::outputs(module).back(), self);
 }
 
 PyParameter add_parameter(Program& program, const std::string& name, const py::object& initial,
@@ -156,7 +153,7 @@ PyParameter add_parameter(Program& program, const std::string& name, const py::o
     module.parameter(name, initial.cast<double>(), unit, doc, options);
   else
     module.parameter(name, initial.cast<std::string>(), unit, doc, options);
-  return {&program, module.parameters().back()};
+  return {&program, hc::ModuleAccess::parameters(module).back()};
 }
 
 void every(Program& program, const py::object& period, const py::object& function) {
@@ -171,13 +168,6 @@ void every(Program& program, const py::object& period, const py::object& functio
   }
 }
 
-void generate(Program& program, const py::object& function) {
-  program.module().generate([&program, held = hold(function)] {
-    const Program::Inside inside(program);
-    return program.call(held.get()).ptr() != Py_False;
-  });
-}
-
 using Pose = py::array_t<double, py::array::c_style>;
 
 py::object array_of(const Eigen::Isometry3d& T) {
@@ -189,13 +179,13 @@ py::object array_of(const Eigen::Isometry3d& T) {
   return pose;
 }
 
-/// A frame by its name or number, which lives as long as the call.
+/// A frame by name or number; valid during the call.
 hc::frames::Frame frame_of(const py::object& frame) {
   if (py::isinstance<py::str>(frame)) return frame.cast<std::string_view>();
   return frame.cast<std::int32_t>();
 }
 
-/// The frames of a module's graph, in Python. The module owns them.
+/// The frames of a module's graph, owned by the module.
 class Frames {
  public:
   Frames(Program& program) : program_(program) { program.frames(); }
@@ -231,25 +221,25 @@ void add_ports(py::module_& extension) {
   py::class_<PyInput>(extension, "Input", "An input port.")
       .def_readonly("name", &PyInput::name, "Its name.");
   py::class_<PyParameter>(extension, "Parameter", "A parameter of the module.")
-      .def_property_readonly("value", &PyParameter::value, "What it is now.")
+      .def_property_readonly("value", &PyParameter::value, "The current value.")
       .def_property_readonly(
           "name", [](const PyParameter& each) { return each.state->name; }, "Its name.");
   py::class_<PyTimeout>(extension, "Timeout",
                         "A timer that fires once each time it is started: Module.after().")
       .def("restart", &PyTimeout::restart, py::arg("seconds") = py::none(),
-           "Has it fire when its time, or another one, has passed from now on.")
-      .def("stop", &PyTimeout::stop, "Has it not fire.");
-  py::class_<Frames>(extension, "Frames",
-                     "The frames of the module's graph: where its eyes, its head and all else are.")
+           "Restarts the timer, with the same or another time.")
+      .def("stop", &PyTimeout::stop, "Stops the timer.");
+  py::class_<Frames>(extension, "ModuleFrames",
+                     "The tree of frames of a module's graph (doc/frames.md). Declares a parameter "
+                     "and an input `frames`.")
       .def(py::init<Program&>(), py::keep_alive<1, 2>())
       .def("lookup", &Frames::lookup, py::arg("target"), py::arg("source"), py::arg("time"),
-           "The (4, 4) matrix that takes points of a frame to another at a time.")
+           "The (4, 4) matrix that transforms points from source to target at a time.")
       .def("nearest", &Frames::nearest, py::arg("target"), py::arg("source"), py::arg("time"),
-           "The same for joints that do not move unless a pose says so.")
+           "The same, with the nearest known pose of joints without one at that time.")
       .def("when_known", &Frames::when_known, py::arg("target"), py::arg("source"), py::arg("time"),
            py::arg("handler"),
-           "Calls a function with the matrix as soon as it is known; with None where it will not "
-           "be.");
+           "Calls a function with the matrix as soon as it is known; with None if it will not be.");
 }
 
 }  // namespace
@@ -257,8 +247,8 @@ void add_ports(py::module_& extension) {
 void add_modules(py::module_& extension) {
   add_ports(extension);
   using Self = Program;
-  py::class_<Program>(extension, "Module", "What hypercolumn.Module is made of.")
-      .def(py::init<std::string, std::string>())
+  py::class_<Program>(extension, "Module", "Base of hypercolumn.Module.")
+      .def(py::init<std::string, std::string, bool, bool, bool>())
       .def("_input", add_input)
       .def("_output", add_output)
       .def("_parameter", add_parameter, py::keep_alive<0, 1>())
@@ -272,7 +262,10 @@ void add_modules(py::module_& extension) {
                              self.module().after(hc::duration(seconds), action(self, function))};
           },
           py::keep_alive<0, 1>())
-      .def("_generate", generate)
+      .def("_generate",
+           [](Self& self, const py::object& function) {
+             self.module().generate(action(self, function));
+           })
       .def("_on_start",
            [](Self& self, const py::object& function) {
              self.module().on_start(action(self, function));
@@ -285,24 +278,21 @@ void add_modules(py::module_& extension) {
       .def("keep_rate", keep_rate, py::arg("rate"),
            "For generators: waits until the next period of a rate begins [Hz].")
       .def(
-          "keep_running", [](Self& self) { self.module().keep_running(); },
-          "Has the module run until it is stopped, though its inputs have ended.")
-      .def(
-          "background", [](Self& self) { self.module().background(); },
-          "Has the process yield the processor to closed loops: for what is in no hurry.")
+          "stop", [](Self& self) { self.module().stop(); },
+          "Ends the module when the handler that calls this has returned.")
       .def(
           "log",
           [](const Self& self, const std::string& line, const std::string& level) {
             const auto known = hc::level_named(level);
             if (!known)
-              throw py::value_error("level is info, warning, error, result or notice, and not " +
+              throw py::value_error("level must be info, warning, error, result or notice, not " +
                                     level);
             self.log(line, *known);
           },
           py::arg("line"), py::arg("level") = "info",
-          "Logs a line: to standard error, and of another level than info to `hc run`, which "
-          "repeats "
-          "each result and error at its end. A notice is for the person at the terminal alone.")
+          "Logs a line to standard error. Lines of other levels than info are also reported to `hc "
+          "run`, which repeats results and errors at its end. A notice is only for the person at "
+          "the terminal.")
       .def(
           "log_once",
           [](Self& self, const std::string& kind, const std::string& line) {
@@ -313,12 +303,8 @@ void add_modules(py::module_& extension) {
           "end.")
       .def(
           "now", [](Self& self) { return self.module().now(); },
-          "The time for messages that begin here [ns since the Unix epoch]: the machine's, or "
-          "with --clock messages that of the messages.")
-      .def(
-          "seconds_since",
-          [](Self& self, std::int64_t time) { return self.module().seconds_since(time); },
-          py::arg("time"), "Seconds from a time of a message to now().")
+          "The time for new messages [ns since the Unix epoch]: the machine's, or with --clock "
+          "messages that of the messages.")
       .def_property_readonly(
           "focus", [](Self& self) { return self.module().focus(); },
           "Number of the system mode in focus; 0: none.")

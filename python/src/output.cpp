@@ -20,7 +20,7 @@
 namespace python {
 namespace {
 
-/// Its fields are made and ended by hand, as Python allocates it.
+/// Fields are constructed and destroyed by hand, since Python allocates the object.
 struct PyOutput {
   PyObject_HEAD Program* program;
   std::shared_ptr<hc::internal::OutputState> state;
@@ -33,7 +33,7 @@ PyOutput& output_of(PyObject* self) {
   return *reinterpret_cast<PyOutput*>(self);
 }
 
-/// A message that is being made: bytes that are still ours, so they may be written.
+/// A new message, whose elements may still be written.
 hc::Message make_message(const PyOutput& self, std::int32_t height, std::int32_t width) {
   self.program->check_thread();
   hc::Header header;
@@ -41,8 +41,8 @@ hc::Message make_message(const PyOutput& self, std::int32_t height, std::int32_t
   header.height = height;
   header.width = width;
   raise_if_failed(hc::check(header));
-  // What is lent does not depend on the kind that the type says.
-  return hc::Output<hc::TableKind<double>>(self.state).loan(width, height).finish();
+  // loan() does not depend on the kind in the type of Output.
+  return hc::Output<hc::TableKind<double>>(self.state).loan(height, width).finish();
 }
 
 std::byte* elements_of(const hc::Message& message) {
@@ -51,22 +51,17 @@ std::byte* elements_of(const hc::Message& message) {
 
 [[noreturn]] void raise_misfit(const PyOutput& self, const std::string& what) {
   raise({hc::Code::Malformed,
-         self.state->name + ": " + what + "; it gives " + hc::in_words(self.state->type())});
+         self.state->name + ": " + what + "; it sends " + hc::in_words(self.state->type())});
 }
 
-/// The shape of a row of numbers: that of the port, where it has one.
+/// A message for a number of numbers: of the port's shape if it has one, else one row.
 hc::Message make_for_numbers(const PyOutput& self, std::size_t count) {
-  const auto& type = self.state->type();
-  const std::size_t components = type.info.components;
-  auto height = static_cast<std::size_t>(type.height), width = static_cast<std::size_t>(type.width);
-  if (height == 0 && width == 0) height = 1;
-  if (width == 0 && height != 0) width = count / components / height;
-  if (height == 0 && width != 0) height = count / components / width;
-  if (height * width * components != count) raise_misfit(self, std::to_string(count) + " numbers");
-  return make_message(self, static_cast<std::int32_t>(height), static_cast<std::int32_t>(width));
+  const auto shape = hc::shape_of(self.state->type(), count);
+  if (!shape) raise_misfit(self, std::to_string(count) + " numbers");
+  return make_message(self, shape->first, shape->second);
 }
 
-/// A number of Python as one of a message. Raises where it does not fit.
+/// Converts a Python number. Raises if it does not fit.
 template <typename T>
 T number_of(PyObject* object) {
   if constexpr (std::is_floating_point_v<T>) {
@@ -92,7 +87,7 @@ T number_of(PyObject* object) {
   }
 }
 
-/// Numbers, row by row; nothing where one of them is something else, such as a row.
+/// A message of numbers, row by row; nothing if one is not a number, but e.g. a row.
 std::optional<hc::Message> message_of_numbers(const PyOutput& self, PyObject* const* objects,
                                               std::size_t count) {
   for (std::size_t i = 0; i < count; ++i)
@@ -115,7 +110,7 @@ hc::Message message_of_text(const PyOutput& self, const char* text, Py_ssize_t s
   return message;
 }
 
-/// What numpy makes an array of. Axes that are missing are the first ones, of one row.
+/// A message from anything that numpy converts to an array. Missing leading axes have size 1.
 hc::Message message_of_array(const PyOutput& self, PyObject* object) {
   static PyObject* as_array =
       py::object(py::module_::import("numpy").attr("asarray")).release().ptr();
@@ -129,7 +124,7 @@ hc::Message message_of_array(const PyOutput& self, PyObject* object) {
   for (const auto& side : shape) sides.push_back(side.cast<py::ssize_t>());
   if (info.components == 1 && !(sides.size() == 3 && sides.back() == 1)) sides.push_back(1);
   while (sides.size() < 3) sides.insert(sides.begin(), 1);
-  // A row of numbers may be several elements.
+  // A one-dimensional array may contain several elements.
   const bool is_row = shape.size() == 1 && info.components > 1;
   if (is_row && sides[2] % info.components == 0)
     sides = {1, sides[2] / info.components, info.components};
@@ -158,7 +153,7 @@ hc::Message message_of_array(const PyOutput& self, PyObject* object) {
 hc::Message message_of(const PyOutput& self, PyObject* object) {
   if (const hc::Message* message = message_in(object)) return *message;
   if (PyList_CheckExact(object) != 0 || PyTuple_CheckExact(object) != 0) {
-    // What makes a number of an object may change a list.
+    // Copied, since converting an object to a number may change a list.
     const auto tuple = py::reinterpret_steal<py::object>(PySequence_Tuple(object));
     if (!tuple) throw py::error_already_set();
     auto numbers = message_of_numbers(self, PySequence_Fast_ITEMS(tuple.ptr()),
@@ -178,9 +173,9 @@ hc::Message message_of(const PyOutput& self, PyObject* object) {
   return message_of_array(self, object);
 }
 
-/// The fields of the header that a sender may give.
+/// Header fields that a sender may set.
 struct Fields {
-  const char* method;  // to which they are given
+  const char* method;  // for errors
   PyObject *time = nullptr, *dst = nullptr, *mode = nullptr, *coord = nullptr;
 
   void take(PyObject* name, PyObject* value) {
@@ -210,8 +205,7 @@ void check_for(const PyOutput& self, const hc::Header& header) {
   raise_if_failed(hc::check(header));
 }
 
-/// What `make` gives. An error in it says the line of Python too: it ends a module without a
-/// traceback.
+/// The result of `make`. Adds the Python line to its errors, since they end without a traceback.
 template <typename Make>
 hc::Message with_line(const Make& make) {
   try {
@@ -246,15 +240,15 @@ PyObject* send(PyObject* object, PyObject* const* arguments, Py_ssize_t count, P
   Py_RETURN_NONE;
 }
 
-/// A message that is written in place: a context that gives its array, and sends it at its end.
+/// A message written in place: a context that returns its array, and sends it at the end.
 class Loan {
  public:
   Loan(py::object output, hc::Message message)
       : output_(std::move(output)), message_(std::move(message)) {}
 
   py::object enter() {
-    if (array_ || is_done_) raise({hc::Code::Invalid, "a loan is for one with"});
-    // The memory lives as long as an array of it.
+    if (array_ || is_done_) raise({hc::Code::Invalid, "a loan can be used in one `with` only"});
+    // Arrays keep the memory alive.
     py::capsule base(new std::shared_ptr<const void>(message_.owner),
                      [](void* owner) { delete static_cast<std::shared_ptr<const void>*>(owner); });
     array_ = py::reinterpret_steal<py::object>(
@@ -311,14 +305,14 @@ PyObject* get_name(PyObject* self, void*) {
 }
 
 constexpr const char* kLoanDoc =
-    "A message to be written in place, where its readers will see it, and sent at the end of a "
+    "A message to write in place, in the memory of its readers. It is sent at the end of the "
     "with;\n"
-    "an exception in it drops the message.\n\n"
+    "an exception drops it.\n\n"
     "    with output.loan(600, 800) as pixels:\n"
     "        pixels[:] = 0\n\n"
-    "time, dst, mode and coord are as of send(). The array is read-only afterwards; a slice of it "
-    "that\n"
-    "was taken in the with is not, and must not be written any more, as readers have it then.";
+    "time, dst, mode and coord are as in send(). Afterwards the array is read-only; slices taken "
+    "in\n"
+    "the with are not, and must not be written any more.";
 
 PyMethodDef methods[] = {
     {"send", reinterpret_cast<PyCFunction>(reinterpret_cast<void*>(guarded<send>)),
@@ -326,8 +320,8 @@ PyMethodDef methods[] = {
      "send(message, *, time=…, dst=…, mode=…, coord=…)\n\n"
      "Sends a number, numbers row by row, a text, an array of shape (height, width, components) "
      "or\n"
-     "(height, width), or a message that came. What is not given of the header is filled in: the\n"
-     "time is that of the message being handled. Returns when each link has taken it."},
+     "(height, width), or a received message. Header fields not given are filled in; the time is\n"
+     "that of the message being handled. Returns when each link has accepted the message."},
     {}};
 
 PyGetSetDef fields[] = {
@@ -360,8 +354,7 @@ void add_outputs(py::module_& extension) {
   output_type = reinterpret_cast<PyTypeObject*>(PyType_FromSpec(&spec));
   if (output_type == nullptr) throw py::error_already_set();
   extension.add_object("Output", reinterpret_cast<PyObject*>(output_type));
-  py::class_<Loan>(extension, "Loan",
-                   "A message that is written in place: what Output.loan() gives.")
+  py::class_<Loan>(extension, "Loan", "A message written in place, returned by Output.loan().")
       .def("__enter__", &Loan::enter)
       .def("__exit__", &Loan::exit);
   const py::cpp_function method(loan, py::is_method(extension.attr("Output")), py::name("loan"),

@@ -10,7 +10,7 @@
 
 namespace python {
 
-/// The Python object of an output; it keeps `owner`, the Python module.
+/// The Python object of an output; keeps `owner`, the Python module, alive.
 py::object make_output(Program& program, std::shared_ptr<hc::internal::OutputState> state,
                        const py::object& owner);
 

@@ -24,7 +24,7 @@ Function hold(const py::object& function) {
 }
 
 int Program::run(const std::vector<std::string>& words) {
-  if (is_running_) raise({hc::Code::Invalid, "the module runs already"});
+  if (is_running_) raise({hc::Code::Invalid, "the module is already running"});
   std::vector<std::string> copies = words;
   std::vector<char*> pointers;
   pointers.reserve(copies.size() + 1);
@@ -70,17 +70,18 @@ void Program::end_by_error() {
   }
   const auto name = py::object(raised.type().attr("__name__")).cast<std::string>();
   PyErr_Display(raised.type().ptr(), raised.value().ptr(), raised.trace().ptr());
-  const std::string line = text.substr(0, text.find('\n'));  // the traceback has all of them
+  const std::string line = text.substr(0, text.find('\n'));  // the traceback has all lines
   throw hc::ModuleError(line.empty() ? name : name + ": " + line);
 }
 
 void Program::refuse_thread() {
   raise({hc::Code::Invalid,
-         "a module, its ports and parameters are used on the thread that runs it; let another one "
-         "hand over what it has, and use that in a handler, such as of every()"});
+         "a module, its ports and parameters may only be used on the thread that runs it; let "
+         "another "
+         "thread pass its data, and use them in a handler, e.g. of every()"});
 }
 
-/// Raises the failure, and keeps what ends the module cleanly: it comes out in end_by_error().
+/// Raises the failure. One that ends the module cleanly is kept for end_by_error().
 void Program::raise_failure() {
   try {
     std::rethrow_exception(failure_);

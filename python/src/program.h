@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A module written in Python: an hc::Module, and the way between its loop, which runs without the
-// GIL, and its handlers.
+// A module written in Python: an hc::Module whose loop runs without the GIL, and the calls between
+// the loop and Python handlers.
 
 #include <exception>
 #include <memory>
@@ -18,42 +18,47 @@
 
 namespace python {
 
-/// A Python function that C++ may let go of on any thread, with the GIL or without.
+/// A Python function that C++ may release on any thread, with or without the GIL.
 using Function = std::shared_ptr<PyObject>;
 Function hold(const py::object& function);
 
 class Program {
  public:
-  Program(std::string name, std::string summary) : module_(std::move(name), std::move(summary)) {
-    module_.before_waiting([this] { release(); });
+  Program(std::string name, std::string summary, bool background, bool keep_running,
+          bool finish_when_stopped)
+      : module_(std::move(name), std::move(summary),
+                {.background = background,
+                 .keep_running = keep_running,
+                 .finish_when_stopped = finish_when_stopped}) {
+    hc::ModuleAccess::before_waiting(module_, [this] { release(); });
   }
 
-  /// Of the thread that runs the module alone, while it runs; raised on another one.
+  /// Raises on other threads than the one that runs the module, while it runs.
   void check_thread() const {
     if (is_running_ && std::this_thread::get_id() != thread_) refuse_thread();
   }
-  /// The module, where check_thread() lets it be used.
+  /// The module, after check_thread().
   hc::Module& module() {
     check_thread();
     return module_;
   }
-  /// The frames of its graph, declared by the first call.
+  /// The frames of its graph; the first call declares their ports.
   hc::ModuleFrames& frames() {
     auto& checked = module();
     if (!frames_) frames_.emplace(checked);
     return *frames_;
   }
-  /// Its name in the graph and a line, on any thread.
+  /// From any thread.
   void log(const std::string& line, hc::Level level) const { module_.log(line, level); }
   [[nodiscard]] const std::string& name() const { return module_.name(); }
 
-  /// Runs the module; the GIL is free meanwhile but for its handlers. Raises what a handler has
-  /// raised to end the interpreter.
+  /// Runs the module; only its handlers hold the GIL. Raises an exception with which a handler
+  /// ended the interpreter.
   int run(const std::vector<std::string>& words);
 
   /// Calls a handler from the loop, with the GIL. A hypercolumn.BadMessage drops the message. Any
-  /// other exception ends the module: by the text of a hypercolumn.Error; or by name and text of
-  /// another, whose traceback goes to standard error.
+  /// other exception ends the module, with the text of a hypercolumn.Error, or with the name and
+  /// text of another exception, whose traceback goes to standard error.
   template <typename... Arguments>
   py::object call(PyObject* handler, Arguments... arguments) {
     PyObject* const all[] = {nullptr, arguments...};
@@ -63,14 +68,13 @@ class Program {
     return py::reinterpret_steal<py::object>(result);
   }
 
-  /// Ends the module by what Python has raised: throws.
+  /// Ends the module with the exception that Python has raised: throws.
   [[noreturn]] void end_by_error();
 
-  /// What runs in the loop with the GIL, as a handler does.
+  /// Holds the GIL for code called by the loop, such as a handler.
   class Inside {
    public:
-    /// @param keeps  keeps the GIL until the module waits, or does something else than to call
-    ///               handlers: a next one that is called at once need not take it again.
+    /// @param keeps  keeps the GIL for the next handler, until the module waits or does other work.
     explicit Inside(Program& program, bool keeps = false) : program_(program), keeps_(keeps) {
       program_.acquire();
     }
@@ -85,13 +89,14 @@ class Program {
     bool keeps_;
   };
 
-  /// Does, without the GIL, what a handler asks of the module and may wait, such as sending. What
-  /// it throws is raised; so is a use outside of handlers. @param name  of what is asked.
+  /// Runs, without the GIL, a call of a handler that may block, such as sending. Raises its
+  /// exceptions, and when used outside of handlers. @param name  of the call, for the error.
   template <typename Work>
   void work(const char* name, const Work& work) {
     check_thread();
     if (!is_running_)
-      raise({hc::Code::Invalid, std::string(name) + " is for the handlers of a module that runs"});
+      raise({hc::Code::Invalid,
+             std::string(name) + " may only be called in handlers of a running module"});
     release();
     try {
       work();
@@ -103,7 +108,7 @@ class Program {
   }
 
  private:
-  /// Takes the GIL for the thread that runs, and gives it back; nothing where that is done.
+  /// Takes or releases the GIL for the running thread, unless already done.
   void acquire() {
     if (thread_state_ != nullptr) PyEval_RestoreThread(std::exchange(thread_state_, nullptr));
   }
@@ -114,12 +119,12 @@ class Program {
   [[noreturn]] void raise_failure();
 
   hc::Module module_;
-  std::optional<hc::ModuleFrames> frames_;  // which the module's handlers use: as long as it
-  PyThreadState* thread_state_ = nullptr;   // of the thread that runs; null: it has the GIL
+  std::optional<hc::ModuleFrames> frames_;  // used by the module's handlers
+  PyThreadState* thread_state_ = nullptr;   // of the running thread; null: it holds the GIL
   std::thread::id thread_;
   bool is_running_ = false;
-  std::exception_ptr failure_;  // went through Python, and ends the module where it comes out
-  std::optional<py::error_already_set> exit_;  // what a handler ends the interpreter by
+  std::exception_ptr failure_;                 // passes through Python, then ends the module
+  std::optional<py::error_already_set> exit_;  // with which a handler ends the interpreter
 };
 
 }  // namespace python

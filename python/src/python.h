@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the parts of the extension _hypercolumn share: errors in both directions, and the parts' own
-// entries. What is done for each message is written with Python's C API, all else with pybind11.
+// Shared by the parts of the extension _hypercolumn: conversion of errors, and the parts' entry
+// points. Code that runs for each message uses Python's C API, all else pybind11.
 
 #include <pybind11/pybind11.h>
 
@@ -15,12 +15,12 @@ namespace python {
 
 namespace py = pybind11;
 
-/// Has Python raise hypercolumn.Error with this text; `code` is the name of an hc::Code, or empty.
+/// Sets a Python hypercolumn.Error with this text; `code` is the name of an hc::Code, or empty.
 void set_error(const std::string& text, std::string_view code);
 inline void set_error(const hc::Error& error) {
   set_error(error.text(), hc::name(error.code));
 }
-/// The same for the text of an hc::ModuleError, which may begin with a code.
+/// The same for the text of an hc::ModuleError, which may start with a code.
 void set_error_text(const std::string& text);
 
 [[noreturn]] inline void raise(const hc::Error& error) {
@@ -28,7 +28,7 @@ void set_error_text(const std::string& text);
   throw py::error_already_set();
 }
 
-/// The value of a result; a failed one is raised.
+/// The value of a result; raises its error.
 template <typename T>
 T value_or_raise(hc::Result<T> result) {
   if (!result) raise(result.error());
@@ -38,11 +38,11 @@ inline void raise_if_failed(const hc::Status& status) {
   if (!status) raise(status.error());
 }
 
-/// Has Python raise the exception that is being handled in C++. Those of a module that is to stop
-/// become hypercolumn.Stopped, and are kept by their module (see Program).
+/// Sets a Python error from the C++ exception being handled. The exception that stops a module
+/// becomes hypercolumn.Stopped, and is kept by the module (see Program).
 void set_current_exception() noexcept;
 
-/// A function that raises in Python what it throws in C++, as Python calls it.
+/// Wraps a function for Python: C++ exceptions become Python exceptions.
 template <auto kFunction>
 struct Guard;
 template <typename... Arguments, PyObject* (*kFunction)(Arguments...)>
@@ -64,7 +64,7 @@ PyObject* error_type();
 PyObject* bad_message_type();
 PyObject* stopped_type();
 
-/// A line of Python.
+/// A line of Python code.
 struct Line {
   py::object file;
   int number = 0;
@@ -72,10 +72,10 @@ struct Line {
   /// The file's name without its folder.
   [[nodiscard]] std::string file_name() const;
 };
-/// The line that called; nothing where none did.
+/// The calling line; nothing if the caller is not Python code.
 std::optional<Line> current_line();
 
-/// Whether the interpreter has a signal to handle, which then raised: Ctrl-C while waiting.
+/// Raises if a signal handler did, e.g. for Ctrl-C while waiting.
 inline void check_signals() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }

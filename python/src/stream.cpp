@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages without a module: links that a script reads, and running graphs.
+// Messages without a module: links read by a script, and running graphs.
 #include <pybind11/stl.h>
 
 #include <chrono>
@@ -20,7 +20,7 @@ namespace python {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds kSlice{50};  // after which a wait looks for Ctrl-C
+constexpr std::chrono::milliseconds kSlice{50};  // a wait checks for Ctrl-C at this period
 
 hc::LinkOptions link_options(const std::optional<std::uint64_t>& limit) {
   hc::LinkOptions options;
@@ -37,10 +37,10 @@ hc::LinkOptions link_options(const std::optional<std::uint64_t>& limit) {
   return options;
 }
 
-/// Where a script reads messages.
+/// A source of messages for a script.
 class Stream {
  public:
-  /// @param graph  whose port `text` is; null: it is a URI or a file.
+  /// @param graph  if given, `text` is one of its ports; else a URI or a file.
   Stream(const std::string& text, const std::optional<std::uint64_t>& limit,
          const hc::RunningGraph* graph = nullptr)
       : keeper_(std::make_shared<Keeper>(Keeper{text})) {
@@ -58,7 +58,7 @@ class Stream {
 
   /// The next message; None after `seconds` without one. Raises StopIteration at the end.
   py::object take(const std::optional<double>& seconds) {
-    // What is in memory is taken at once; to let go of the GIL and take it again would cost more.
+    // Messages in memory are taken with the GIL held: releasing it would cost more.
     if (source_ != nullptr && is_in_memory_ && !is_busy_) {
       hc::Message message;
       const auto got = source_->take(message);
@@ -89,7 +89,7 @@ class Stream {
     return object;
   }
 
-  /// Takes a message, or waits for a moment, without the GIL.
+  /// Takes a message, or waits for kSlice, without the GIL.
   hc::Got try_take(hc::Message& message) {
     if (source_ == nullptr) return hc::Got::End;
     if (is_busy_) raise({hc::Code::Invalid, "another thread reads " + keeper_->name});
@@ -123,8 +123,7 @@ class Stream {
   bool is_busy_ = false;  // a thread waits without the GIL
 };
 
-/// The next message for a loop, without pybind11's way to a method, which takes as long as the
-/// rest.
+/// The next message for a loop, without pybind11's dispatch, which would double the time.
 PyObject* next(PyObject* self) {
   return py::cast<Stream&>(py::handle(self)).take(std::nullopt).release().ptr();
 }
@@ -148,14 +147,14 @@ std::vector<std::string> ask(const hc::RunningGraph& graph,
 void add_streams(py::module_& extension) {
   py::class_<Stream> stream(
       extension, "Stream",
-      "Messages of a recording or a link, one after the other; for a with, too.");
+      "Iterates over the messages of a recording or link; also a context manager.");
   stream
       .def(py::init<const std::string&, const std::optional<std::uint64_t>&>(), py::arg("uri"),
            py::arg("limit") = py::none())
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", [](Stream& self) { return self.take(std::nullopt); })
       .def("take", &Stream::take, py::arg("seconds") = py::none(),
-           "The next message; None after so many seconds without one. At the end StopIteration.")
+           "The next message; None after `seconds` without one. Raises StopIteration at the end.")
       .def("close", &Stream::close, "Ends the link.")
       .def("__enter__", [](const py::object& self) { return self; })
       .def("__exit__", [](Stream& self, const py::args&) { self.close(); });

@@ -8,12 +8,12 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"@NAME@", "Multiplies numbers by a factor."};
-  auto numbers = module.input("numbers", hc::table<double>(), "any numbers");
-  auto product = module.output("product", hc::table<double>(), "the numbers, multiplied");
+  auto numbers = module.input("numbers", hc::table(), "any numbers");
+  auto product = module.output("product", hc::table(), "the numbers, multiplied");
   auto factor = module.parameter("factor", 2.0, "", "factor of each number");
 
   module.on(numbers, [&](const auto& message) {
-    auto draft = product.loan(message.header.width, message.header.height);
+    auto draft = product.loan(message.header.height, message.header.width);
     std::ranges::transform(message.numbers(), draft.numbers().begin(),
                            [&](double number) { return *factor * number; });
     product.send(std::move(draft));

@@ -6,6 +6,6 @@ void declare(hc::Module& module) {
 #ifdef HC_WRONG
   module.input("place", hc::position<int>(), "");
 #else
-  module.input("place", hc::position<double>(), "");
+  module.input("place", hc::position(), "");
 #endif
 }

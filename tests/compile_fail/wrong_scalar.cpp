@@ -4,8 +4,8 @@
 
 void send(hc::Output<hc::PositionKind<float>>& output) {
 #ifdef HC_WRONG
-  output.send(hc::position(1.0, 2.0, 3.0));
+  output.send({1.0, 2.0, 3.0});
 #else
-  output.send(hc::position(1.0F, 2.0F, 3.0F));
+  output.send({1.0F, 2.0F, 3.0F});
 #endif
 }

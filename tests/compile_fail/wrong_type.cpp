@@ -4,8 +4,8 @@
 
 void send(hc::Output<hc::PositionKind<double>>& output) {
 #ifdef HC_WRONG
-  output.send(hc::string("here"));
+  output.send("here");
 #else
-  output.send(hc::position(1.0, 2.0, 3.0));
+  output.send({1.0, 2.0, 3.0});
 #endif
 }

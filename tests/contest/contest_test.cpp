@@ -168,7 +168,7 @@ class Contest {
     workspace_.emplace([this](int argc, char** argv) { return run_workspace(argc, argv, clock_); },
                        words);
     // Changes nothing; once it is taken, the first decision has its time.
-    say(*bids_[0], {1, 1}, hc::table({0.0}));
+    say(*bids_[0], {1, 1}, hc::table().message({0.0}));
   }
 
   /// Says something as a source, and waits until the workspace has taken it.
@@ -189,19 +189,19 @@ class Contest {
     auto& link = *bids_.at(static_cast<std::size_t>(who.source - 1));
     const int what = pick(0, 9);
     if (what < 3) {
-      say(*person_, who, hc::table({salience}));
+      say(*person_, who, hc::table().message({salience}));
       rules_.bid_of_person(who, salience, now);
     } else if (what == 3) {  // of another time: it changes nothing
       say(link, who,
-          hc::table({salience})
+          hc::table().message({salience})
               .at(clock_.wall() - pick(0, 1) * 7'200'000'000'000 + 3'600'000'000'000));
     } else if (what == 4) {
       const auto word = static_cast<std::uint8_t>(
           std::array{0, 0, 0, 1, 2, 2, 3}.at(static_cast<std::size_t>(pick(0, 6))));
-      say(*stop_, who, hc::table({word}));
+      say(*stop_, who, hc::table().message({word}));
       rules_.stop({who.source, word, 0, now}, now);
     } else {
-      say(link, who, hc::table({salience}));
+      say(link, who, hc::table().message({salience}));
       rules_.bid(who, salience, now);
     }
   }
@@ -213,7 +213,7 @@ class Contest {
     std::shuffle(modes.begin(), modes.end(), random_);
     for (auto mode : modes) {
       offered_.push_back(mode);
-      hc::Message message = hc::table({0.0});
+      hc::Message message = hc::table().message({0.0});
       message.header.mode = mode;
       message.header.time = static_cast<std::int64_t>(offered_.size());  // the actor reports it too
       if (last_holds && mode == modes.back())

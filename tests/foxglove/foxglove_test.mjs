@@ -49,7 +49,7 @@ before(async () => {
   );
   graph.stderr.on("data", (data) => (log += data));
   driver = await until("the URL", () => log.match(/foxglove: (ws:\/\/\S+)/)?.[1]);
-  viewer = await until("the second URL", () => log.match(/to view alone: (ws:\/\/\S+)/)?.[1]);
+  viewer = await until("the second URL", () => log.match(/view only: (ws:\/\/\S+)/)?.[1]);
 });
 
 after(async () => {
@@ -314,17 +314,17 @@ test("what is hostile is answered or cut off, and the others go on", async () =>
     await until(`${expected}`, () => client.statuses.some(({ message }) => expected.test(message)));
     await client.close();
   };
-  await hostile((socket) => socket.send("{"), /no JSON object/);
-  await hostile((socket) => socket.send("[".repeat(60_000)), /no JSON object/);
-  await hostile((socket) => socket.send('{"op":7}'), /"" is not done here/);
+  await hostile((socket) => socket.send("{"), /not a JSON object/);
+  await hostile((socket) => socket.send("[".repeat(60_000)), /not a JSON object/);
+  await hostile((socket) => socket.send('{"op":7}'), /"" is not supported/);
   for (let length = 90; length < 104; ++length) // cut in the middle of a letter
-    await hostile((socket) => socket.send(`{"op":"${"x".repeat(length)}ééé"}`), /is not done here/);
+    await hostile((socket) => socket.send(`{"op":"${"x".repeat(length)}ééé"}`), /is not supported/);
   await hostile(
     (socket) => socket.send(`{"op":"subscribe","subscriptions":["${"x".repeat(97)}éé"]}`),
     /no such channel/,
   );
   await hostile((socket) => socket.send('{"op":"advertise","channels":[]}'), /"advertise" is not/);
-  await hostile((socket) => socket.send(Buffer.from([1, 0, 0, 0, 0])), /nothing can be published/);
+  await hostile((socket) => socket.send(Buffer.from([1, 0, 0, 0, 0])), /accepts no publications/);
   for (const subscription of ['{"id":-1,"channelId":3}', '{"id":1,"channelId":4000000000}', "3", "null",
     '{"id":1e300,"channelId":1}', '{"id":"a","channelId":[]}'])
     await hostile(
@@ -338,7 +338,7 @@ test("what is hostile is answered or cut off, and the others go on", async () =>
     );
   await hostile(
     (socket) => socket.send('{"op":"setParameters","parameters":[{"name":"blob.hue","value":"1\\nstop"}]}'),
-    /one line/,
+    /single line/,
   );
   await hostile((socket) => socket.send("x".repeat(1 << 20)), 1009);
   await hostile((socket) => socket._socket.write(Buffer.from([0xff, 0xff, 0xff, 0xff])), 1002);

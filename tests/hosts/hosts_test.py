@@ -231,7 +231,7 @@ class Hosts(HostsTest):
         lines = self.await_lines(process, "error: recording ended")
         self.assertRegex(
             lines[-1],
-            r"ended: kept/camera\.left\.mtp: write\(\): File too large; kept holds what came before",
+            r"ended: kept/camera\.left\.mtp: write\(\): File too large; kept holds all messages before",
         )
         state = self.state(messages)
         self.flows(messages, state["links"][0]["messages"] + 50)
@@ -342,15 +342,15 @@ class Hosts(HostsTest):
             ),
             (
                 self.network.table(host, other) + CAMERA % "h1",
-                "host h1: it has hc 9.9.9, and this is",
+                "host h1: it has hc 9.9.9, but this is",
             ),
             (
                 self.network.table(host, noisy) + CAMERA % "h1",
-                "host h1: what it says is no message: .*bashrc, must print nothing",
+                "host h1: not an MTP message: .*bashrc, must print nothing",
             ),
             (
                 self.network.table(host, liar) + CAMERA % "h1",
-                "host h1: what it says is wrong: .*must be string",
+                "host h1: malformed message: .*must be string",
             ),
             (unreachable + CAMERA % "h1", "g.toml:2: host h1: (ssh: connect|Host key|No ED25519)"),
             (

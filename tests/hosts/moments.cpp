@@ -25,10 +25,10 @@ std::int64_t true_now() {
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
-  hc::Module module{"moments", "Sends the time, as it is and as its host has it."};
+  hc::Module module{"moments", "Sends the time, as it is and as its host has it.", {.keep_running = true}};
   auto in = module.input("in", hc::table<std::int64_t>(), "moments of another");
   auto moment = module.output("moment", hc::table<std::int64_t>(), "true time [ns]");
-  auto pose = module.output("pose", hc::transformation<double>(4, 4),
+  auto pose = module.output("pose", hc::transformation(),
                             "moved along x by 1 m a second since `start`");
   auto ways = module.output("ways", hc::table<std::int64_t>(),
                             "how long a moment took to come: in truth, and by the clocks [ns]");
@@ -44,12 +44,12 @@ int main(int argc, char** argv) {
   };
   module.on(in, [&](const auto& message) {
     if (const auto now = look())
-      ways.send(hc::table({now.truth - message.numbers()[0], now.stamp - message.header.time}));
+      ways.send({now.truth - message.numbers()[0], now.stamp - message.header.time});
   });
   module.every(std::chrono::milliseconds(20), [&] {
     const auto now = look();
     if (!now) return;
-    moment.send(hc::table({now.truth}).at(now.stamp));
+    moment.send({now.truth}, now.stamp);
     auto draft = pose.loan(4, 4);
     const auto T = draft.matrix();
     for (std::size_t i = 0; i < 4; ++i)
@@ -58,6 +58,5 @@ int main(int argc, char** argv) {
     draft.header.time = now.stamp;
     pose.send(std::move(draft));
   });
-  module.keep_running();
   return module.run(argc, argv);
 }

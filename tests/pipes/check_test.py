@@ -159,7 +159,7 @@ class Check(Pipes):
         self.assertIn("relay --describe failed with status 3: no numpy here; ", self.err)
         self.write("relay", "#!/bin/sh\nexit 3\n", 0o755)
         self.shell("hc check g.toml", 2)
-        self.assertIn("status 3; how a program describes itself is in spec/module.md", self.err)
+        self.assertIn("status 3; see spec/module.md for the description of a program", self.err)
 
 
 if __name__ == "__main__":

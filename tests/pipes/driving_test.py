@@ -159,7 +159,7 @@ class Gaze(Pipes):
             both = self.setpoint(1, now, coord) + self.setpoint(0.25, now + 1000, 13)
             rows = self.commands(("setpoint", both), status=1)
             self.assertEqual({row[2] for row in rows}, {0.25}, self.err)
-            self.assertIn("setpoint: dropped: coordinate system %d is none of" % coord, self.err)
+            self.assertIn("setpoint: dropped: coordinate system %d is not one of" % coord, self.err)
 
     def test_two_that_set_the_head_do_not_alternate(self):
         now = time.time_ns()
@@ -168,7 +168,7 @@ class Gaze(Pipes):
             both += self.setpoint(0.25, now + i, 14) + self.setpoint(-0.25, now + i, 14, 2)
         rows = self.commands(("setpoint", both))
         self.assertEqual({round(row[2], 3) for row in rows}, {0.25})
-        self.assertIn("setpoint of source 2 dropped: source 1 gives one", self.err)
+        self.assertIn("setpoint of source 2 dropped: source 1 is in control", self.err)
 
     def test_what_is_of_another_time_moves_nothing(self):
         now = time.time_ns()
@@ -190,7 +190,7 @@ class Gaze(Pipes):
         row = "1 %d 0 0 8 0 120190 0 0 2 1\n%d 0\n"
         rows = self.commands(("stick", (row % (1, 1) + row % (2, -1)) * 50))
         self.assertGreater(min(row[2] for row in rows), 0)
-        self.assertIn("stick of source 2 dropped: source 1 gives one", self.err)
+        self.assertIn("stick of source 2 dropped: source 1 is in control", self.err)
 
 
 if __name__ == "__main__":

@@ -119,9 +119,9 @@ class Frames(Pipes):
         # A fixed one needs no recording.
         self.assertIn("robot to world, fixed\n", self.shell("hc frames graph.toml robot world"))
         self.shell("hc frames graph.toml left_eye word --in kept", status=1)
-        self.assertIn('graph.toml: frames: there is no frame "word", did you mean', self.err)
+        self.assertIn('graph.toml: frames: no frame "word", did you mean', self.err)
         self.shell("hc frames graph.toml left_eye nose", status=1)
-        self.assertIn('there is no frame "nose"; known: head, left_eye, robot, world', self.err)
+        self.assertIn('no frame "nose"; known: head, left_eye, robot, world', self.err)
         self.shell("hc frames graph.toml left_eye world --in kept --at %d" % (START - 1), status=1)
         self.assertIn("too early", self.err)
 
@@ -136,7 +136,7 @@ class Frames(Pipes):
         name = "seen_%d" % os.getpid()
         self.shell("hc frames graph.toml left_eye world --of " + name, status=1)
         self.assertRegex(self.err, 'no graph "%s" is running.*; from left_eye to world' % name)
-        self.assertIn("a frame is moved by neck.out: run the graph", self.err)
+        self.assertIn("depends on neck.out: run the graph", self.err)
         self.start("exec hc run graph.toml --as " + name)
         wait_until(lambda: name in self.shell("hc ps"))
         asked = self.start("exec hc frames graph.toml left_eye world --of " + name)

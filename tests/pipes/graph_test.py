@@ -199,7 +199,7 @@ inputs.in = "camera.left"
             wait_until(photograph)
             self.end(view)
         self.shell("hc view --window yes --monitor 3", 1)
-        self.assertEqual(self.err, "view: window: there is no monitor 3, but 0 alone\n")
+        self.assertEqual(self.err, "view: window: no monitor 3, only 0\n")
         self.end(display)
 
     def test_a_killed_runner_leaves_nothing_that_a_wrapper_started(self):

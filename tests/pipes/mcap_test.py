@@ -175,7 +175,7 @@ class Recordings(Graphs):
             before = self.shell("cat %s | md5sum" % ("kept/*" if place == "kept" else place))
             out = self.shell("hc run g.toml --record %s --quiet" % place)
             self.assertRegex(out, said % second)
-            self.assertIn("%s stays; recording into %s\n" % (place, second), self.err)
+            self.assertIn("%s stays as it is; recording to %s\n" % (place, second), self.err)
             after = self.shell("cat %s | md5sum" % ("kept/*" if place == "kept" else place))
             self.assertEqual(before, after)
         # So do links to files, and what verbs write.
@@ -300,7 +300,7 @@ class Recordings(Graphs):
     def test_hc_record_on_a_disk_of_2_mb(self):
         self.noise(400)
         self.assertEqual(self.on_a_small_disk("hc record noise.mtp disk/x.mcap"), 1, self.err)
-        self.assertIn("No space left on device; what was recorded before is whole", self.err)
+        self.assertIn("No space left on device; the recording is intact up to here", self.err)
         self.assertEqual(self.err.count("\n"), 1, self.err)
         seqs = self.seqs("kept/x.mcap")  # status 0: the file is whole
         self.assertEqual(seqs, list(range(len(seqs))))
@@ -313,7 +313,7 @@ class Recordings(Graphs):
     def test_the_last_time_is_saved_on_a_signal_and_on_a_condition(self):
         process = self.start(CAMERA + " | hc record x.mcap --last 30s")
         line = process.stderr.readline().decode()
-        pid = re.search(r"keeps the last 30 s; SIGUSR1 to (\d+) saves them", line)[1]
+        pid = re.search(r"keeping the last 30 s; SIGUSR1 to (\d+) saves them", line)[1]
         os.kill(int(pid), signal.SIGUSR1)
         self.assertIn("saved x_0001.mcap", process.stderr.readline().decode())
         self.end(process)
@@ -404,12 +404,12 @@ class Recordings(Graphs):
         self.write("cut.mcap", whole[: len(whole) * 2 // 3])
         out = self.shell("hc info cut.mcap", 1)
         self.assertRegex(out, r"noise +1[0-9]{3} .* sensor_msgs/msg/Image\n")
-        self.assertIn("the file has no end", self.err)
+        self.assertIn("the file is truncated", self.err)
         self.shell("hc record cut.mcap mended.mcap", 1)
-        self.assertIn("cut.mcap: MCAP: the file has no end", self.err)
+        self.assertIn("cut.mcap: MCAP: the file is truncated", self.err)
         self.assertIn(out.split("\n")[1], self.shell("hc info mended.mcap"))
         self.shell("hc cat --skip --raw cut.mcap >mended.mtp")
-        self.assertEqual(self.err.count("the file has no end"), 1, self.err)
+        self.assertEqual(self.err.count("the file is truncated"), 1, self.err)
 
     def test_info_of_a_folder_says_which_file_is_cut_off(self):
         self.shell(
@@ -437,10 +437,10 @@ class Recordings(Graphs):
             self.assertEqual(self.err.count("\n"), 1)
         self.shell("hc send 1 | hc record y.mtp --split 1G", 2)
         self.shell("hc send 1 | hc record y.mcap --split x", 2)
-        self.assertIn('--split: "x" is no number of bytes, such as 1G', self.err)
+        self.assertIn('--split: "x" is not a number of bytes, such as 1G', self.err)
         self.shell("hc send 1 | hc record y.mcap --split 99999999999G", 2)
         self.shell("hc send 1 | hc recorder --split x", 2)
-        self.assertIn('split: "x" is no number of bytes', self.err)
+        self.assertIn('split: "x" is not a number of bytes', self.err)
         self.shell("hc send 1 | hc record y.mcap --keep 1G", 2)
 
 

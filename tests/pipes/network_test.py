@@ -136,7 +136,7 @@ class Network(Pipes):
             "s.sendto(struct.pack('<6d', 0, 0, 0, -20, 0, 0), ('%s', 4242)); s.recv(1)" % HERE
         )
         for sender, said in (
-            (HERE, "ignored a packet of %s port [0-9]+: another host, which `sender`" % THERE),
+            (HERE, "ignored a packet of %s port [0-9]+: another host, not listed in `sender`" % THERE),
             (HERE + " " + THERE, "receiving from the tracker"),
         ):
             tracker = self.within(

@@ -511,7 +511,7 @@ class Seat(Page):
         second.send_frame(BINARY, b"1 3 0 0 8 1 10390 0 7 1 1\n1 1 0\n")
         kind, words = second.next()
         self.assertEqual(kind, TEXT)
-        self.assertIn(b"is not of now", words)
+        self.assertIn(b"is not current", words)
         second.close()
         self.hear(graph, 3, lambda text: '"driver":null' in text)
         self.stop(process)
@@ -662,7 +662,7 @@ class Recordings(Page):
         path = self.record(graph)
         # As on a full disk: a write that fails.
         resource.prlimit(self.pid(graph), resource.RLIMIT_FSIZE, (path.stat().st_size + 5000,) * 2)
-        self.hear(graph, 2, lambda text: "what was written before is kept" in text)
+        self.hear(graph, 2, lambda text: "the file keeps all before" in text)
         self.hear(graph, 3, lambda text: json.loads(text)["recording"] is None)
         self.assertRegex(self.shell("hc info recordings/one.mcap"), r"camera\.left +[1-9]")
 

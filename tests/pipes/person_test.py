@@ -96,7 +96,7 @@ class HeadTracker(Bodies):
 
     def test_it_listens_only_where_it_is_asked_to(self):
         process = self.run_module("hc head_tracker --out rotation=file:rotation")
-        self.wait_for("idle: `listen` gives no port; opentrack's is 4242")
+        self.wait_for("idle: `listen` names no port; opentrack's is 4242")
         with open("/proc/net/udp") as table:  # the inode of a socket is its tenth word
             sockets = {"socket:[%s]" % line.split()[9] for line in table.readlines()[1:]}
         folder = "/proc/%d/fd" % process.pid

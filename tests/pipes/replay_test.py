@@ -26,7 +26,7 @@ class Replay(Pipes):
             self.assertEqual(
                 re.sub("[0-9]+ messages", "N messages", out).splitlines(),
                 [
-                    "source: not run: a sensor: the recording stands for it",
+                    "source: not run: a sensor: its outputs come from the recording",
                     "first.out: N messages, the same",
                     "second.out: N messages, the same",
                     "last: not run: none of its outputs was recorded",
@@ -182,7 +182,7 @@ class Replay(Pipes):
         self.shell("hc replay nosuch.mcap" + OPTIONS, 1)
         self.assertIn("open(nosuch.mcap): No such file or directory", self.err)
         self.shell("hc replay kept --check", 2)
-        self.assertIn("give --graph FILE: kept does not say which graph was run", self.err)
+        self.assertIn("give --graph FILE: kept does not name its graph file", self.err)
         self.shell("rm kept/source.command.mtp")
         self.assertIn(
             "first: not run: source.command is not in the recording",

@@ -211,8 +211,8 @@ hc cat --raw "$in" | hc play --speed max --out "$out" /dev/stdin
             os.kill(talker["pid"], signal.SIGKILL)
             await_state(process, lambda talker: talker["restarts"] == 1 and is_silent(talker))
             if reads_again:
-                lines = self.await_lines(process, "not shown")
-                self.assertRegex(lines[-1], r"^hc run: [0-9]+ lines are not shown")
+                lines = self.await_lines(process, "lines dropped")
+                self.assertRegex(lines[-1], r"^hc run: [0-9]+ lines dropped")
                 self.stop(process)
             else:
                 self.assertEqual(self.ask(process, "stop"), ["ok"])

@@ -150,7 +150,7 @@ class Tracing(Graphs):
             self.assertGreaterEqual(path["age"][0], 0.3)
         self.assertRegex(self.shell("hc cat kept/last.trace.mtp"), "took in [0-9]+ [0-9]+ [0-9]+ ")
         self.shell("hc trace nosuch.in --recording kept", 1)
-        self.assertIn("nosuch reports nothing of its messages", self.err)
+        self.assertIn("nosuch sends no trace", self.err)
         self.shell("mkdir empty; hc trace last.in --recording empty", 1)
         self.assertIn("hc run --record writes them", self.err)
         # What a recorder that was killed has left is traced as far as it is whole.

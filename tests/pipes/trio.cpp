@@ -4,12 +4,12 @@
 
 int main(int argc, char** argv) {
   hc::Module module{"trio", "Sends the times of three inputs that are taken together."};
-  auto place = module.input("place", hc::position<double>(), "a position");
-  auto score = module.input("score", hc::table<double>(), "a table");
+  auto place = module.input("place", hc::position(), "a position");
+  auto score = module.input("score", hc::table(), "a table");
   auto words = module.input("words", hc::string(), "a text");
   auto times = module.output("times", hc::table<std::int64_t>(), "times of a set [ns]");
   module.on(hc::together(place, score, words), [&](const auto& a, const auto& b, const auto& c) {
-    times.send(hc::table({a.header.time, b.header.time, c.header.time}));
+    times.send({a.header.time, b.header.time, c.header.time});
   });
   return module.run(argc, argv);
 }

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
   auto when = module.input("when", hc::anything(), "messages whose times are asked for");
   auto target = module.parameter("target", "world", "", "the frame that points are wanted in");
   auto source = module.parameter("source", "left_eye", "", "the frame that they are given in");
-  auto pose = module.output("pose", hc::transformation<double>(4, 4), "T_target_source");
+  auto pose = module.output("pose", hc::transformation(), "T_target_source");
   constexpr std::chrono::seconds kTimeout{60};
   hc::ModuleFrames frames{module, {.silence = kTimeout, .first = kTimeout}};
 

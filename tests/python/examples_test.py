@@ -36,9 +36,9 @@ class Examples(Package):
             "$EXAMPLES/edges --low 20 <image.mtp >edges.mtp" % DATA
         )
         (image,), (edges,) = hc.read(self.path("image.mtp")), hc.read(self.path("edges.mtp"))
-        grey = cv2.cvtColor(image.array, cv2.COLOR_RGB2GRAY)
-        self.assertTrue((edges.array == cv2.Canny(grey, 20, 150)).all())
-        self.assertGreater(edges.array.mean(), 1)
+        grey = cv2.cvtColor(image.matrix, cv2.COLOR_RGB2GRAY)
+        self.assertTrue((edges.matrix == cv2.Canny(grey, 20, 150)).all())
+        self.assertGreater(edges.matrix.mean(), 1)
         self.assertEqual(edges.time, image.time)
 
     def test_classify(self):

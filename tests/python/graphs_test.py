@@ -16,9 +16,9 @@ from harness import DATA
 FILTER = """
 import hypercolumn as hc
 module = hc.Module("darken", "Darkens images.")
-image = module.input("image", hc.image(), "an image")
-dark = module.output("dark", hc.image(), "the same, darker")
-never = module.output("never", hc.image(), "nothing")
+image = module.input("image", hc.rgb_image(), "an image")
+dark = module.output("dark", hc.rgb_image(), "the same, darker")
+never = module.output("never", hc.rgb_image(), "nothing")
 shift = module.parameter("shift", 1, "", "how much", min=0, max=7)
 module.parameter("title", "2.5", "", "any text")
 module.parameter("gain", 1.0, "", "any number")
@@ -26,7 +26,7 @@ module.parameter("gain", 1.0, "", "any number")
 @module.on(image)
 def darken(message):
     with dark.loan(message.height, message.width) as out:
-        out[:] = message.array >> shift.value
+        out[:] = message.matrix >> shift.value
 
 module.run()
 """
@@ -69,7 +69,7 @@ class Graphs(Package):
         with hc.start(self.graph) as graph:
             running = lambda: [each.status for each in graph.modules.values()] == ["running"] * 3
             wait_until(running)
-            bright = graph["camera.left"].read().array.mean()
+            bright = graph["camera.left"].read().matrix.mean()
             for message in graph["brightness.mean"]:
                 if message.numbers[0] > 0:
                     break
@@ -122,7 +122,7 @@ class Graphs(Package):
             seen = []
             for message in graph["darken.dark"]:
                 seen.append(message.seq)
-                self.assertEqual(message.array.shape, (60, 80, 3))
+                self.assertEqual(message.matrix.shape, (60, 80, 3))
                 if len(seen) == 5:
                     break
             self.assertEqual(seen, sorted(set(seen)))
@@ -131,7 +131,7 @@ class Graphs(Package):
 
     def test_reading_ends_after_a_time(self):
         with hc.start(self.graph) as graph:
-            self.assertEqual(graph["darken.dark"].read(60).array.shape, (60, 80, 3))
+            self.assertEqual(graph["darken.dark"].read(60).matrix.shape, (60, 80, 3))
             with self.assertRaisesRegex(hc.Error, "darken.never: no message in 0.1 s") as caught:
                 graph["darken.never"].read(0.1)
             self.assertEqual(caught.exception.code, "Closed")

@@ -38,7 +38,7 @@ class Fields(Package):
         kind = (m.type, m.components, m.scalar, m.encoding)
         self.assertEqual(kind, ("position", 3, "f64", "text"))
         self.assertEqual(m.numbers, (1.0, 2.0, 3.0, 4.0, 5.0, 6.5))
-        self.assertEqual(m.array.tolist(), [[[1, 2, 3], [4, 5, 6.5]]])
+        self.assertEqual(m.matrix.tolist(), [[[1, 2, 3], [4, 5, 6.5]]])
         self.assertIn("position 2 x 1 of 3 x f64", repr(m))
 
     def test_every_scalar_has_its_dtype(self):
@@ -47,18 +47,18 @@ class Fields(Package):
             numbers = numpy.array([[0, 1, 100]], dtype)
             header = b"1 1 0 0 8 0 1201%d1 0 0 3 1\n" % scalar
             (message,) = self.read(header + numbers.tobytes() + b"\n")
-            self.assertEqual(message.array.dtype, dtype)
-            self.assertEqual(message.array.tolist(), [[0, 1, 100]])
+            self.assertEqual(message.matrix.dtype, dtype)
+            self.assertEqual(message.matrix.tolist(), [[0, 1, 100]])
             self.assertEqual(message.numbers, (0, 1, 100))
             self.assertEqual(message.scalar, "%s%d" % (name[0], 8 * int(name[1])))
 
     def test_shapes(self):
         (grey,) = self.read(b"1 1 0 0 8 0 40101 0 0 3 2\n" + bytes(6) + b"\n")
-        self.assertEqual(grey.array.shape, (2, 3))
+        self.assertEqual(grey.matrix.shape, (2, 3))
         (colour,) = self.read(b"1 1 0 0 8 0 30301 0 0 3 2\n" + bytes(18) + b"\n")
-        self.assertEqual(colour.array.shape, (2, 3, 3))
+        self.assertEqual(colour.matrix.shape, (2, 3, 3))
         (empty,) = self.read(b"1 1 0 0 8 0 120190 0 0 0 4\n\n")
-        self.assertEqual((empty.array.shape, empty.numbers), ((4, 0), ()))
+        self.assertEqual((empty.matrix.shape, empty.numbers), ((4, 0), ()))
 
     def test_text(self):
         (one,) = self.read(b"1 1 0 0 8 0 60100 0 0 5 1\nm\xc3\xbcd \n")
@@ -178,10 +178,10 @@ for use in (message.copy, lambda: message.text, lambda: message.numbers):
 class Memory(Package):
     def test_an_array_is_in_the_memory_of_the_publisher(self):
         _, stream = self.publish()
-        array = next(stream).array
+        array = next(stream).matrix
         self.assertTrue(is_shared(array))
         self.assertFalse(array.flags.writeable)
-        self.assertFalse(is_shared(next(stream).copy().array))
+        self.assertFalse(is_shared(next(stream).copy().matrix))
         with self.assertRaises(ValueError):
             array[0, 0] = 1
         with self.assertRaises(ValueError):
@@ -191,15 +191,15 @@ class Memory(Package):
     def test_a_slot_returns_with_the_last_view(self):
         # Room for five images: the publisher waits while all of them are held.
         _, stream = self.publish(uri_options="readers=1&memory=8M")
-        held = [next(stream).array[0, 0] for _ in range(3)]
+        held = [next(stream).matrix[0, 0] for _ in range(3)]
         while (message := stream.take(0.5)) is not None:
-            held.append(message.array[1:])
+            held.append(message.matrix[1:])
         del message
         self.assertLess(len(held), 7)
         count = len(held)
         held[1:] = []
         gc.collect()
-        self.assertEqual(int(next(stream).array[0, 0, 0]), count)
+        self.assertEqual(int(next(stream).matrix[0, 0, 0]), count)
         self.assertEqual(int(held[0][0]), 0)
         for _ in range(100):  # each slot many times
             next(stream)
@@ -207,7 +207,7 @@ class Memory(Package):
     def test_an_array_outlives_message_and_link(self):
         process, stream = self.publish("--count 3")
         messages = list(stream)
-        arrays = [message.array for message in messages]
+        arrays = [message.matrix for message in messages]
         del messages
         stream.close()
         process.wait()
@@ -220,7 +220,7 @@ class Memory(Package):
 
     def test_what_is_held_stays_when_the_publisher_is_killed(self):
         process, stream = self.publish()
-        array = next(stream).array
+        array = next(stream).matrix
         process.send_signal(signal.SIGKILL)
         process.wait()
         with self.assertRaises(hc.Error) as caught:
@@ -236,7 +236,7 @@ class Memory(Package):
             warnings.simplefilter("always")
             for _ in range(KEPT + 10):
                 message = next(stream)
-                kept.append(message.array)
+                kept.append(message.matrix)
                 line = sys._getframe().f_lineno - 1
         self.assertEqual(len(caught), 1)
         self.assertEqual((caught[0].filename, caught[0].lineno), (__file__, line))
@@ -246,7 +246,7 @@ class Memory(Package):
             self.assertTrue((array == i).all())
         kept.clear()
         del message, array
-        self.assertTrue(is_shared(next(stream).array))
+        self.assertTrue(is_shared(next(stream).matrix))
 
     def test_messages_leak_nothing(self):
         count = 1000000 if FULL else 100000
@@ -255,9 +255,9 @@ class Memory(Package):
         _, images = self.publish("--height 10")
         taken, early = 0, 0
         for message in hc.read(self.path("many.mtp")):
-            self.assertEqual(len(message.numbers) + message.array.size, 6)
+            self.assertEqual(len(message.numbers) + message.matrix.size, 6)
             image = next(images)
-            image.array[0, 0], image.time, image.type
+            image.matrix[0, 0], image.time, image.type
             taken += 1
             if taken == count // 5:
                 early = resident()
@@ -284,7 +284,7 @@ def resident():
 @module.on(position)
 def add(message):
     global taken, early
-    total.send(sum(message.numbers) + message.array.size)
+    total.send(sum(message.numbers) + message.matrix.size)
     taken += 1
     if taken == 200000:
         early = resident()

@@ -16,7 +16,7 @@ from package import Package, hc
 TWIN = """
 import hypercolumn as hc
 module = hc.Module("camera_like", "Has a bit of everything.")
-image = module.input("image", hc.image(), "an image")
+image = module.input("image", hc.rgb_image(), "an image")
 pose = module.input("pose", hc.any_of(hc.transformation(), hc.rotation().of(1, 1).in_("gaze")),
                     "where", actor=True, keep=3)
 any = module.input("any", hc.anything(), "all")
@@ -73,11 +73,11 @@ class Declared(Modules):
             (lambda: hc.table(100), "1 … 99 components"),
             (lambda: hc.sound(1, "u8").in_("nowhere"), 'no coordinate system "nowhere"'),
             (lambda: hc.rotation(scalar="u8"), "R"),
-            (lambda: hc.table(scalar="c16"), "no scalar of messages: complex128"),
+            (lambda: hc.table(scalar="c16"), "not a scalar type of messages: complex128"),
             (lambda: module.output("o", hc.anything(), "all"), "an output has one kind"),
-            (lambda: module.every(0)(print), "a period is above 0 s"),
+            (lambda: module.every(0)(print), "a period must be above 0 s"),
             (lambda: module.keep_rate(1), "keep_rate"),
-            (lambda: sender.send(1), "send() is for the handlers of a module that runs"),
+            (lambda: sender.send(1), "send() may only be called in handlers of a running module"),
             (lambda: hc.together(module.input("x", hc.table(), "x")), "two inputs or more"),
         ):
             with self.subTest(text), self.assertRaises(hc.Error) as caught:
@@ -108,18 +108,18 @@ class Sent(Modules):
         table, position, text = "120190", "10390", "60100"
         for kind, body, wanted in (
             ("table()", "out.send(message)", head % (table, 0, 3, 1) + "1 2.5 -3\n"),
-            ("table()", "out.send(2 * message.array)", head % (table, 0, 3, 1) + "2 5 -6\n"),
+            ("table()", "out.send(2 * message.matrix)", head % (table, 0, 3, 1) + "2 5 -6\n"),
             ("table()", "out.send(message.numbers)", head % (table, 0, 3, 1) + "1 2.5 -3\n"),
             ("table()", "out.send([1, True])", head % (table, 0, 2, 1) + "1 1\n"),
-            ("table()", "out.send(message.array.T)", head % (table, 0, 1, 3) + "1\n2.5\n-3\n"),
+            ("table()", "out.send(message.matrix.T)", head % (table, 0, 1, 3) + "1\n2.5\n-3\n"),
             ("table()", "out.send(7)", head % (table, 0, 1, 1) + "7\n"),
-            ("table()", "out.send(message.array.mean())", head % (table, 0, 1, 1) + "0.16666666666666666\n"),
+            ("table()", "out.send(message.matrix.mean())", head % (table, 0, 1, 1) + "0.16666666666666666\n"),
             ("table()", "out.send([])", head % (table, 0, 0, 1) + "\n"),
             ("table()", "out.send([[1, 2], [3, 4]])", head % (table, 0, 2, 2) + "1 2\n3 4\n"),
             ("table().of(2, 2)", "out.send([1, 2, 3, 4])", head % (table, 0, 2, 2) + "1 2\n3 4\n"),
-            ("table(scalar='f32')", "out.send(message.array)", head % ("120180", 0, 3, 1) + "1 2.5 -3\n"),
+            ("table(scalar='f32')", "out.send(message.matrix)", head % ("120180", 0, 3, 1) + "1 2.5 -3\n"),
             ("table(scalar='i16')", "out.send([-5, 6])", head % ("120130", 0, 2, 1) + "-5 6\n"),
-            ("position()", "out.send(message.array)", head % (position, 0, 1, 1) + "1 2.5 -3\n"),
+            ("position()", "out.send(message.matrix)", head % (position, 0, 1, 1) + "1 2.5 -3\n"),
             ("position()", "out.send([1, 2, 3, 4, 5, 6])", head % (position, 0, 2, 1) + "1 2 3 4 5 6\n"),
             ("position().in_('head')", "out.send((0, 0, 1))", head % (position, 3, 1, 1) + "0 0 1\n"),
             ("position()", "out.send((0, 0, 1), coord='gaze')", head % (position, 13, 1, 1) + "0 0 1\n"),
@@ -136,8 +136,8 @@ class Sent(Modules):
             ("table(scalar='u8')", "out.send([256])", "R28: 256 does not fit into u8"),
             ("table(scalar='u8')", "out.send([-1])", "R28: -1 does not fit into u8"),
             ("table(scalar='u8')", "out.send([1 << 99])", "does not fit into u8"),
-            ("table(scalar='u8')", "out.send(message.array)", "an array of float64, to be converted"),
-            ("image()", "out.send(message.array[0, :2])", "an array of shape (2,)"),
+            ("table(scalar='u8')", "out.send(message.matrix)", "an array of float64, to be converted"),
+            ("rgb_image()", "out.send(message.matrix[0, :2])", "an array of shape (2,)"),
             ("position()", "out.send([1, 2])", "2 numbers"),
             ("position()", "out.send(message)", "out: "),
             ("table().of(1, 2)", "out.send([1, 2, 3])", "3 numbers"),
@@ -291,7 +291,7 @@ module.run()
 """
         uses = """
 gain = module.parameter("gain", 1.0, "", "a number")
-frames = module.frames()
+frames = hc.ModuleFrames(module)
 timer = module.after(9)(print)
 uses = [
     lambda: out.send(1),
@@ -304,12 +304,11 @@ uses = [
     lambda: timer.restart(1),
     timer.stop,
     lambda: module.keep_rate(1),
-    module.keep_running,
+    module.stop,
     lambda: module.focus,
     lambda: module.has_focus,
     lambda: module.log_once("kind", "line"),
     module.now,
-    lambda: module.seconds_since(5),
     lambda: module.every(1)(print),
     lambda: module.input("more", hc.table(), "more"),
 ]
@@ -322,7 +321,7 @@ uses = [
         self.assertEqual(len(lines), 18)
         for line in lines:
             self.assertIn(
-                "Invalid: a module, its ports and parameters are used on the thread", line
+                "Invalid: a module, its ports and parameters may only be used on the thread", line
             )
 
     def test_a_module_owns_what_is_made_of_it(self):
@@ -332,7 +331,7 @@ import gc
 import hypercolumn as hc
 
 module = hc.Module("frames", "Has dropped its frames.")
-module.frames()
+hc.ModuleFrames(module)
 gc.collect()
 module.on_end(lambda: module.log("end"))
 module.run()
@@ -353,8 +352,8 @@ module.run()
 
     def test_the_frames_of_a_module_are_the_same(self):
         module = hc.Module("m", "a module")
-        module.frames()
-        self.assertEqual(module.frames().lookup("head", "head", 5).tolist(), numpy.eye(4).tolist())
+        hc.ModuleFrames(module)
+        self.assertEqual(hc.ModuleFrames(module).lookup("head", "head", 5).tolist(), numpy.eye(4).tolist())
 
 
 class Loop(Modules):
@@ -368,7 +367,7 @@ out = module.output("out", hc.table(), "sum")
 
 @module.on(hc.together(a, b))
 def add(one, other):
-    out.send(one.array + other.array)
+    out.send(one.matrix + other.matrix)
 
 module.run()
 """
@@ -401,7 +400,7 @@ def count(message):
 
 @module.on_end
 def end():
-    module.log(" ".join(said) + " end %g" % module.seconds_since(0))
+    module.log(" ".join(said) + " end %g" % (module.now() * 1e-9))
 
 module.run()
 """
@@ -437,7 +436,7 @@ module.run()
 import hypercolumn as hc
 module = hc.Module("where", "Says where the left eye is.")
 numbers = module.input("numbers", hc.table(), "numbers")
-frames = module.frames()
+frames = hc.ModuleFrames(module)
 
 @module.on(numbers)
 def look(message):

@@ -20,7 +20,7 @@ __all__ = ["BUILD", "Package", "ROOT", "WATCHDOG", "hc", "mappings", "wait_until
 PUBLISHER = """
 import hypercolumn as hc
 module = hc.Module("publisher", "Sends images, each of one number: how many there were before.")
-image = module.output("image", hc.image(), "an image")
+image = module.output("image", hc.rgb_image(), "an image")
 count = module.parameter("count", 0, "", "images; 0: without end")
 height = module.parameter("height", 600, "px", "of them")
 sent = 0
@@ -31,7 +31,8 @@ def publish():
     with image.loan(height.value, 800, time=sent + 1) as pixels:
         pixels[:] = sent % 256
     sent += 1
-    return sent != count.value
+    if sent == count.value:
+        module.stop()
 
 module.run()
 """

@@ -6,16 +6,14 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"camera_like", "Has a bit of everything."};
-  auto image = module.input("image", hc::rgb_image<std::uint8_t>(), "an image");
+  auto image = module.input("image", hc::rgb_image(), "an image");
   auto pose = module.input("pose",
-                           hc::any_of(hc::transformation<double>(),
-                                      hc::rotation<double>().of(1, 1).in(hc::Coord::kGaze)),
-                           "where");
-  module.actor(pose);
-  module.keep(pose, 3);
+                           hc::any_of(hc::transformation(),
+                                      hc::rotation().of(1, 1).in(hc::Coord::kGaze)),
+                           "where", {.actor = true, .keep = 3});
   module.input("any", hc::anything(), "all");
-  auto mean = module.output("mean", hc::table<double>().of(3, 1).in(7), "numbers");
-  module.output("sound", hc::sound<std::int16_t>(2).in(hc::Coord::kSound16k), "noise");
+  auto mean = module.output("mean", hc::table().of(1, 3).in(7), "numbers");
+  module.output("sound", hc::sound(2).in(hc::Coord::kSound16k), "noise");
   module.parameter("loud", true, "", "a bool");
   module.parameter("rate", 2.5, "Hz", "a number", {.min = 0, .max = 100});
   module.parameter("count", 8, "", "an integer", {.min = 2, .max = 64, .step = 2});

@@ -14,13 +14,13 @@ PRIVATE = ("__", "_pybind11_")
 EXAMPLE = """
 import hypercolumn as hc
 module = hc.Module("m", "a module")
-image = module.input("image", hc.image(), "an image")
+image = module.input("image", hc.rgb_image(), "an image")
 out = module.output("out", hc.table(), "a number")
 factor = module.parameter("factor", 2.0, "", "a factor")
 
 @module.on(image)
 def look(message: hc.Message) -> None:
-    out.send(factor.value * message.array.mean(), time=message.time)
+    out.send(factor.value * message.matrix.mean(), time=message.time)
     with out.loan(1, 2) as a:
         a[:] = 1
 
@@ -30,7 +30,7 @@ with hc.start("graph.toml") as graph:
     graph.parameters["m.factor"] = 2
 module.run()
 """
-WRONG = ("factor.value.no_such", "out.send()", "hc.read(5)", "module.on(out)", "image.array")
+WRONG = ("factor.value.no_such", "out.send()", "hc.read(5)", "module.on(out)", "image.matrix")
 
 
 class Types(Package):

@@ -169,7 +169,7 @@ class Ros2(Graphs):
         refused = {}
         while len(refused) < len(TYPES):
             line = self.await_lines(graph, ": ")[-1]
-            found = re.match(r"(?:first|second): /peer/(\w+): refused; .*", line)
+            found = re.match(r"(?:first|second): /peer/(\w+): message refused .*", line)
             if found:
                 self.assertNotIn(found[1], refused, line)
                 refused[found[1]] = line

@@ -60,29 +60,29 @@ const std::vector<Case>& memories() {
          EXPECT_EQ(::ftruncate(file.get(), static_cast<off_t>(bytes)), 0);
          return one(std::move(file));
        },
-       "the memory that was handed over "},
-      {"unsealed", [](auto bytes) { return one(make_memfd(bytes, 0)); }, "could change its size"},
+       "the received shared memory "},
+      {"unsealed", [](auto bytes) { return one(make_memfd(bytes, 0)); },
+       "is not sealed against resizing"},
       {"growing", [](auto bytes) { return one(make_memfd(bytes, F_SEAL_SHRINK | F_SEAL_SEAL)); },
-       "could change its size"},
+       "is not sealed against resizing"},
       {"shrinking",
        [](auto bytes) {
          auto memory = make_memfd(bytes, F_SEAL_GROW);
          EXPECT_EQ(::ftruncate(memory.get(), 0), 0);
          return one(std::move(memory));
        },
-       "could change its size"},
+       "is not sealed against resizing"},
       {"short", [](auto bytes) { return one(make_memfd(bytes - kPageBytes, kSealed)); },
        " bytes, not "},
       {"empty", [](auto) { return one(make_memfd(0, kSealed)); }, "has 0 bytes, not "},
       {"long", [](auto bytes) { return one(make_memfd(bytes + 1, kSealed)); }, " bytes, not "},
-      {"zero", [](auto) { return one(open_file("/dev/zero", O_RDWR)); },
-       "is none that can be sealed"},
-      {"folder", [](auto) { return one(open_file("/", O_RDONLY)); }, "is none that can be sealed"},
-      {"pipe", [](auto) { return one(make_pipe()); }, "is none that can be sealed"},
+      {"zero", [](auto) { return one(open_file("/dev/zero", O_RDWR)); }, "cannot be sealed"},
+      {"folder", [](auto) { return one(open_file("/", O_RDONLY)); }, "cannot be sealed"},
+      {"pipe", [](auto) { return one(make_pipe()); }, "cannot be sealed"},
       {"socket", [](auto) { return one(Descriptor(::socket(AF_UNIX, SOCK_STREAM, 0))); },
-       "is none that can be sealed"},
+       "cannot be sealed"},
       {"path", [](auto bytes) { return one(reopen(make_memfd(bytes, kSealed), O_PATH)); },
-       "is none that can be sealed"},
+       "cannot be sealed"},
       {"unreadable", [](auto bytes) { return one(reopen(make_memfd(bytes, kSealed), O_WRONLY)); },
        "cannot be mapped"},
   };

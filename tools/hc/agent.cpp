@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc agent: starts modules here for a `hc run` on another host, which starts it through ssh.
+// hc agent: starts modules on this host for a `hc run` on another, which runs it through ssh.
 #include <unistd.h>
 
 #include <hc/os/program.h>
@@ -13,12 +13,12 @@ namespace tool {
 
 void add_agent(CLI::App& app) {
   auto* verb = app.add_subcommand(
-      "agent", "Start modules for hc run on another host, which starts this through ssh");
+      "agent", "Start modules for hc run on another host, which runs this through ssh");
   verb->callback([] {
     if (::isatty(STDIN_FILENO) == 1)
       throw Failure(hc::Code::Invalid,
-                    "hc run starts this through ssh, for modules with host = \"NAME\"; see "
-                    "spec/graph.md");
+                    "do not run this by hand: hc run does so through ssh, for modules with host = "
+                    "\"NAME\"; see spec/graph.md");
     allow_descriptors();
     hc::hosts::AgentOptions options;
     options.stop = hc::stop_descriptor();

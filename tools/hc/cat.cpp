@@ -25,7 +25,7 @@ void run(const CatOptions& options) {
   std::unique_ptr<hc::Sink> raw;
   if (options.raw) raw = open_sink("-");
   hc::Message message;
-  std::uint64_t damaged = 0;  // whole messages, whose compressed elements are
+  std::uint64_t damaged = 0;  // messages whose elements cannot be expanded
   for (std::uint64_t shown = 0; options.count == 0 || shown < options.count;) {
     if (!receive(*source, message, options.uri, "hc cat", options.skip)) break;
     auto expanded = options.raw ? hc::Result<hc::Message>(message) : hc::expand(message);
@@ -43,7 +43,7 @@ void run(const CatOptions& options) {
   }
   if (raw != nullptr) static_cast<void>(raw->close());
   say_losses("hc cat", options.uri, source->traffic());
-  if (damaged > 1) say(hc::format("hc cat: {} damaged messages were left out", damaged));
+  if (damaged > 1) say(hc::format("hc cat: skipped {} damaged messages", damaged));
   if (damaged > 0 && !options.skip) throw Failure(1);
 }
 

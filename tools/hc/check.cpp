@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc check: reports every problem of a graph, and what its hosts lack, without starting it.
+// hc check: reports all problems of a graph and its hosts, without starting it.
 
 #include <hc/base/format.h>
 

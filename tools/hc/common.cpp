@@ -26,7 +26,7 @@ void check_word(const std::string& word) {
     throw Failure(word, hc::Error{hc::Code::Invalid, "inproc links threads of one program"});
 }
 
-/// Text to the person; it does not matter whether it arrives.
+/// Writes to standard error, ignoring errors.
 void write_error(const std::string& text) {
   static_cast<void>(hc::write_all(STDERR_FILENO, text));
 }
@@ -75,7 +75,7 @@ bool receive(hc::Source& source, hc::Message& message, const std::string& uri) {
 bool receive(hc::Source& source, hc::Message& message, const std::string& uri,
              std::string_view verb, bool is_skipping) {
   using hc::Code;
-  // Each place may cost as much reading as its header promises, so there is an end to it.
+  // Each attempt may read as much as a damaged header says, so their number is limited.
   constexpr int kMostInARow = 1000;
   for (int in_a_row = 1;; ++in_a_row) try {
       return receive(source, message, uri);

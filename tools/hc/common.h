@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the verbs of hc share: links by their text, errors as exceptions, signals, progress.
+// Shared by the verbs of hc: opening links and recordings, errors as exceptions, output, progress.
 
 #include <cstdint>
 #include <filesystem>
@@ -19,8 +19,8 @@ namespace tool {
 inline constexpr std::string_view kBold = "\x1b[1m", kNormal = "\x1b[0m";  ///< of a terminal
 inline constexpr std::uint64_t kDefaultLimit = std::uint64_t{256} << 20;   ///< of elements [byte]
 
-/// Ends a verb with one line on standard error and an exit status; quietly with 0 when it was asked
-/// to stop.
+/// Ends a verb with a line on standard error and an exit status; with status 0 and no line if it
+/// was asked to stop.
 struct Failure : std::runtime_error {
   explicit Failure(const hc::Error& error)
       : std::runtime_error(error.text()),
@@ -28,9 +28,9 @@ struct Failure : std::runtime_error {
         detail(error.detail),
         status(status_of(error.code)) {}
   Failure(hc::Code what, std::string why) : Failure(hc::Error{what, std::move(why)}) {}
-  Failure(std::string_view who, const hc::Error& error)
-      : Failure(error.code, std::string(who) + ": " + error.detail) {}
-  /// Without a line: it has been logged.
+  Failure(std::string_view subject, const hc::Error& error)
+      : Failure(error.code, std::string(subject) + ": " + error.detail) {}
+  /// Without a line, since the reason has been logged.
   explicit Failure(int exit_status) : std::runtime_error(""), status(exit_status) {}
 
   hc::Code code = hc::Code::System;
@@ -44,8 +44,8 @@ struct Failure : std::runtime_error {
 };
 
 template <typename T>
-T value_or_fail(hc::Result<T> result, std::string_view who) {
-  if (!result) throw Failure(who, result.error());
+T value_or_fail(hc::Result<T> result, std::string_view subject) {
+  if (!result) throw Failure(subject, result.error());
   return std::move(*result);
 }
 
@@ -55,11 +55,11 @@ T value_or_fail(hc::Result<T> result) {
   return std::move(*result);
 }
 
-/// Limits, log and stop of a link. `limit` bounds the elements that are taken. [byte]
+/// @param limit  largest message accepted. [byte]
 hc::LinkOptions link_options(std::uint64_t limit = kDefaultLimit);
 
-/// Links and recordings as the command line names them (record/place.h). `limit` bounds the
-/// elements that are taken. [byte]
+/// Opens links and recordings as named on the command line (record/place.h).
+/// @param limit  largest message accepted. [byte]
 std::unique_ptr<hc::Source> open_source(const std::string& uri, std::uint64_t limit);
 std::unique_ptr<hc::Sink> open_sink(const std::string& uri);
 
@@ -67,42 +67,42 @@ std::unique_ptr<hc::record::Reader> open_recording(
     const std::vector<hc::record::Place>& places, std::uint64_t limit,
     hc::record::Topics topics = hc::record::Topics::Mtp);
 
-/// Files of messages by their path.
+/// Opens files of messages, by path.
 std::unique_ptr<hc::Source> open_file_source(const std::string& path, std::uint64_t limit);
 std::unique_ptr<hc::Sink> open_file_sink(const std::string& path);
 
-/// Takes the next message; false at the end, or when we are asked to stop.
+/// Takes the next message; false at the end, or when asked to stop.
 bool receive(hc::Source& source, hc::Message& message, const std::string& uri);
 
-/// The same, which continues behind damaged bytes, and says so as `verb`. Everything else is
-/// thrown, and so is the damage when it does not end, or `is_skipping` is not set.
+/// Like receive(), but with `is_skipping` logs damaged bytes, prefixed by `verb`, and continues
+/// after them. Fails for other errors, and if the damage does not end.
 bool receive(hc::Source& source, hc::Message& message, const std::string& uri,
              std::string_view verb, bool is_skipping);
 
-/// Sends a message; false when nobody reads any more.
+/// Sends a message; false when the reader has closed.
 bool send(hc::Sink& sink, const hc::Message& message, const std::string& uri);
 
-/// "253 throttled, 8 lost without a reader"; empty where none were.
+/// Dropped messages by reason, such as "253 throttled, 8 lost without a reader"; empty if none.
 std::string losses_in_words(const hc::Traffic& traffic);
-/// Logs how many messages a link has dropped and why, if any.
+/// Logs the messages dropped by a link, if any.
 void say_losses(std::string_view verb, std::string_view uri, const hc::Traffic& traffic);
 
-/// Writes to standard output; false when nobody reads any more. Any other error is a Failure.
+/// Writes to standard output; false when the reader has closed. Fails for other errors.
 bool print(std::string_view text);
 
-/// Raises the limit of open descriptors, of which each module takes several: a login shell allows
-/// 1024, the system more to who asks. Not all of it: there are programs that close every number up
-/// to their limit.
+/// Raises the limit of open descriptors to 65536, if allowed: each module needs several, and the
+/// usual limit is 1024. Not higher, since some programs close every number up to their limit.
 void allow_descriptors();
 
-/// Of the terminal, with 80 x 24 where it is not known. [character]
+/// [character]
 struct TerminalSize {
   std::size_t width = 80, height = 24;
 };
+/// The size of the terminal; 80 x 24 if unknown.
 TerminalSize terminal_size();
 
-/// One line to the person, on standard error.
-void say(std::string_view line);
+/// Writes lines to standard error, with control characters escaped.
+void say(std::string_view lines);
 
 using hc::find_program;
 using hc::module_folder;
@@ -113,10 +113,10 @@ std::string joined(const std::vector<std::string>& words, std::string_view betwe
 /// "1 message", "2 messages"
 std::string counted(std::uint64_t number, std::string_view what);
 
-/// A graph file by its name: that file, or else one of the graphs that came with hc, with or
+/// The path of a graph file: `name` if that file exists, or a shipped graph of that name, with or
 /// without ".toml".
 std::string find_graph(const std::string& name);
-/// The names of the graphs that came with hc, without ".toml".
+/// The names of the shipped graphs, without ".toml".
 std::vector<std::string> shipped_graphs();
 
 /// "1.44 MB"
@@ -125,18 +125,18 @@ std::string bytes_in_words(std::uint64_t bytes);
 /// "12 s", "3:05 min", "4:00 h", "12 d"
 std::string seconds_in_words(double seconds);
 
-/// A bar on standard error, where that is a terminal; silent elsewhere.
+/// A progress bar on standard error, if that is a terminal.
 class Progress {
  public:
   explicit Progress(std::string what);
   ~Progress();
-  /// @param share  0 … 1; negative where the end is not known.
+  /// @param share  0 … 1; negative if unknown.
   void show(double share, std::string_view words);
 
  private:
   std::string what_;
   bool on_terminal_;
-  std::int64_t shown_ = 0;  // when, monotonic [ms]
+  std::int64_t shown_ = 0;  // time of the last update, monotonic [ms]
 };
 
 }  // namespace tool

@@ -28,7 +28,7 @@ std::string difference_of(const hc::Message& recorded, const hc::Message& replay
   const auto a = recorded.view<T>()->numbers(), b = replayed.view<T>()->numbers();
   for (std::size_t i = 0; i < a.size(); ++i) {
     const auto one = static_cast<double>(a[i]), other = static_cast<double>(b[i]);
-    const bool is_same =  // two NaN of the same bits are
+    const bool is_same =  // also for NaN with the same bits
         std::ranges::equal(std::as_bytes(a.subspan(i, 1)), std::as_bytes(b.subspan(i, 1))) ||
         (tolerance > 0 && std::abs(one - other) <= tolerance);
     if (is_same) continue;
@@ -47,7 +47,7 @@ struct KeptMessage {
 };
 using Messages = std::multimap<std::int64_t, KeptMessage>;  // by time
 
-/// Takes the next message, with its time, or that of the one before it where it has none.
+/// Takes the next message. A message without a time gets that of the previous one.
 bool take(const NextMessage& next, std::int64_t& time, hc::Message& message) {
   if (!next(message)) return false;
   if (message.header.time != 0) time = message.header.time;
@@ -69,8 +69,8 @@ std::string difference(const hc::Message& recorded, const hc::Message& replayed,
     if (a.*field != b.*field) return both(name, a.*field, b.*field);
   if (std::ranges::equal(recorded.elements, replayed.elements)) return "";
   if (a.info.type == hc::MatrixType::String)
-    return both("text", "\"" + std::string(recorded.characters()) + "\"",
-                "\"" + std::string(replayed.characters()) + "\"");
+    return both("text", "\"" + std::string(recorded.text()) + "\"",
+                "\"" + std::string(replayed.text()) + "\"");
   return hc::visit_scalar(a.info.scalar, [&](auto zero) {
     return difference_of<decltype(zero)>(recorded, replayed, tolerance.number);
   });
@@ -95,7 +95,7 @@ std::string Comparison::text() const {
 Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
                    const Tolerance& tolerance, std::int64_t last) {
   Comparison result;
-  Messages held;  // of the replay, a second either way of what is looked at
+  Messages held;  // of the replay, within 1 s of the current recorded message
   std::int64_t time = 0, again_time = 0;
   std::optional<std::int64_t> begin;
   hc::Message message;
@@ -115,7 +115,7 @@ Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
     for (auto each = held.begin(); each != end; each = held.erase(each)) {
       if (each->second.is_matched) continue;
       ++result.extra;
-      note(each->second.message.header, each->first, "not recorded, and replayed");
+      note(each->second.message.header, each->first, "replayed but not recorded");
     }
   };
   for (bool has_more = true; take(recorded, time, message);) {
@@ -132,7 +132,7 @@ Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
     const auto end = held.upper_bound(time + tolerance.time);
     for (auto each = held.lower_bound(time - tolerance.time); each != end; ++each) {
       auto& candidate = each->second;
-      // One by one where times are equal; else what is said at a time, as often as it is.
+      // Without a tolerance of time, match one to one; otherwise a message may match several.
       if (tolerance.time == 0 && candidate.is_matched) continue;
       const auto differs = difference(message, candidate.message, tolerance);
       if (differs.empty()) {
@@ -155,7 +155,7 @@ Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
       ++result.after_end;
     } else {
       ++result.missing;
-      note(message.header, time, "recorded, and not replayed");
+      note(message.header, time, "recorded but not replayed");
     }
   }
   while (hold_next()) drop_until(held.lower_bound(std::prev(held.end())->first - kDisorder));

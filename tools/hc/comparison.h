@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Whether two recordings of one output say the same, and where they first do not. Pure.
+// Compares two recordings of an output. Pure.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,37 +12,37 @@
 
 namespace tool {
 
-/// What may differ.
+/// Allowed differences.
 struct Tolerance {
-  double number = 0;      ///< numbers, by so much
-  std::int64_t time = 0;  ///< when a message is sent, either way [ns]
-  double share = 1;       ///< of the messages, so many are the same
+  double number = 0;      ///< difference of numbers
+  std::int64_t time = 0;  ///< difference of times, in both directions [ns]
+  double share = 1;       ///< least share of equal messages
 };
 
-/// The first field in which two messages differ, with both values: "width: 4 recorded, 5 replayed";
-/// empty where they are the same but for src, seq and time. Elements must not be compressed.
+/// The first field in which two messages differ, with both values: "width: 4 recorded, 5 replayed".
+/// Ignores src, seq and time; empty if equal. Elements must not be compressed.
 std::string difference(const hc::Message& recorded, const hc::Message& replayed,
                        const Tolerance& tolerance);
 
 struct Comparison {
   std::size_t recorded = 0, replayed = 0;  ///< messages
-  std::size_t same = 0;                    ///< of the recorded ones
-  std::size_t differing = 0;               ///< another of that time was sent in their place
-  std::size_t missing = 0;                 ///< recorded and not replayed
-  std::size_t extra = 0;                   ///< replayed and not recorded
+  std::size_t same = 0;                    ///< recorded messages that were replayed
+  std::size_t differing = 0;               ///< replayed with other contents at that time
+  std::size_t missing = 0;                 ///< recorded but not replayed
+  std::size_t extra = 0;                   ///< replayed but not recorded
   std::size_t after_end = 0;               ///< recorded after `last`, and not replayed
-  std::string first;                       ///< where they first differ; empty: nowhere
+  std::string first;                       ///< the first difference; empty: none
 
   [[nodiscard]] bool is_same(const Tolerance& tolerance) const;
   [[nodiscard]] std::string text() const;
 };
 
-/// Gives the next message, plain and to be kept; false at the end.
+/// Returns the next message, uncompressed, in memory that the caller may keep; false at the end.
 using NextMessage = std::function<bool(hc::Message&)>;
 
-/// Compares messages of equal times, or where a tolerance allows, with any that is so near; the
-/// times of a recording may go back by a second at most.
-/// @param last  the `seq` of the last recorded message that was to be replayed
+/// Compares messages of equal time, or within the tolerance of time; times within a recording may
+/// go back by 1 s at most.
+/// @param last  the `seq` of the last recorded message that a replay must reproduce.
 Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
                    const Tolerance& tolerance,
                    std::int64_t last = std::numeric_limits<std::int64_t>::max());

@@ -12,7 +12,7 @@ namespace {
 
 hc::Message number(std::int64_t time, double value, std::int32_t width = 1) {
   auto draft =
-      hc::Draft::make({hc::MatrixType::Table, 1, hc::Scalar::F64, hc::Encoding::Text}, width, 1);
+      hc::Draft::make({hc::MatrixType::Table, 1, hc::Scalar::F64, hc::Encoding::Text}, 1, width);
   for (auto& each : draft.view<double>().numbers()) each = value;
   draft.header.time = time;
   return std::move(draft).finish();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc describe: a module's ports and parameters.
+// hc describe: prints a module's ports and parameters.
 #include <nlohmann/json.hpp>
 
 #include <graph/run.h>
@@ -13,7 +13,8 @@ namespace tool {
 void add_describe(CLI::App& app) {
   auto name = std::make_shared<std::string>();
   auto* verb = app.add_subcommand("describe", "Print a module's ports and parameters as JSON");
-  verb->add_option("module", *name, "a module, or any program that knows --describe")->required();
+  verb->add_option("module", *name, "a module, or any program that supports --describe")
+      ->required();
   verb->callback([name] {
     std::string program = find_program(*name);
     if (program.empty())
@@ -22,7 +23,7 @@ void add_describe(CLI::App& app) {
     auto text = value_or_fail(hc::describe_program(program), *name);
     auto json = nlohmann::ordered_json::parse(text, nullptr, false);
     if (json.is_discarded())
-      throw Failure(hc::Code::Malformed, *name + " --describe prints no JSON");
+      throw Failure(hc::Code::Malformed, *name + " --describe does not print JSON");
     print(json.dump(2) + "\n");
   });
 }

@@ -28,7 +28,7 @@ bool has_word(std::string_view name, std::initializer_list<std::string_view> wor
 bool looks_like_path(std::string_view value) {
   if (value.find('/') == std::string_view::npos) return false;
   if (value.find_first_of("!%*?\n") != std::string_view::npos) return false;
-  return value.find(':') >= value.find('/');  // else a URI, as http://robot/stream
+  return value.find(':') >= value.find('/');  // otherwise a URI, such as http://robot/stream
 }
 
 std::string folder_of(std::string_view path) {
@@ -61,7 +61,7 @@ void add_devices(std::vector<Finding>& findings, const Devices& devices) {
   const auto& [kind, where, open, closed] = devices;
   if (!open.empty()) findings.push_back({Mark::Ok, kind, joined(open)});
   if (!closed.empty())
-    findings.push_back({Mark::Note, kind, joined(closed) + ": may not be opened by this user"});
+    findings.push_back({Mark::Note, kind, joined(closed) + ": no permission for this user"});
   if (open.empty() && closed.empty())
     findings.push_back({Mark::Note, kind, "none (" + where + ")"});
 }
@@ -72,10 +72,10 @@ void add_limits(std::vector<Finding>& findings, const Facts& facts) {
     return limit == kAny ? std::string("any number of") : hc::format("{}", limit);
   };
   bool is_low = facts.descriptors < kFewDescriptors || facts.processes < kFewProcesses;
-  findings.push_back(
-      {is_low ? Mark::Note : Mark::Ok, "limits",
-       hc::format("{} descriptors a process, {} processes a user{}", in_words(facts.descriptors),
-                  in_words(facts.processes), is_low ? ": few for a large graph (ulimit)" : "")});
+  findings.push_back({is_low ? Mark::Note : Mark::Ok, "limits",
+                      hc::format("{} descriptors per process, {} processes per user{}",
+                                 in_words(facts.descriptors), in_words(facts.processes),
+                                 is_low ? ": low for a large graph (ulimit)" : "")});
 }
 
 constexpr std::string_view kMarks[] = {"ok", "missing", "wrong", "note"};  // in the order of Mark
@@ -138,11 +138,12 @@ std::vector<Finding> diagnose(const Facts& facts) {
   findings.push_back(facts.has_graphviz ? Finding{Mark::Ok, "graphviz", "dot"}
                                         : Finding{Mark::Note, "graphviz",
                                                   "dot is not installed; hc graph --svg needs it"});
-  findings.push_back(facts.modules.empty() ? Finding{Mark::Missing, "modules", "none beside hc"}
-                                           : Finding{Mark::Ok, "modules", joined(facts.modules)});
+  findings.push_back(facts.modules.empty()
+                         ? Finding{Mark::Missing, "modules", "none installed with hc"}
+                         : Finding{Mark::Ok, "modules", joined(facts.modules)});
   if (!facts.broken_modules.empty())
     findings.push_back(
-        {Mark::Missing, "modules", joined(facts.broken_modules) + ": may not be executed"});
+        {Mark::Missing, "modules", joined(facts.broken_modules) + ": not executable"});
   return findings;
 }
 
@@ -150,13 +151,13 @@ std::vector<Finding> diagnose(const Needs& needs, const Facts& facts) {
   std::vector<Finding> findings;
   for (const auto& place : needs.places) {
     const auto known = facts.problems.find(place.question);
-    const auto problem = known == facts.problems.end() ? ": was not looked for" : known->second;
+    const auto problem = known == facts.problems.end() ? ": not checked" : known->second;
     findings.push_back(
         {problem.empty() ? Mark::Ok : Mark::Missing, place.module, place.text + problem});
   }
   for (const auto& viewer : needs.viewers)
     if (facts.display.empty())
-      findings.push_back({Mark::Missing, viewer, "a display; its parameter save does without one"});
+      findings.push_back({Mark::Missing, viewer, "a display; set its parameter save instead"});
   if (needs.modules > facts.processors)
     findings.push_back({Mark::Note, "processors",
                         hc::format("{} for {} modules", facts.processors, needs.modules)});

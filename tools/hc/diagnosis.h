@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// From facts, and from what a graph needs, to the lines of `hc doctor`. Pure.
+// The findings of `hc doctor`, from facts about a machine and the needs of a graph. Pure.
 
 #include <optional>
 #include <string>
@@ -15,22 +15,22 @@ namespace tool {
 
 enum class Mark {
   Ok,
-  Missing,  ///< hc, or the graph, needs it
-  Wrong,    ///< in the graph file
+  Missing,  ///< required by hc or the graph
+  Wrong,    ///< a problem of the graph file
   Note,     ///< informational
 };
 
 struct Finding {
   Mark mark = Mark::Ok;
-  std::string what;  ///< "camera", or a module of the graph
+  std::string what;  ///< subject, such as "camera", or a module of the graph
   std::string text;
 };
 
 /// A file, device, folder or TCP port that a run opens.
 struct Need {
   std::string module;
-  std::string text;      ///< "parameter source: /data/a.jpg"
-  std::string question;  ///< of gather_facts(): "read /data/a.jpg"
+  std::string text;      ///< such as "parameter source: /data/a.jpg"
+  std::string question;  ///< for gather_facts(), such as "read /data/a.jpg"
 };
 
 /// The resources that a graph needs.
@@ -42,32 +42,32 @@ struct Needs {
   [[nodiscard]] std::vector<std::string> questions() const;
 };
 
-/// What of a plan is to be looked for on this machine: ports where its links listen, files of its
-/// links, and parameters that name a file or a device (see need_of_parameter).
+/// The resources that a plan needs: ports on which its links listen, files of its links, and files
+/// or devices named by parameters (see need_of_parameter).
 Needs needs_of(const hc::Plan& plan);
 
-/// The path that a parameter names, if it does. It does
+/// The file, device or folder named by a parameter, if any:
 ///
-/// - where the value begins with /dev/ or a word of its name is source, file, path, folder,
-///   directory, device, model or config: what is read must be there;
-/// - where a word of its name is save, output, log or record: the folder must be there;
+/// - a path to read, which must exist, if the value begins with /dev/ or a word of the name is
+///   source, file, path, folder, directory, device, model or config;
+/// - a path to write, whose folder must exist, if such a word is save, output, log or record.
 ///
-/// and the value begins with / or ./ or ../, or holds a /, and is no URI, pipeline (!), pattern (%,
-/// *, ?) or text of several lines. Names are words with _ between them. A bare name is not looked
-/// for: it may be anything. A pattern or pipeline that names a device is left to its module too.
+/// The words of a name are separated by _. The value must contain a / and must not be a URI, a
+/// pipeline (!), a pattern (%, *, ?) or text of several lines: those, and names without a /, are
+/// left to the module.
 std::optional<Need> need_of_parameter(const std::string& module, std::string_view name,
                                       std::string_view value);
 
-/// What this machine has.
+/// Findings about this machine.
 std::vector<Finding> diagnose(const Facts& facts);
 
-/// What the graph lacks here. @param facts  with the questions of `needs` answered.
+/// Findings about a graph on this machine. @param facts  with answers to needs.questions().
 std::vector<Finding> diagnose(const Needs& needs, const Facts& facts);
 
 /// Whether something is missing or wrong.
 bool is_ill(const std::vector<Finding>& findings);
 
-/// "ok       camera      /dev/video0", a line each.
+/// A line for each finding, such as "ok       camera      /dev/video0".
 std::string as_text(const std::vector<Finding>& findings);
 
 }  // namespace tool

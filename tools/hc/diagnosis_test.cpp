@@ -39,8 +39,7 @@ TEST(Doctor, DevicesThatMayNotBeOpenedAreReported) {
   facts.devices = {{"camera", "/dev/video*", {"/dev/video0"}, {"/dev/video1"}}};
   auto findings = diagnose(facts);
   EXPECT_EQ(find(findings, "camera", Mark::Ok)->text, "/dev/video0");
-  EXPECT_EQ(find(findings, "camera", Mark::Note)->text,
-            "/dev/video1: may not be opened by this user");
+  EXPECT_EQ(find(findings, "camera", Mark::Note)->text, "/dev/video1: no permission for this user");
   EXPECT_FALSE(is_ill(findings));
 }
 
@@ -56,7 +55,7 @@ TEST(Doctor, AKernelWithoutWhatLinksNeedIsIllness) {
 TEST(Doctor, ModulesAreNeeded) {
   auto facts = good_facts();
   facts.broken_modules = {"depth"};
-  EXPECT_EQ(find(diagnose(facts), "modules", Mark::Missing)->text, "depth: may not be executed");
+  EXPECT_EQ(find(diagnose(facts), "modules", Mark::Missing)->text, "depth: not executable");
   facts.broken_modules.clear();
   facts.modules.clear();
   EXPECT_TRUE(is_ill(diagnose(facts)));
@@ -72,7 +71,7 @@ TEST(Doctor, LowLimitsAreNotes) {
 
 TEST(Doctor, ParametersThatNamePaths) {
   struct Case {
-    const char *name, *value, *question;  // empty where no path is named
+    const char *name, *value, *question;  // empty: no path
   };
   const Case cases[] = {
       {"source", "/data/a.jpg", "read /data/a.jpg"},
@@ -82,7 +81,7 @@ TEST(Doctor, ParametersThatNamePaths) {
       {"save", "/out/depth.png", "write /out"},
       {"save", "pictures/", "write pictures"},
       {"log_file", "logs/a.txt", "write logs"},
-      // What could be anything is left alone.
+      // Ambiguous values are not checked.
       {"source", "0", ""},
       {"source", "a.jpg", ""},
       {"source", "http://robot/stream", ""},
@@ -140,7 +139,7 @@ TEST(Doctor, WhatARunWouldMiss) {
             " in use\n"
             "missing  eye         link file:/focus.mtp: /focus.mtp is not readable for this user\n"
             "missing  eye         link logs/eye.mtp: logs is not writable for this user\n"
-            "missing  window      a display; its parameter save does without one\n"
+            "missing  window      a display; set its parameter save instead\n"
             "note     processors  1 for 2 modules\n");
 }
 

@@ -10,7 +10,7 @@
 namespace tool {
 namespace {
 
-/// A graph that is wrong has no plan, and so nothing that could be looked for.
+/// Findings about a graph file and, if it has a plan, about other hosts; also sets the needs here.
 std::vector<Finding> examine_graph(hc::LoadOptions options, Needs& needs) {
   const auto hosts = make_hosts();
   options.hosts = hosts.get();
@@ -22,7 +22,7 @@ std::vector<Finding> examine_graph(hc::LoadOptions options, Needs& needs) {
     needs = needs_of(part_of(*planned.plan, ""));
     for (auto& finding : diagnose(*planned.plan, *hosts)) findings.push_back(std::move(finding));
   } else {
-    findings.push_back({Mark::Note, "graph", "correct this first; the rest was not checked"});
+    findings.push_back({Mark::Note, "graph", "fix this first; the rest was not checked"});
   }
   return findings;
 }

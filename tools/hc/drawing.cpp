@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char *kWorking = "#e8f4e8", *kIdle = "#eeeeee", *kTrouble = "#ffc8c8";
 
-/// MODULE and PORT; a URI stands for itself.
+/// MODULE and PORT, or a URI and "".
 std::pair<std::string, std::string> split(const std::string& end) {
   auto dot = end.find('.');
   bool is_outside = end.find(':') != std::string::npos || dot == std::string::npos;
@@ -32,7 +32,7 @@ std::string in_quotes(const std::string& text) {
   return result;
 }
 
-/// Text of Graphviz's HTML-like labels.
+/// Escapes text for Graphviz's HTML-like labels.
 std::string in_html(const std::string& text) {
   std::string result;
   for (char c : text)
@@ -40,7 +40,7 @@ std::string in_html(const std::string& text) {
   return result;
 }
 
-/// A module as a table: its name, what is below it, and rows of an input and an output.
+/// A module as a table: name, words, and rows of an input and an output.
 std::string table_of(const Drawing::Box& box, const std::vector<std::string>& inputs,
                      const std::vector<std::string>& outputs) {
   const char* color = box.is_wrong ? kTrouble : box.is_idle ? kIdle : kWorking;
@@ -162,7 +162,7 @@ std::string as_dot(const Drawing& drawing) {
       "  node [shape=plain, fontname=\"sans-serif\"];\n"
       "  edge [fontname=\"sans-serif\", fontsize=10, color=\"#555555\", fontcolor=\"#333333\"];\n",
       in_quotes(drawing.title));
-  std::map<std::string, std::string> groups;  // their boxes
+  std::map<std::string, std::string> groups;  // boxes, by group
   for (const auto& box : drawing.boxes)
     groups[box.group] += hc::format("  {} [label=<{}>];\n", in_quotes(box.name),
                                     table_of(box, inputs[box.name], outputs[box.name]));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A graph as text for a terminal, and as a drawing in Graphviz's language. Pure.
+// Draws a graph as text for a terminal, or in Graphviz's DOT language. Pure.
 
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@ struct Drawing {
   struct Box {
     std::string name;
     std::string words;  ///< below the name: the program, or the status
-    std::string group;  ///< the included graph that it is of; empty: none
+    std::string group;  ///< the included graph it is from; empty: none
     bool is_bold = false, is_wrong = false, is_idle = false;
   };
   struct Arrow {
@@ -28,15 +28,15 @@ struct Drawing {
   bool is_running = false;
 };
 
-/// Of a planned graph, and of a running one.
+/// Draws a planned graph.
 Drawing drawing_of(const hc::Plan& plan, const std::string& title);
+/// Draws a running graph.
 Drawing drawing_of(const hc::GraphState& state);
 
-/// A paragraph for each module: its name, and a line for each of its outgoing links.
+/// A paragraph for each module: its name, and a line for each outgoing link.
 std::string as_text(const Drawing& drawing, bool is_plain);
 
-/// For Graphviz's dot, which makes an image of it: ports inside their modules, frames around
-/// included graphs, a legend.
+/// Input for Graphviz's dot: ports inside their modules, frames around included graphs, a legend.
 std::string as_dot(const Drawing& drawing);
 
 }  // namespace tool

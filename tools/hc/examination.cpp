@@ -48,7 +48,7 @@ std::vector<Finding> diagnose(const hc::Plan& plan, hc::Hosts& hosts) {
   for (const auto& name : names) {
     const auto needs = needs_of(part_of(plan, name));
     const auto host = hosts.find(name);
-    hc::Result<std::string> answer = hc::Error{hc::Code::Closed, "it is not connected"};
+    hc::Result<std::string> answer = hc::Error{hc::Code::Closed, "not connected"};
     const auto served = hosts.serve([&] {
       if (host) answer = host->examine(text_of(needs.questions()), hc::stop_descriptor());
     });

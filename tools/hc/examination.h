@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a graph needs of the hosts that its modules run on, asked of their agents.
+// Checks the needs of a graph on its other hosts, by asking their agents.
 
 #include <string>
 #include <vector>
@@ -12,13 +12,13 @@
 
 namespace tool {
 
-/// The part of a plan that runs on one host; empty: that of `hc run`.
+/// The part of a plan that runs on a host; empty: the host of `hc run`.
 hc::Plan part_of(const hc::Plan& plan, const std::string& host);
 
-/// What the other hosts of a plan lack or have for it, each with its host's name first.
+/// Findings about the other hosts of a plan, each with the host as its subject.
 std::vector<Finding> diagnose(const hc::Plan& plan, hc::Hosts& hosts);
 
-/// What an agent answers: what this host has of what is asked for.
+/// An agent's answer to a question of diagnose().
 std::string examine(const std::string& question);
 
 }  // namespace tool

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each thing is tried as hc and the links do it, since versions of kernels promise little in
-// containers.
+// Features are tested by use: kernel versions say little about containers.
 #include "facts.h"
 
 #include <fcntl.h>
@@ -33,7 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Closes a descriptor at the end; -1 is none.
+/// Owns a descriptor; -1: none.
 struct Held {
   explicit Held(int descriptor) : number(descriptor) {}
   Held(const Held&) = delete;
@@ -76,7 +75,7 @@ bool has_abstract_sockets() {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   std::string name = "hypercolumn doctor " + std::to_string(::getpid());
-  std::copy(name.begin(), name.end(), address.sun_path + 1);  // behind the NUL that makes it so
+  std::copy(name.begin(), name.end(), address.sun_path + 1);  // a leading NUL: abstract
   auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
   return socket.number >= 0 &&
          ::bind(socket.number, reinterpret_cast<const sockaddr*>(&address), size) == 0;
@@ -105,7 +104,7 @@ std::uint64_t limit_of(__rlimit_resource resource) {
   return limit.rlim_cur;
 }
 
-/// Memory that programs can still have, with what the kernel would give back. [byte]
+/// Memory available to programs, including what the kernel can reclaim. [byte]
 std::uint64_t free_memory() {
   std::ifstream file("/proc/meminfo");
   std::string key, unit;
@@ -123,7 +122,7 @@ std::size_t processors() {
   return static_cast<std::size_t>(CPU_COUNT(&set));
 }
 
-/// Whether a line of the mainboard leads to a chip: the kernel has names for more than there are.
+/// Whether a ttyS has hardware: the kernel creates more of them than exist.
 bool is_real_line(const std::string& name) {
   if (!name.starts_with("ttyS")) return true;
   std::ifstream file("/sys/class/tty/" + name + "/type");
@@ -131,12 +130,12 @@ bool is_real_line(const std::string& name) {
   return file >> type && type != 0;
 }
 
-/// The files of a folder whose names begin with one of these words and end with a digit or one of
-/// the letters of `ends`.
+/// The files of a folder whose names begin with one of `begins`, and end with a digit or a letter
+/// of `ends`.
 Devices find(const char* kind, const char* where, const char* folder,
              std::initializer_list<std::string_view> begins, int access = R_OK | W_OK,
              std::string_view ends = "") {
-  std::vector<std::pair<std::size_t, std::string>> found;  // by length, so that 10 follows 9
+  std::vector<std::pair<std::size_t, std::string>> found;  // with length, to sort 10 after 9
   std::error_code missing;
   for (const auto& entry : fs::directory_iterator(folder, missing)) {
     const std::string name = entry.path().filename().string();
@@ -153,7 +152,7 @@ Devices find(const char* kind, const char* where, const char* folder,
   return devices;
 }
 
-/// From lines like " 0 [Loopback       ]: Loopback - Loopback".
+/// Parses lines like " 0 [Loopback       ]: Loopback - Loopback".
 std::vector<std::string> sound_cards() {
   std::vector<std::string> names;
   std::ifstream file("/proc/asound/cards");
@@ -169,7 +168,7 @@ std::string display() {
   return "";
 }
 
-/// What is wrong with what a question asks for; empty: nothing.
+/// The answer to a question; empty: no problem.
 std::string problem_of(const std::string& question) {
   const auto what = question.substr(0, question.find(' '));
   const auto place = question.substr(std::min(question.size(), what.size() + 1));
@@ -200,7 +199,7 @@ Facts gather_facts(const std::vector<std::string>& questions) {
   facts.free_memory = free_memory();
   facts.devices = {
       find("camera", "/dev/video*", "/dev", {"video"}),
-      // pcmC0D0p plays, pcmC0D0c hears
+      // pcmC0D0p: playback, pcmC0D0c: capture
       find("sound", "/dev/snd", "/dev/snd", {"controlC", "pcm"}, R_OK | W_OK, "pc"),
       find("serial", "/dev/ttyUSB*, ttyACM*, ttyS*", "/dev", {"ttyUSB", "ttyACM", "ttyS"}),
       find("joystick", "/dev/input/js*, event*", "/dev/input", {"js", "event"}, R_OK),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Facts about this machine, and about the files and ports that a graph needs, for `hc doctor`;
+// Gathers facts about this machine, and about files and ports that a graph needs, for `hc doctor`;
 // diagnosis.h interprets them.
 
 #include <cstdint>
@@ -10,37 +10,37 @@
 
 namespace tool {
 
-/// Whether something works, by trial.
+/// A kernel feature, tested by use.
 struct Feature {
   std::string name;
-  std::string error;  ///< empty: it can
+  std::string error;  ///< empty: it works
 };
 
-/// Device files of a kind that may be there.
+/// Device files of a kind.
 struct Devices {
-  std::string kind, where;                          ///< "camera", "/dev/video*"
-  std::vector<std::string> open = {}, closed = {};  ///< that this user may use, or not
+  std::string kind, where;                          ///< such as "camera", "/dev/video*"
+  std::vector<std::string> open = {}, closed = {};  ///< usable by this user, or not
 };
 
 struct Facts {
-  std::vector<Feature> kernel;                ///< what links and `hc run` need of it
-  std::string release;                        ///< of the kernel, "6.1.0"
-  std::uint64_t descriptors = 0;              ///< a process may have open
-  std::uint64_t processes = 0;                ///< this user may have; the largest number: any
-  std::size_t processors = 0;                 ///< that this process may use
+  std::vector<Feature> kernel;                ///< features needed by links and `hc run`
+  std::string release;                        ///< of the kernel, such as "Linux 6.1.0"
+  std::uint64_t descriptors = 0;              ///< limit for a process
+  std::uint64_t processes = 0;                ///< limit for this user; largest number: none
+  std::size_t processors = 0;                 ///< usable by this process
   std::uint64_t memory = 0, free_memory = 0;  ///< [byte]
   std::vector<Devices> devices;
-  std::vector<std::string> sound_cards;     ///< their names
-  std::string display;                      ///< the variable that names one, with its value
-  bool has_graphviz = false;                ///< `dot` is there
-  std::vector<std::string> modules;         ///< that can be started
-  std::vector<std::string> broken_modules;  ///< in the folder of the modules, but not executable
-  /// By questions that were asked: what is wrong, " does not exist"; empty: nothing.
+  std::vector<std::string> sound_cards;     ///< names
+  std::string display;                      ///< the environment variable, with its value
+  bool has_graphviz = false;                ///< `dot` is installed
+  std::vector<std::string> modules;         ///< executable
+  std::vector<std::string> broken_modules;  ///< in the folder of modules, but not executable
+  /// By question: the problem, such as " does not exist"; empty: none.
   std::map<std::string, std::string> problems;
 };
 
-/// Examines this machine, and answers questions: "read PATH" of a file or device, "write FOLDER",
-/// "listen [HOST:]PORT" by TCP.
+/// Examines this machine, and answers questions: "read PATH" for a file or device, "write FOLDER",
+/// "listen [HOST:]PORT" for TCP.
 Facts gather_facts(const std::vector<std::string>& questions);
 
 }  // namespace tool

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc frames: where a frame of a graph is in another.
+// hc frames: prints the transform between two frames of a graph.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -23,12 +23,12 @@ namespace {
 namespace fs = std::filesystem;
 using hc::frames::GraphFrames;
 
-constexpr std::chrono::seconds kPatience{5};  // of waiting for a pose
+constexpr std::chrono::seconds kPatience{5};  // without a pose
 
 struct FramesOptions {
   hc::LoadOptions graph;
   std::string source, target, recording, of;
-  std::int64_t time = 0;  // [ns]; 0: the latest that is known
+  std::int64_t time = 0;  // [ns]; 0: latest
 };
 
 void feed(GraphFrames& frames, const hc::Message& message, const std::string& output) {
@@ -36,7 +36,7 @@ void feed(GraphFrames& frames, const hc::Message& message, const std::string& ou
   value_or_fail(hc::feed(frames, plain), output);
 }
 
-/// The outputs that move a frame between the two.
+/// The outputs that move frames on the chain between the two.
 std::vector<std::string> outputs_between(const GraphFrames& frames, const FramesOptions& options) {
   const auto chain =
       value_or_fail(frames.tree.chain(options.target, options.source), options.graph.file);
@@ -61,20 +61,21 @@ void read_recording(GraphFrames& frames, const std::string& place,
   }
 }
 
-/// The running graph that tells where the frames between the two are.
+/// The running graph whose outputs move the frames.
 RunningGraph choose_graph(const FramesOptions& options, const std::vector<std::string>& outputs) {
   const auto stem = fs::path(options.graph.file).stem().string();
   try {
     return choose_running(options.of.empty() ? stem : options.of);
   } catch (const Failure& failure) {
     throw Failure(failure.code,
-                  hc::format("{}; from {} to {} a frame is moved by {}: run the graph (--of NAME "
-                             "where its name is another), or give a recording with --in FOLDER",
+                  hc::format("{}; {} to {} depends on {}: run the graph (--of NAME if it has "
+                             "another name), or give a recording with --in FOLDER",
                              failure.detail, options.source, options.target, joined(outputs)));
   }
 }
 
-/// Takes poses of a running graph until the transform is known.
+/// Takes poses of a running graph until the transform is known, or none has come for kPatience;
+/// then the lookup reports what is missing.
 void observe(GraphFrames& frames, const FramesOptions& options,
              const std::vector<std::string>& outputs) {
   const auto graph = choose_graph(options, outputs);
@@ -96,7 +97,6 @@ void observe(GraphFrames& frames, const FramesOptions& options,
       for (; value_or_fail(sources[i]->take(message), outputs[i]) == hc::Got::Message;
            heard = Clock::now())
         feed(frames, message, outputs[i]);
-    // What is missing at an end, the transform's error tells.
     if (is_known() || Clock::now() - heard > kPatience) return;
     value_or_fail(hc::wait_readable(descriptors, hc::stop_descriptor(), kPatience));
   }
@@ -126,7 +126,7 @@ std::string text_of(const GraphFrames& frames, const FramesOptions& options) {
 
 void run(const FramesOptions& options) {
   const auto plan = load_plan("frames", options.graph);
-  // A whole recording is remembered.
+  // Large enough for a whole recording.
   const hc::frames::Memory memory{.span = std::chrono::hours(24 * 365), .poses = 10'000'000};
   auto frames = value_or_fail(hc::frames::read_frames(plan.frames, memory), options.graph.file);
   const auto outputs = outputs_between(frames, options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What `hc run --record` wrote of a graph: a folder of MODULE.PORT.mtp, or one file of MCAP.
+// A recording of `hc run --record`: a folder of MODULE.PORT.mtp, or an MCAP file.
 
 #include <memory>
 #include <set>
@@ -13,23 +13,23 @@ namespace tool {
 
 class GraphRecording {
  public:
-  /// @param place  a folder, or a file whose name ends in ".mcap". Fails where there is none.
+  /// @param place  a folder, or a file whose name ends in ".mcap". Fails if it does not exist.
   explicit GraphRecording(const std::string& place);
 
-  /// "MODULE.PORT", with the traces of modules.
+  /// "MODULE.PORT", including the traces of modules.
   [[nodiscard]] const std::set<std::string>& outputs() const { return outputs_; }
   [[nodiscard]] bool has(const std::string& output) const { return outputs_.contains(output); }
 
-  /// The messages of an output that it has.
+  /// Opens a recorded output.
   [[nodiscard]] std::unique_ptr<hc::Source> open(const std::string& output) const;
-  /// Takes the next of these; false at their end, or when we are asked to stop. Where who wrote the
-  /// recording was killed, that is the end of what is whole.
+  /// Takes the next message; false at the end, or when asked to stop. If the recorder was killed,
+  /// the last whole message is the end.
   bool receive(hc::Source& source, hc::Message& message, const std::string& output) const;
 
-  /// The graph file that was run, which a file of MCAP names; empty: it names none.
+  /// The graph file that was run, as named in an MCAP file; empty: unknown.
   [[nodiscard]] const std::string& graph_file() const { return graph_file_; }
 
-  /// Where an output's messages are, for a person.
+  /// The place of an output's messages, for error messages.
   [[nodiscard]] std::string place_of(const std::string& output) const;
 
  private:

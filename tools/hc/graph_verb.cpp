@@ -26,11 +26,11 @@ struct GraphOptions {
   bool as_dot = false;
 };
 
-/// Has Graphviz draw an image.
+/// Makes an image with Graphviz.
 void write_svg(const std::string& dot, const std::string& path) {
   if (find_program("dot").empty())
     throw Failure(hc::Code::NotFound, "dot is not installed; install graphviz");
-  // The file's name is no part of the command, whatever letters it has.
+  // Passed in the environment, so that no character of the path needs quoting.
   ::setenv("HC_SVG", path.c_str(), 1);
   FILE* pipe = ::popen("dot -Tsvg -o \"$HC_SVG\"", "we");
   if (pipe == nullptr) throw Failure(hc::Code::System, "dot cannot be started");
@@ -51,7 +51,7 @@ void draw(const GraphOptions& options) {
     print(options.as_dot ? as_dot(drawing) : as_text(drawing, ::isatty(STDOUT_FILENO) == 0));
 }
 
-/// What a module's program says of its parameters, by name; none where it says nothing.
+/// The parameters in a module's description, sorted by name; empty without a description.
 std::vector<hc::ParameterState> parameters_of(const RunningGraph& graph,
                                               const hc::ModuleState& module) {
   const auto answer = command_graph(graph, {"describe " + module.name});
@@ -69,7 +69,7 @@ const hc::ModuleState& find_module(const hc::GraphState& state, const std::strin
                                               hc::suggestion(name, hc::names_of(state.modules))));
 }
 
-/// Adds a line for each parameter that is wanted: its value, and its range and default.
+/// Adds a row for each parameter: its value, and its range and default.
 /// @param what  MODULE, MODULE.PARAMETER, or empty: all.
 void add_parameters(const RunningGraph& graph, const hc::GraphState& state, const std::string& what,
                     std::vector<std::array<std::string, 2>>& rows) {
@@ -88,11 +88,11 @@ void add_parameters(const RunningGraph& graph, const hc::GraphState& state, cons
       const std::string now = found == module.parameters.end() ? hc::text(standard) : found->second;
       const auto range =
           options.choices.empty() ? hc::range_in_words(options) : joined(options.choices, " or ");
-      const auto otherwise = hc::text(standard);
+      const auto default_text = hc::text(standard);
       rows.push_back(
           {hc::format("{}.{} = {}{}", module.name, name, now, unit.empty() ? "" : " " + unit),
            hc::format("{}default {}{}", range.empty() ? "" : range + ", ",
-                      otherwise.empty() ? "\"\"" : otherwise,
+                      default_text.empty() ? "\"\"" : default_text,
                       options.fixed ? ", set restarts the module" : "")});
     }
   };
@@ -101,7 +101,7 @@ void add_parameters(const RunningGraph& graph, const hc::GraphState& state, cons
     if (what.empty()) add(module);
 }
 
-/// Prints parameters. @param wanted  which, as of add_parameters().
+/// Prints parameters. @param wanted  as `what` of add_parameters().
 void get(const RunningGraph& graph, const std::vector<std::string>& wanted) {
   const auto state = state_of(graph);
   std::vector<std::array<std::string, 2>> rows;
@@ -116,11 +116,11 @@ void get(const RunningGraph& graph, const std::vector<std::string>& wanted) {
   print(text);
 }
 
-/// Has the graph do all of some commands, or none.
+/// Sends commands to the graph, which executes all or none.
 void change(const GraphOptions& options, const std::vector<std::string>& commands) {
   for (const auto& command : commands)
     if (command.find('\n') != std::string::npos)
-      throw Failure(hc::Code::Invalid, "a command is one line");
+      throw Failure(hc::Code::Invalid, "a command must be one line");
   for (const auto& remark : command_graph(choose_running(options.running), commands))
     say("hc graph: " + remark);
 }
@@ -129,7 +129,7 @@ struct Word {
   std::string name, doc;
 };
 
-/// A verb of `hc graph` that is for a running one, and so takes nothing that is for drawing.
+/// Adds a verb of `hc graph` for a running graph, which excludes the options for drawing.
 CLI::App* add_verb(CLI::App& verb, GraphOptions& options, const std::string& name,
                    const std::string& doc) {
   auto* added = verb.add_subcommand(name, doc);
@@ -139,9 +139,9 @@ CLI::App* add_verb(CLI::App& verb, GraphOptions& options, const std::string& nam
   return added;
 }
 
-/// A verb whose words go to the running graph: as one command, or with `is_each` a command for each
-/// of `more_words`, all of which are done or none.
-/// @param more_words  of which there may be any number; without a name: there are none.
+/// Adds a verb that sends its words to the running graph: as one command or, with `is_each`, as a
+/// command for each of `more_words`, of which all or none are executed.
+/// @param more_words  any number of further words; without a name: none.
 void add_change(CLI::App& verb, GraphOptions& options, const std::string& name,
                 const std::string& doc, const std::vector<Word>& words, const Word& more_words = {},
                 bool is_each = false) {
@@ -167,7 +167,7 @@ void add_change(CLI::App& verb, GraphOptions& options, const std::string& name,
 }  // namespace
 
 void add_graph(CLI::App& app) {
-  static GraphOptions options;  // lives as long as the verbs that refer to it
+  static GraphOptions options;  // referenced by all verbs
   auto* verb = app.add_subcommand("graph", "Draw a graph, or inspect and change a running one");
   verb->add_option("graph", options.file.file,
                    "a graph file, or the name of a shipped one (default: the running graph)")

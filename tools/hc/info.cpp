@@ -18,7 +18,7 @@
 namespace tool {
 namespace {
 
-/// The messages of one src.
+/// Statistics of the messages of one src.
 struct Sender {
   std::uint64_t messages = 0, bytes = 0;
   std::uint64_t lost = 0, repeated = 0, restarts = 0;
@@ -74,7 +74,7 @@ void print_senders(const std::map<std::int32_t, Sender>& senders) {
   print(text);
 }
 
-/// The streams of a recording, and topics beside them.
+/// Prints the streams of a recording, and other topics.
 void print_streams(const std::vector<hc::record::StreamInfo>& streams, std::int64_t duration,
                    const std::string& size) {
   const double seconds = static_cast<double>(duration) * 1e-9;
@@ -111,7 +111,7 @@ void print_folder(const hc::record::Place& place, std::uint64_t limit) {
   if (!is_whole) throw Failure(1);
 }
 
-/// What the summary of a recording in MCAP says, whoever wrote it; its messages are not read.
+/// Prints the summary of any MCAP file, without reading its messages.
 void print_mcap(const std::string& path) {
   auto reader = value_or_fail(hc::mcap::Reader::open(path), path);
   const auto& summary = reader.summary();
@@ -140,8 +140,8 @@ void print_mcap(const std::string& path) {
                    summary.unread, summary.chunks, summary.why_unread));
   if (!summary.is_whole)
     throw Failure(path, {hc::Code::Truncated,
-                         "the file has no end, as a recorder that was killed leaves it; this "
-                         "is what it holds in whole chunks"});
+                         "the file is truncated, as after a crash; only complete chunks are "
+                         "shown"});
   if (summary.unread > 0) throw Failure(1);
 }
 
@@ -168,7 +168,7 @@ void run(const InfoOptions& options) {
     progress.show(-1,
                   hc::format("{} messages, {}", traffic.messages, bytes_in_words(traffic.bytes)));
   }
-  // Also where the end is corrupt.
+  // Also after a fault.
   print_senders(senders);
   auto traffic = source->traffic();
   print(

@@ -23,11 +23,11 @@ void append_json_number(T value, std::string& json) {
   append_number(value, json);
 }
 
-constexpr std::size_t kPiece = 64 << 10;  // [bytes]
+constexpr std::size_t kPiece = 64 << 10;  // [byte]
 
 using Write = std::function<bool(std::string_view)>;
 
-/// Hands over what there is once it is long enough; false when no more is taken.
+/// Writes the text once it is long enough; false to stop.
 bool flush(std::string& json, const Write& write) {
   if (json.size() < kPiece) return true;
   const bool is_taken = write(json);
@@ -61,7 +61,7 @@ bool write_rows_of_text(const hc::Message& message, std::string& json, const Wri
     auto width = static_cast<std::size_t>(message.header.width);
     for (std::size_t at = 0; at < message.elements.size(); at += width) {
       if (at > 0) json += ',';
-      hc::append_json_string(message.characters().substr(at, width), json);
+      hc::append_json_string(message.text().substr(at, width), json);
       if (!flush(json, write)) return false;
     }
   }

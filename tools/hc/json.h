@@ -9,12 +9,12 @@
 
 namespace tool {
 
-/// Writes the JSON form and a line end piece by piece, of some 64 KiB. Compressed elements become
-/// null: expand first.
+/// Writes the JSON form and a line end, in pieces of about 64 KiB. Compressed elements become null:
+/// expand them first.
 ///
-/// @param header  written in place of the message's: that with which compressed elements came.
-/// @param write  takes a piece; false ends it.
-/// @returns  whether all was taken.
+/// @param header  written instead of the message's: the header before expansion.
+/// @param write  takes a piece; returns false to stop.
+/// @returns  whether all pieces were taken.
 bool write_json(const hc::Message& message, const hc::Header& header,
                 const std::function<bool(std::string_view piece)>& write);
 

@@ -19,7 +19,7 @@ std::string to_json(const hc::Message& message) {
   return json;
 }
 
-// The vectors of spec/vectors hold the rest; tests/conformance reads them through hc cat --json.
+// spec/vectors has the other cases; tests/conformance reads them with hc cat --json.
 
 TEST(Json, IsOneLineOfNamedFields) {
   hc::Draft draft = hc::Draft::make(hc::Info(), 1, 1);
@@ -36,8 +36,7 @@ TEST(Json, IsOneLineOfNamedFields) {
 
 TEST(Json, IsWrittenInPieces) {
   const auto message = std::move(hc::Draft::make(hc::Info{hc::MatrixType::IntensityImage, 1,
-                                                          hc::Scalar::U8, hc::Encoding::Binary},
-                                                 1000, 1000))
+                                                          hc::Scalar::U8, hc::Encoding::Binary}, 1000, 1000))
                            .finish();
   std::size_t largest = 0, all = 0;
   EXPECT_TRUE(write_json(message, message.header, [&](std::string_view piece) {

@@ -10,8 +10,8 @@ namespace tool {
 void add_key(CLI::App& app) {
   auto path = std::make_shared<std::string>();
   auto* verb = app.add_subcommand(
-      "key", "Make a key for tls: links, unless it is there; print its fingerprint");
-  verb->add_option("file", *path, "the key and its certificate, which its owner alone can read")
+      "key", "Make a key for tls: links, unless it exists; print its fingerprint");
+  verb->add_option("file", *path, "the key and its certificate, readable only by its owner")
       ->required();
   verb->callback([path] {
     if (auto made = hc::tls::make_key(*path); !made) throw Failure(made.error());

@@ -42,8 +42,8 @@ constexpr const char* kOverview =
     "  hc MODULE --help             a module's ports and parameters\n\n"
     "All commands: hc --help. Any command: hc COMMAND --help.\n";
 
-/// The arguments of a module, where a first one MODULE.PORT becomes a link from the running graph
-/// to the module's only input, perhaps with `--of NAME` behind it.
+/// The arguments of a module. If the first is MODULE.PORT, optionally with `--of NAME`, it becomes
+/// a link from a running graph to the module's only input.
 std::vector<std::string> module_arguments(const std::string& program,
                                           std::vector<std::string> arguments) {
   if (arguments.size() < 2 || arguments[1].starts_with("-") ||
@@ -61,12 +61,12 @@ std::vector<std::string> module_arguments(const std::string& program,
   const auto graph = tool::graph_of_port(arguments[1], of);
   if (!graph) return arguments;
   auto uri = tool::value_or_fail(hc::tap_uri(*graph, arguments[1]), arguments[1]);
-  uri.options.emplace_back("reconnect", "5");  // a restart of the module, but not the graph's end
+  uri.options.emplace_back("reconnect", "5");  // survives a restart of the module
   arguments[1] = "--in=" + description->inputs[0].name + "=" + uri.text();
   return arguments;
 }
 
-/// What may have been meant by an option that the verb does not have.
+/// A suggestion for an unknown option of a verb.
 std::string meant_option(const CLI::App& app) {
   const CLI::App* verb = &app;
   while (!verb->get_subcommands().empty()) verb = verb->get_subcommands().back();
@@ -78,8 +78,8 @@ std::string meant_option(const CLI::App& app) {
   return "";
 }
 
-/// Has the Python programs that this one starts find the package that came with it, where Python
-/// does not look by default. What PYTHONPATH says comes first.
+/// Appends the Python package that came with this program to PYTHONPATH, if it is not in Python's
+/// default path.
 void offer_python_package() {
   namespace fs = std::filesystem;
   const fs::path prefix = tool::module_folder().parent_path().parent_path();
@@ -95,7 +95,7 @@ void offer_python_package() {
   ::setenv("PYTHONPATH", (first + found.string()).c_str(), 1);
 }
 
-/// Becomes the module of that name; returns when there is none.
+/// Executes the module of that name; returns if there is none.
 void become_module(const std::string& name, char** argv) {
   std::string program = tool::find_program(name);
   if (program.empty()) return;
@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
   const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
   const bool is_verb =
       std::ranges::any_of(verbs, [&](const auto* verb) { return verb->get_name() == first; });
-  const std::string who = is_verb ? "hc " + first : "hc";
+  const std::string command = is_verb ? "hc " + first : "hc";
   try {
     if (!is_verb && !first.empty() && first[0] != '-') {
       become_module(first, argv + 1);
@@ -147,12 +147,12 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ExtrasError& error) {
-    say(hc::format("{}: {}{}", who, error.what(), meant_option(app)));
+    say(hc::format("{}: {}{}", command, error.what(), meant_option(app)));
     return kUsage;
   } catch (const CLI::ParseError& error) {
-    // Help and version come this way too.
+    // --help and --version are also reported as ParseError.
     if (error.get_exit_code() == 0) return app.exit(error);
-    say(hc::format("{}: {}", who, error.what()));
+    say(hc::format("{}: {}", command, error.what()));
     return kUsage;
   } catch (const Failure& failure) {
     const bool is_silent = failure.status == 0 || *failure.what() == '\0';

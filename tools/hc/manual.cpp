@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc completion, hc man: what a shell and man(1) know of hc, generated from its options.
+// hc completion, hc man: generated from the options of all verbs.
 
 #include <hc/base/format.h>
 
@@ -13,7 +13,7 @@ std::vector<const CLI::App*> verbs_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// Options and verbs behind a verb.
+/// The words that may follow a verb: options and verbs.
 std::string words_of(const CLI::App& verb) {
   std::vector<std::string> words;
   for (const auto* each : verbs_of(verb)) words.push_back(each->get_name());
@@ -41,7 +41,7 @@ std::string bash_completion(const CLI::App& app) {
          "complete -o filenames -F _hc hc\n";
 }
 
-/// Text as roff takes it.
+/// Escapes text for roff.
 std::string roff(const std::string& text) {
   std::string result;
   for (char c : text) {
@@ -72,7 +72,7 @@ std::string man_page(const CLI::App& app) {
                          roff(each->get_description()));
   }
   return text +
-         ".SH ENVIRONMENT\n.TP\n.B HC_GRAPH\nthe running graph that commands mean, where there are "
+         ".SH ENVIRONMENT\n.TP\n.B HC_GRAPH\nthe running graph that commands use if there are "
          "several\n.SH EXIT STATUS\n0 done, 1 failed, 2 wrong arguments or graph\n";
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc new: creates a module outside of this project, from templates that this program contains.
+// hc new: creates a module outside this project, from templates built into this program.
 
 #include <filesystem>
 #include <fstream>
@@ -34,7 +34,7 @@ void replace_all(std::string& text, std::string_view word, std::string_view by) 
     text.replace(at, word.size(), by);
 }
 
-/// The templates are under this project's licence; what is made from them is its author's.
+/// The templates are under this project's licence; modules made from them belong to their authors.
 void remove_licence(std::string& text) {
   auto at = text.find("SPDX-License-Identifier");
   if (at == std::string::npos) return;
@@ -54,8 +54,8 @@ void write_file(const fs::path& path, const std::string& text) {
                     fs::perm_options::add);
 }
 
-/// What builds and tests a module in C++ with the library that came with this command, which CMake
-/// finds by default in /usr alone; in a folder where it was built it is installed first.
+/// The commands that build and test a module in C++ with the library of this program. CMake finds
+/// the library by itself only in /usr; from a build tree, it is installed first.
 std::string build_commands() {
   fs::path prefix = module_folder().parent_path().parent_path();
   std::string install, option;
@@ -72,7 +72,7 @@ std::string build_commands() {
 void begin(const NewOptions& options) {
   if (!is_snake_case(options.name))
     throw Failure(hc::Code::Invalid,
-                  hc::format("a module's name is snake_case, of at most {} letters, "
+                  hc::format("a module's name must be snake_case of at most {} letters, "
                              "not \"{}\"",
                              kMaxModuleName, options.name));
   const fs::path folder = (fs::path(options.folder) / options.name).lexically_normal();

@@ -28,7 +28,7 @@ std::optional<hc::Scalar> scalar_of_descr(std::string_view descr) {
   return std::nullopt;
 }
 
-/// What follows `'key':` in the dictionary, which is a Python literal.
+/// The text after `'key':` in the dictionary, a Python literal.
 std::string_view entry(std::string_view dictionary, std::string_view key) {
   auto at = dictionary.find("'" + std::string(key) + "'");
   if (at == std::string_view::npos) return {};
@@ -38,7 +38,7 @@ std::string_view entry(std::string_view dictionary, std::string_view key) {
   return at == std::string_view::npos ? std::string_view{} : dictionary.substr(at);
 }
 
-/// "(2, 3)" or "(5,)" or "()"
+/// Parses "(2, 3)", "(5,)" or "()".
 std::optional<std::vector<std::int32_t>> shape_of(std::string_view text) {
   auto close = text.find(')');
   if (!text.starts_with('(') || close == std::string_view::npos) return std::nullopt;
@@ -61,40 +61,40 @@ std::optional<std::vector<std::int32_t>> shape_of(std::string_view text) {
 hc::Result<hc::Message> read_npy(std::span<const std::byte> bytes) {
   constexpr std::string_view kMagic = "\x93NUMPY";
   std::string_view text{reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-  if (!text.starts_with(kMagic) || text.size() < 12) return malformed("no NumPy array file");
-  bool wide = text[6] != 1;  // version 1.0 has a length of two bytes, the later ones of four
+  if (!text.starts_with(kMagic) || text.size() < 12) return malformed("not a NumPy array file");
+  bool wide = text[6] != 1;  // the length has 2 bytes in version 1.0, 4 in later ones
   auto byte = [&](std::size_t i) {
     return static_cast<std::size_t>(static_cast<unsigned char>(text[i]));
   };
   std::size_t length = byte(8) | byte(9) << 8;
   if (wide) length |= byte(10) << 16 | byte(11) << 24;
   std::size_t begin = wide ? 12 : 10;
-  if (length > text.size() - begin) return malformed("cut short in its header");
+  if (length > text.size() - begin) return malformed("truncated header");
   std::string_view dictionary = text.substr(begin, length);
   std::string_view data = text.substr(begin + length);
 
   std::string_view descr = entry(dictionary, "descr");
   auto scalar = descr.size() > 4 ? scalar_of_descr(descr.substr(1, 3)) : std::nullopt;
   if (!scalar)
-    return hc::Error{hc::Code::Unsupported, "npy: no array of numbers that a message can hold: " +
-                                                std::string(descr.substr(0, 12))};
+    return hc::Error{hc::Code::Unsupported,
+                     "npy: unsupported element type " + std::string(descr.substr(0, 12))};
   if (!entry(dictionary, "fortran_order").starts_with("False"))
-    return hc::Error{hc::Code::Unsupported, "npy: columns first (fortran_order)"};
+    return hc::Error{hc::Code::Unsupported, "npy: column-major order (fortran_order)"};
   auto shape = shape_of(entry(dictionary, "shape"));
-  if (!shape || shape->size() > 3) return malformed("no shape of up to three dimensions");
+  if (!shape || shape->size() > 3) return malformed("the shape must have at most three dimensions");
 
   hc::Header header;
   header.height = shape->size() > 1 ? (*shape)[0] : 1;
   header.width = shape->empty() ? 1 : shape->size() == 1 ? (*shape)[0] : (*shape)[1];
   std::int32_t components = shape->size() == 3 ? (*shape)[2] : 1;
-  if (components < 1 || components > 99) return malformed("1 to 99 components are possible");
+  if (components < 1 || components > 99) return malformed("a message has 1 to 99 components");
   bool is_image = components == 3 && *scalar == hc::Scalar::U8;
   header.info = {is_image ? hc::MatrixType::RgbImage : hc::MatrixType::Table,
                  static_cast<std::uint8_t>(components), *scalar, hc::Encoding::Binary};
   if (auto valid = hc::check(header); !valid) return valid.error();
   if (data.size() != header.element_bytes())
-    return malformed(std::to_string(data.size()) + " bytes of data, the shape wants " +
-                     std::to_string(header.element_bytes()));
+    return malformed("expected " + std::to_string(header.element_bytes()) + " bytes of data, got " +
+                     std::to_string(data.size()));
   hc::Draft draft = hc::Draft::make(header);
   if (!data.empty()) std::memcpy(draft.elements().data(), data.data(), data.size());
   return std::move(draft).finish();

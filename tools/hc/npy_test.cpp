@@ -25,7 +25,7 @@ TEST(Npy, ArraysBecomeMatrices) {
   ASSERT_TRUE(image) << image.error().detail;
   EXPECT_EQ(image->header.info.type, hc::MatrixType::RgbImage);
   EXPECT_EQ(image->header.width, 2);
-  EXPECT_EQ(image->characters(), "abcdef");
+  EXPECT_EQ(image->text(), "abcdef");
   auto row = read(npy("{'descr': '<i2', 'fortran_order': False, 'shape': (3,), }\n", "aabbcc"));
   ASSERT_TRUE(row);
   EXPECT_EQ(row->header.info.type, hc::MatrixType::Table);

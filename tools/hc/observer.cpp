@@ -19,7 +19,7 @@
 namespace tool {
 namespace {
 
-/// A graph that is silent for this time may be stopped: it sends its state twice a second.
+/// A graph sends its state twice a second; after this silence it may be stopped.
 constexpr std::chrono::milliseconds kSilence{5000};
 
 bool is_of_this_terminal(int process) {
@@ -88,7 +88,7 @@ std::optional<hc::GraphState> Observer::next(const std::vector<int>& inputs) {
 }
 
 std::optional<hc::GraphState> Observer::next_measured() {
-  constexpr int kUnmeasured = 2;  // the first is older than this observer, the second measures
+  constexpr int kUnmeasured = 2;  // the first precedes the observer, the second starts measuring
   for (int i = 0; i < kUnmeasured; ++i)
     if (!next()) return std::nullopt;
   return next();
@@ -123,7 +123,7 @@ bool is_running_port(const std::string& text, const std::string& of) {
     return description && (hc::find_input(*description, port) != nullptr ||
                            hc::find_named(description->outputs, port) != nullptr);
   } catch (const Failure&) {
-    return false;  // one of several graphs may be meant, or it is another user's
+    return false;  // ambiguous, or the graph of another user
   }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Graphs that run on this host, as the verbs of hc need them: which is meant, its states, and
-// commands to it. spec/graph.md (G45 … G47) has their words.
+// Chooses, observes and commands running graphs of this host (spec/graph.md, G45 … G47).
 
 #include <memory>
 #include <optional>
@@ -17,9 +16,9 @@ namespace tool {
 using hc::find_running;
 using hc::RunningGraph;
 
-/// The graph that a person means: by its name, or NAME.PROCESS where several have that. Without a
-/// name: $HC_GRAPH; else the only one; else the only one that was started in this terminal, or in
-/// this folder. Fails with the list of them otherwise.
+/// Chooses a graph by NAME, or NAME.PROCESS if several have that name. Without a name: $HC_GRAPH,
+/// or the only graph, or the only one started in this terminal, or in this folder. Otherwise fails
+/// with a list of the running graphs.
 RunningGraph choose_running(const std::string& name);
 
 /// Receives the states of a running graph.
@@ -27,11 +26,11 @@ class Observer {
  public:
   explicit Observer(const RunningGraph& graph);
 
-  /// The newest state, waiting for the next; nothing when the graph has ended or we are to stop.
-  /// @param inputs  descriptors that end the wait too when one is readable: the last state again.
+  /// Waits for the next state; nullopt when the graph has ended, or when asked to stop.
+  /// @param inputs  descriptors that end the wait when readable; then it returns the last state.
   std::optional<hc::GraphState> next(const std::vector<int>& inputs = {});
 
-  /// A state with the load of processors and memory, which a graph measures while it is watched.
+  /// Waits for a state with CPU and memory usage, which a graph measures only while observed.
   std::optional<hc::GraphState> next_measured();
 
  private:
@@ -41,30 +40,29 @@ class Observer {
   bool is_new_ = false, has_ended_ = false;
 };
 
-/// A state of a graph. Fails where it has ended.
-/// @param is_measured  as of next_measured().
+/// The state of a graph. Fails if it has ended.
+/// @param is_measured  as next_measured().
 hc::GraphState state_of(const RunningGraph& graph, bool is_measured = false);
 
-/// Has a graph do what the commands say, a row each; gives what it answers, and fails with what is
-/// wrong.
+/// Sends commands, a row each, to a graph. Returns its answer; fails if it refuses.
 std::vector<std::string> command_graph(const RunningGraph& graph,
                                        const std::vector<std::string>& commands);
 
-/// An output of a running graph. Fails as hc::open_tap() does.
+/// Opens an output of a running graph. Fails as hc::open_tap() does.
 std::unique_ptr<hc::Source> open_port(const RunningGraph& graph, const std::string& port);
 
 /// Whether a module of a running graph has this port, MODULE.PORT.
 ///
-/// @param of  name of the graph; empty: as choose_running(), and no port where that fails.
+/// @param of  name of the graph; empty: as choose_running(), false if that fails.
 bool is_running_port(const std::string& text, const std::string& of);
 
-/// The running graph whose MODULE.PORT a person names as a source; nothing of a URI or a file. A
-/// port comes before a file of the same name, which ./MODULE.PORT is.
+/// The running graph of a source MODULE.PORT; nullopt for a URI or a file. A port takes precedence
+/// over a file of the same name, which can be given as ./MODULE.PORT.
 ///
 /// @param of  name of the running graph; empty: as choose_running().
 std::optional<RunningGraph> graph_of_port(const std::string& text, const std::string& of);
 
-/// Opens what a person names as a source: a URI, a file, or MODULE.PORT of a running graph.
+/// Opens a source: a URI, a file, or MODULE.PORT of a running graph.
 std::unique_ptr<hc::Source> open_named(const std::string& text, const std::string& of,
                                        std::uint64_t limit);
 

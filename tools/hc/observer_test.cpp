@@ -89,7 +89,7 @@ TEST(Screen, ShowsTheModeOfWhoContributesToTheTaskInFocus) {
     state.links.emplace_back().from = from;
     state.links.back().to = to;
   };
-  link("module_0.out", "module_1.in");  // which is the task
+  link("module_0.out", "module_1.in");  // the task
   link("module_1.out", "module_2.in");
   const auto text = draw(state, {}, {120, 0, true});
   EXPECT_NE(text.find("module_0   3.1%  1.23 MB        0  (track) running\n"), std::string::npos)

@@ -18,32 +18,32 @@ struct Outbox::Shared {
 
   const int descriptor;
   std::mutex mutex;
-  std::condition_variable changed;  // work has come, or was done
-  std::string waiting;              // lines
-  std::size_t dropped = 0;          // lines after those
-  std::string below;
-  bool is_below_new = false, is_below_drawn = false;
+  std::condition_variable changed;
+  std::string queued;       // lines
+  std::size_t dropped = 0;  // lines after those
+  std::string status;
+  bool is_status_new = false, is_status_drawn = false;
   bool is_writing = false, is_ending = false;
   std::size_t pieces = 0;  // written so far
 
-  [[nodiscard]] bool has_work() const { return !waiting.empty() || dropped > 0 || is_below_new; }
+  [[nodiscard]] bool has_work() const { return !queued.empty() || dropped > 0 || is_status_new; }
   [[nodiscard]] bool is_done() const { return !has_work() && !is_writing; }
 
   /// The text to write now.
   std::string take() {
     constexpr const char* kErase = "\r\033[K";
-    std::string text = is_below_drawn ? kErase : "";
-    text += std::exchange(waiting, {});
-    if (dropped > 0) text += hc::format("hc run: {} lines are not shown\n", dropped);
+    std::string text = is_status_drawn ? kErase : "";
+    text += std::exchange(queued, {});
+    if (dropped > 0) text += hc::format("hc run: {} lines dropped\n", dropped);
     dropped = 0;
-    text += below;
-    is_below_drawn = !below.empty();
-    is_below_new = false;
+    text += status;
+    is_status_drawn = !status.empty();
+    is_status_new = false;
     return text;
   }
 
   void write() {
-    // No more than a pipe takes at once, so that progress of the reader is seen.
+    // Small pieces, to notice progress of the reader.
     constexpr std::size_t kPiece = 4096;
     std::unique_lock lock(mutex);
     while (true) {
@@ -55,7 +55,7 @@ struct Outbox::Shared {
         const auto piece = rest.substr(0, kPiece);
         rest.remove_prefix(piece.size());
         lock.unlock();
-        // After the reader has closed, lines go nowhere.
+        // Ignores a reader that has closed.
         static_cast<void>(hc::write_all(descriptor, piece));
         lock.lock();
         ++pieces;
@@ -68,7 +68,7 @@ struct Outbox::Shared {
 };
 
 Outbox::Outbox(int descriptor) : shared_(std::make_shared<Shared>(descriptor)) {
-  // Signals are handled on the main thread.
+  // Only the main thread handles signals.
   sigset_t all, before;
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -85,18 +85,18 @@ Outbox::~Outbox() {
 
 void Outbox::say(std::string_view line) {
   std::lock_guard lock(shared_->mutex);
-  if (shared_->dropped > 0 || shared_->waiting.size() + line.size() >= kMostWaiting)
+  if (shared_->dropped > 0 || shared_->queued.size() + line.size() >= kMaxQueued)
     ++shared_->dropped;
   else
-    shared_->waiting.append(hc::visible(line)).append("\n");
+    shared_->queued.append(hc::visible(line)).append("\n");
   shared_->changed.notify_all();
 }
 
-void Outbox::show(std::string below) {
+void Outbox::show(std::string status) {
   std::lock_guard lock(shared_->mutex);
-  if (below.empty() && shared_->below.empty()) return;
-  shared_->below = std::move(below);
-  shared_->is_below_new = true;
+  if (status.empty() && shared_->status.empty()) return;
+  shared_->status = std::move(status);
+  shared_->is_status_new = true;
   shared_->changed.notify_all();
 }
 
@@ -104,11 +104,11 @@ void Outbox::finish() {
   show("");
   std::unique_lock lock(shared_->mutex);
   const auto& shared = *shared_;
-  while (!shared.is_done() && shared.pieces != unread_) {
+  while (!shared.is_done() && shared.pieces != stuck_at_) {
     const std::size_t before = shared.pieces;
     const bool has_moved = shared_->changed.wait_for(
         lock, kPatience, [&] { return shared.pieces != before || shared.is_done(); });
-    if (!has_moved) unread_ = before;
+    if (!has_moved) stuck_at_ = before;
   }
 }
 

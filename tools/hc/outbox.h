@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Log output that never blocks its writer: the reader may be a pager at its first page, or a
-// terminal held by Ctrl-S.
+// Log output that never blocks its caller, even if the reader is a pager or a stopped terminal.
 
 #include <chrono>
 #include <memory>
@@ -10,12 +9,12 @@
 
 namespace tool {
 
-/// Writes lines to a descriptor on its own thread, and a status line below them. When the queue is
-/// full, lines are dropped; one line says how many when there is room again.
+/// Writes lines, and a status line below them, to a descriptor on its own thread. Drops lines when
+/// the queue is full, and later writes how many.
 class Outbox {
  public:
-  static constexpr std::size_t kMostWaiting = std::size_t{1} << 20;  ///< [byte]
-  /// How long finish() waits for a reader that reads nothing.
+  static constexpr std::size_t kMaxQueued = std::size_t{1} << 20;  ///< [byte]
+  /// Time after which finish() gives up on a reader that reads nothing.
   static constexpr std::chrono::milliseconds kPatience{1000};
 
   explicit Outbox(int descriptor);
@@ -25,15 +24,15 @@ class Outbox {
 
   void say(std::string_view line);
   /// Replaces the status line; empty removes it.
-  void show(std::string below);
-  /// Removes the status line, and waits until all is written, as long as the reader makes progress.
+  void show(std::string status);
+  /// Removes the status line, and waits until all is written or the reader makes no progress.
   void finish();
 
  private:
   struct Shared;
 
-  std::shared_ptr<Shared> shared_;        // with the thread, which may stay blocked in a write
-  std::size_t unread_ = ~std::size_t{0};  // the number of pieces when the reader stopped reading
+  std::shared_ptr<Shared> shared_;          // with the thread, which may block in a write for ever
+  std::size_t stuck_at_ = ~std::size_t{0};  // value of `pieces` when the reader stopped reading
 };
 
 }  // namespace tool

@@ -31,7 +31,7 @@ struct PlayOptions {
 class Pace {
  public:
   /// @param speed  1: as recorded; infinity: without waiting.
-  /// @param gap  the longest pause that is kept. [s]
+  /// @param gap  longer pauses are skipped. [s]
   Pace(double speed, double gap) : speed_(speed), gap_(gap) {}
 
   /// Waits until `seconds` of the recording have passed since the first call; false when
@@ -39,12 +39,12 @@ class Pace {
   bool wait_for(double seconds) {
     if (speed_ == std::numeric_limits<double>::infinity()) return true;
     const double pause = seconds - std::exchange(last_, seconds);
-    if (!begun_ || pause > gap_) left_out_ += pause;
+    if (!begun_ || pause > gap_) skipped_ += pause;
     if (begun_ && pause > gap_)
-      say(hc::format("hc play: a pause of {} is left out (--gap)", seconds_in_words(pause)));
+      say(hc::format("hc play: skipping a pause of {} (--gap)", seconds_in_words(pause)));
     begun_ = true;
     const auto due = begin_ + std::chrono::duration_cast<MonotonicClock::duration>(
-                                  Seconds((seconds - left_out_) / speed_));
+                                  Seconds((seconds - skipped_) / speed_));
     while (true) {
       auto left = due - MonotonicClock::now();
       if (left <= left.zero()) return true;
@@ -54,7 +54,7 @@ class Pace {
   }
 
  private:
-  double speed_, gap_, last_ = 0, left_out_ = 0;
+  double speed_, gap_, last_ = 0, skipped_ = 0;
   bool begun_ = false;
   const MonotonicClock::time_point begin_ = MonotonicClock::now();
 };
@@ -67,8 +67,8 @@ double parse_speed(const std::string& text) {
   return speed;
 }
 
-/// Plays the file once; false when it is not to be repeated: no reader, nothing to play, or asked
-/// to stop.
+/// Plays the file once; returns false if it must not be repeated: the reader has closed, there was
+/// nothing to play, or it was asked to stop.
 bool play_once(const PlayOptions& options, double speed, hc::Sink& sink, Progress& progress) {
   const auto place = hc::record::place_of(options.file);
   auto reader = open_recording({place}, options.limit);
@@ -85,7 +85,7 @@ bool play_once(const PlayOptions& options, double speed, hc::Sink& sink, Progres
   while (receive(*reader, message, options.file)) {
     const auto time = reader->log_time();
     if (begin == 0) begin = time;
-    if (time != 0) {  // before the first that is known, they go at once
+    if (time != 0) {  // messages before the first time are sent at once
       const double seconds = static_cast<double>(time - begin) * 1e-9;
       if (seconds < options.from) continue;
       if (seconds > options.to) break;
@@ -124,11 +124,10 @@ void add_play(CLI::App& app) {
   verb->add_option("--speed", options->speed, "times faster than recorded, or max")
       ->capture_default_str();
   verb->add_flag("--loop", options->loop, "repeat without end");
-  verb->add_option("--gap", options->gap,
-                   "longest pause that is kept; longer ones are left out [s]")
+  verb->add_option("--gap", options->gap, "longest pause to keep; longer ones are skipped [s]")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  verb->add_option("--from", options->from, "skip what is earlier [s from the first message]");
+  verb->add_option("--from", options->from, "start there [s from the first message]");
   verb->add_option("--to", options->to, "stop there [s from the first message]");
   add_limit(*verb, options->limit);
   verb->callback([options] { run(*options); });

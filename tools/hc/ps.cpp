@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc ps: the graphs that run on this host.
+// hc ps: lists the graphs that run on this host.
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace tool {
 namespace {
 
-/// @param name  as --of takes it.
+/// @param name  for --of.
 std::string row(const std::string& name, const hc::GraphState& state, bool is_plain) {
   auto count = [&](hc::ModuleStatus status) {
     return std::count_if(state.modules.begin(), state.modules.end(),
@@ -34,7 +34,6 @@ std::string row(const std::string& name, const hc::GraphState& state, bool is_pl
                     focus.empty() ? "-" : focus, status, is_painted ? "\x1b[0m" : "");
 }
 
-/// Whether a graph still runs.
 bool is_running(const RunningGraph& graph) {
   const auto graphs = find_running();
   return std::ranges::any_of(graphs, [&](const auto& each) { return each.text() == graph.text(); });
@@ -58,10 +57,10 @@ void ps(bool as_json) {
       if (state) text += as_json ? to_json(*state) + "\n" : row(name, *state, is_plain);
       if (state || !is_running(graph)) continue;
     } catch (const Failure& failure) {
-      if (!is_running(graph)) continue;  // it has just ended
+      if (!is_running(graph)) continue;  // has just ended
       say(hc::format("hc ps: {}: {}", name, failure.what()));
     }
-    is_silent = true;  // the others are of interest even so
+    is_silent = true;  // list the others before failing
   }
   print(text);
   if (is_silent) throw Failure(1);

@@ -14,7 +14,7 @@
 namespace tool {
 namespace {
 
-constexpr std::size_t kMostNumbers = 96;  // of a matrix that is shown whole
+constexpr std::size_t kMostNumbers = 96;  // of a small matrix
 constexpr std::size_t kCornerRows = 3, kCornerNumbers = 9;
 
 template <typename T>

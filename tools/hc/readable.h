@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A message, and numbers, for a person's eyes.
+// Messages and numbers as text for people.
 
 #include <charconv>
 #include <cmath>
@@ -11,15 +11,15 @@
 
 namespace tool {
 
-/// A line that says what the message is, and its elements below it: all of a small one, the corner
-/// and the range of a large one.
+/// A line about the header, then the elements: all of a small matrix, a corner and the range of a
+/// large one.
 std::string to_readable(const hc::Message& message);
 
-/// "2025-11-21 04:20:00.123456789", in UTC.
+/// "2025-11-21 04:20:00.123456789" (UTC)
 std::string time_in_words(std::int64_t time);
 
-/// Appends a number as MTP writes it in text, in the shortest form that reads back as the same
-/// value: 0.1, 1e+05, -0, nan.
+/// Appends a number as in MTP's text encoding, in the shortest form with the same value: 0.1,
+/// 1e+05, -0, nan.
 template <typename T>
 void append_number(T value, std::string& text) {
   constexpr std::size_t kLongest = 32;

@@ -33,17 +33,17 @@ struct RecordOptions {
   std::uint64_t limit = kDefaultLimit;
 };
 
-/// What is recorded as it comes.
+/// A live source.
 struct Link {
   std::string word, name;
-  bool is_port = false;                // of a running graph: one stream, whoever sent its messages
+  bool is_port = false;                // of a running graph: one stream for any src
   std::unique_ptr<hc::Source> source;  // null once it has ended
 };
 
-/// Set by SIGUSR1: what is kept of the last time is to be saved.
-volatile std::sig_atomic_t save_asked = 0;
+/// Set by SIGUSR1: save the messages kept by --last.
+volatile std::sig_atomic_t save_requested = 0;
 
-/// Whether a link is the file that is to be written.
+/// Whether a source is the output file.
 bool is_file(const Place& link, const std::string& file) {
   std::error_code missing;
   const auto path = link.uri.scheme == "-" ? "/proc/self/fd/0" : link.path;
@@ -51,22 +51,22 @@ bool is_file(const Place& link, const std::string& file) {
          std::filesystem::equivalent(path, file, missing);
 }
 
-/// Whether it was recorded before, and so has its own times.
+/// Whether a source is a recording, with its own times.
 bool is_recording(const Place& place) {
   std::error_code missing;
   return place.kind == Place::Kind::Mcap || place.kind == Place::Kind::Folder ||
          (place.kind == Place::Kind::File && std::filesystem::is_regular_file(place.path, missing));
 }
 
-/// Takes the words SOURCE FILE, or FILE alone, as `file` is empty then.
+/// Takes the arguments SOURCE FILE, or only FILE as `source`.
 void take_words(const std::string& source, const std::string& file, RecordOptions& options) {
   options.file = file.empty() ? source : file;
   if (!file.empty()) options.links.insert(options.links.begin(), source);
   if (!options.links.empty()) return;
   if (is_running_port(options.file, options.of))
     throw Failure(hc::Code::Invalid,
-                  hc::format("{} is a port of a running graph: give a FILE behind it to record "
-                             "it, or ./{} for a file of that name",
+                  hc::format("{} is a port of a running graph: to record it, add an output FILE; "
+                             "for a file of that name, write ./{}",
                              options.file, options.file));
   if (::isatty(STDIN_FILENO) == 1)
     throw Failure(hc::Code::Invalid,
@@ -83,7 +83,7 @@ class Recording {
     for (const auto& word : options.links) {
       const auto place = hc::record::place_of(word);
       if (is_file(place, options.file))
-        throw Failure(hc::Code::Invalid, word + " is the file that is written");
+        throw Failure(hc::Code::Invalid, word + " is also the output file");
       const bool is_port = graph_of_port(word, options.of).has_value();
       if (!is_port && is_recording(place))
         recordings.push_back(place);
@@ -104,7 +104,7 @@ class Recording {
     Progress progress("hc record " + options_.file);
     hc::WaitSet waits(hc::stop_descriptor());
     constexpr std::chrono::milliseconds kPeriod{200};
-    while (!hc::stop_requested()) {  // what has arrived is kept
+    while (!hc::stop_requested()) {
       bool any = copy();
       std::vector<hc::Source*> open;
       for (std::size_t i = 0; i < links_.size() && !is_enough(); ++i) {
@@ -121,7 +121,7 @@ class Recording {
     }
     const auto& written = writer_->close();
     check(written.status);
-    if (written.files.empty()) say("hc record: nothing was saved of what was kept");
+    if (written.files.empty()) say("hc record: no messages were saved");
     for (const auto& link : links_)
       if (link.source != nullptr) say_losses("hc record", link.word, link.source->traffic());
   }
@@ -145,14 +145,14 @@ class Recording {
       for (const auto& [name, words] : value_or_fail(reader_->metadata(), read_))
         check(writer_->metadata(name, words));
     if (options_.last == 0) return;
-    std::signal(SIGUSR1, [](int) { save_asked = 1; });
+    std::signal(SIGUSR1, [](int) { save_requested = 1; });
     has_keys_ = ::isatty(STDIN_FILENO) == 1 &&
                 std::ranges::find(options_.links, "-") == options_.links.end();
-    say(hc::format("hc record: keeps the last {} s; {}SIGUSR1 to {} saves them", options_.last,
+    say(hc::format("hc record: keeping the last {} s; {}SIGUSR1 to {} saves them", options_.last,
                    has_keys_ ? "Enter or " : "", ::getpid()));
   }
 
-  /// Copies a message of what was recorded before; false: there are none.
+  /// Copies a message of a recording; false at the end.
   bool copy() {
     if (reader_ == nullptr || is_enough()) return false;
     auto copied = writer_->copy(*reader_);
@@ -162,7 +162,7 @@ class Recording {
     return *copied;
   }
 
-  /// Records a message that has come; false: there is none now.
+  /// Records a message that has arrived; false if there is none.
   bool take(std::size_t number) {
     auto& link = links_[number];
     hc::Message message;
@@ -182,7 +182,7 @@ class Recording {
     std::array<char, 256> line{};
     const bool is_pressed =
         has_keys_ && ::poll(&keys, 1, 0) > 0 && ::read(STDIN_FILENO, line.data(), line.size()) > 0;
-    if (is_pressed || std::exchange(save_asked, 0) != 0) writer_->save();
+    if (is_pressed || std::exchange(save_requested, 0) != 0) writer_->save();
   }
 
   [[nodiscard]] bool is_enough() const {
@@ -191,13 +191,13 @@ class Recording {
   void check(const hc::Status& status) const {
     if (status) return;
     throw Failure(options_.file, {status.error().code,
-                                  status.error().detail + "; what was recorded before is whole"});
+                                  status.error().detail + "; the recording is intact up to here"});
   }
 
   const RecordOptions& options_;
   std::vector<Link> links_;
-  std::unique_ptr<hc::record::Reader> reader_;  // of recordings; null: there are none any more
-  std::string read_;                            // place of the only one; empty: they are several
+  std::unique_ptr<hc::record::Reader> reader_;  // of recordings; null at their end
+  std::string read_;                            // the recording, if there is only one
   std::unique_ptr<hc::record::Writer> writer_;
   bool has_keys_ = false;
 };
@@ -209,24 +209,24 @@ void add_record(CLI::App& app) {
   auto* verb = app.add_subcommand("record", "Record ports or links to a file");
   auto words = std::make_shared<std::array<std::string, 2>>();
   verb->add_option("source", words->front(),
-                   "what is recorded, as --in has it; where no word follows, the output file")
+                   "what to record, as for --in; if it is the only argument, the output file")
       ->required();
   verb->add_option(
       "file", words->back(),
-      "output: FILE.mcap, FOLDER/, or a file of messages; one that has contents stays, "
-      "and FILE_2 is written");
+      "output: FILE.mcap, FOLDER/, or a file of messages; if it has contents, FILE_2 is written "
+      "instead");
   verb->add_option("--in", options->links,
                    "URIs, recordings or MODULE.PORT of a running graph; may be repeated")
       ->allow_extra_args(false);
   verb->add_option("--split", options->split,
-                   "of .mcap: begin a new file after so many bytes (1G)");
+                   "of .mcap: begin a new file after this many bytes (1G)");
   verb->add_option("--keep", options->keep,
-                   "of .mcap: remove the oldest of these files beyond so many bytes (10G)");
+                   "of .mcap: remove the oldest files above this many bytes (10G)");
   verb->add_option("--last", options->last,
                    "of .mcap: keep the last seconds in memory; Enter or SIGUSR1 saves them [s]")
       ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1.0}}));
   verb->add_option("--when", options->when,
-                   "of --in: save them when its first number becomes other than 0");
+                   "one of --in: save when its first number becomes non-zero");
   add_of(*verb, options->of);
   add_count(*verb, options->count);
   add_limit(*verb, options->limit);

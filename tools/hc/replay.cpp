@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc replay: runs the modules of a recorded graph again, each alone on what it was fed with, by the
-// clock of the messages, and compares what they send with the recording.
+// hc replay: runs each module of a recorded graph again with its recorded inputs, on the clock of
+// the messages, and compares its outputs with the recording.
 
 #include <unistd.h>
 
@@ -39,7 +39,7 @@ using Key = std::tuple<std::int32_t, std::int64_t, std::int64_t>;  // src, seq, 
 using What = hc::TraceEvent::What;
 
 constexpr const char* kFocus = "focus";
-constexpr std::size_t kStepsAtOnce = 1000;  // in a message
+constexpr std::size_t kStepsAtOnce = 1000;  // per message
 
 struct ReplayOptions {
   std::string recording, out;
@@ -49,7 +49,7 @@ struct ReplayOptions {
   double timeout = 300;
 };
 
-/// The folder for what is sent: that which a person has named, or a new one.
+/// Makes the folder for outputs: the given one, or a temporary one.
 fs::path make_folder(const std::string& given) {
   std::error_code failed;
   if (!given.empty()) {
@@ -59,7 +59,7 @@ fs::path make_folder(const std::string& given) {
   }
   std::string name = fs::temp_directory_path(failed) / "hc-replay-XXXXXX";
   if (failed || ::mkdtemp(name.data()) == nullptr)
-    throw Failure(hc::Code::System, name + ": no folder could be made");
+    throw Failure(hc::Code::System, name + ": cannot make the folder");
   return name;
 }
 
@@ -69,11 +69,11 @@ void check_known(const std::string& name, const std::set<std::string>& known) {
                                          hc::suggestion(name, {known.begin(), known.end()}));
 }
 
-/// Settings "[MODULE[.PORT]=]VALUE": the most exact one counts.
+/// Settings "[MODULE[.PORT]=]VALUE"; the most specific one applies.
 class Settings {
  public:
-  Settings(const std::string& option, const std::vector<std::string>& words, double otherwise)
-      : otherwise_(otherwise) {
+  Settings(const std::string& option, const std::vector<std::string>& words, double default_value)
+      : default_(default_value) {
     for (const auto& word : words) {
       const auto equals = word.find('=');
       const auto number = equals == std::string::npos ? word : word.substr(equals + 1);
@@ -87,7 +87,7 @@ class Settings {
   [[nodiscard]] double of(const std::string& output) const {
     for (const auto& name : {output, output.substr(0, output.find('.')), std::string()})
       if (const auto found = values_.find(name); found != values_.end()) return found->second;
-    return otherwise_;
+    return default_;
   }
   void check(const std::set<std::string>& known) const {
     for (const auto& [name, value] : values_)
@@ -95,12 +95,12 @@ class Settings {
   }
 
  private:
-  double otherwise_;
+  double default_;
   std::map<std::string, double> values_;
 };
 
-/// All that a module reported of its messages while it was recorded; nothing where that is not
-/// known, or not all: events or messages of them were dropped, or the module was restarted.
+/// The recorded trace of a module; empty if it is missing or incomplete: events or messages were
+/// dropped, or the module was restarted.
 std::vector<hc::TraceEvent> read_events(const GraphRecording& recording,
                                         const std::string& module) {
   const auto output = module + "." + hc::kTracePort;
@@ -118,8 +118,8 @@ std::vector<hc::TraceEvent> read_events(const GraphRecording& recording,
   return events;
 }
 
-/// The clock at an event: its moment, or the time of its own that a message has which was sent
-/// then, as this is when the module looked at its clock.
+/// The module's clock at an event: the time of a message sent then with a new time, since that is
+/// when the module read its clock; otherwise the event's moment.
 std::int64_t clock_at(const std::vector<hc::TraceEvent>& events, std::size_t at) {
   const auto& event = events[at];
   const bool is_handler = event.what == What::Began;
@@ -132,16 +132,15 @@ std::int64_t clock_at(const std::vector<hc::TraceEvent>& events, std::size_t at)
   return event.moment;
 }
 
-/// The number of events until the last end of a step. The module was stopped in what followed, or
-/// that was not reported any more; it is not done again.
+/// The number of events up to the end of the last complete step. The module was stopped during the
+/// rest, or did not report it; the rest is not replayed.
 std::size_t whole_steps(std::span<const hc::TraceEvent> events) {
   while (!events.empty() && events.back().what != What::Ended)
     events = events.first(events.size() - 1);
   return events.size();
 }
 
-/// What the module is to do again: the beginning, of which it hears the moment alone, and what it
-/// began.
+/// The steps to replay: the start, as an event with only a moment, then each handler.
 std::vector<hc::TraceEvent> steps_of(const std::vector<hc::TraceEvent>& events) {
   std::vector<hc::TraceEvent> steps;
   const auto last = whole_steps(events);
@@ -157,7 +156,7 @@ std::vector<hc::TraceEvent> steps_of(const std::vector<hc::TraceEvent>& events) 
   return steps;
 }
 
-/// Writes the messages of a recorded output into a file, those that `is_wanted` of their headers.
+/// Writes the messages of a recorded output whose headers are `is_wanted` to a file.
 template <typename IsWanted>
 void write_messages(const GraphRecording& recording, const std::string& output, const fs::path& to,
                     const IsWanted& is_wanted) {
@@ -169,8 +168,7 @@ void write_messages(const GraphRecording& recording, const std::string& output, 
   if (auto closed = sink->close(); !closed) throw Failure(to.string(), closed.error());
 }
 
-/// Writes the messages of a link that were handled into a file, and drops the steps whose message
-/// is not in the recording.
+/// Writes the handled messages of a link to a file; drops steps whose message was not recorded.
 void write_handled(const GraphRecording& recording, const std::string& output,
                    const std::string& port, std::int32_t number, std::vector<hc::TraceEvent>& steps,
                    const fs::path& to) {
@@ -253,12 +251,12 @@ class Replay {
     auto graph = options_.graph;
     if (graph.file.empty()) graph.file = recording_.graph_file();
     if (graph.file.empty())
-      throw Failure(hc::Code::Invalid, "give --graph FILE: " + options_.recording +
-                                           " does not say which graph was run");
+      throw Failure(hc::Code::Invalid,
+                    "give --graph FILE: " + options_.recording + " does not name its graph file");
     return load_plan("replay", graph);
   }
 
-  /// Ports of a module, without its trace.
+  /// The recorded outputs of a module, except for its trace.
   [[nodiscard]] std::vector<std::string> recorded_outputs(const hc::PlannedModule& module) const {
     std::vector<std::string> ports;
     for (const auto& output : recording_.outputs())
@@ -272,7 +270,7 @@ class Replay {
     return std::ranges::find(options_.except, name) != options_.except.end();
   }
 
-  /// Where an input's messages came from: "MODULE.PORT", or a URI.
+  /// The sender of an input's messages: "MODULE.PORT", or a URI.
   [[nodiscard]] std::string writer_of(const hc::PlannedModule& module,
                                       const hc::PlannedEnd& end) const {
     for (const auto& link : plan_.links)
@@ -280,7 +278,7 @@ class Replay {
     return end.uri;
   }
 
-  /// Why a module is not run again; empty: it is.
+  /// Why a module cannot be replayed; empty: it can.
   [[nodiscard]] std::string why_not(const hc::PlannedModule& module) const {
     if (is_excepted(module.name)) return "excepted";
     bool has_inputs = false;
@@ -288,10 +286,10 @@ class Replay {
       if (!end.is_input) continue;
       has_inputs = true;
       const auto writer = writer_of(module, end);
-      if (writer.find(':') != std::string::npos) return writer + " was outside";
+      if (writer.find(':') != std::string::npos) return writer + " is outside the graph";
       if (!recording_.has(writer)) return writer + " is not in the recording";
     }
-    if (!has_inputs) return "a sensor: the recording stands for it";
+    if (!has_inputs) return "a sensor: its outputs come from the recording";
     if (recorded_outputs(module).empty()) return "none of its outputs was recorded";
     if (module.control_uri.empty()) return "its program has no --clock";
     return "";
@@ -308,7 +306,7 @@ class Replay {
       for (const auto& port : recorded_outputs(module)) last_[module.name + "." + port] = -1;
     for (const auto& event : std::span(events).first(whole_steps(events)))
       if (event.what == What::Sent) last_[module.name + "." + event.port] = event.seq;
-    std::map<std::string, std::int32_t> links;  // of each port so far
+    std::map<std::string, std::int32_t> links;  // so far, by port
     const auto add = [&](const char* option, const hc::PlannedEnd& end, const fs::path& file) {
       const std::string link = end.port + "=file:" + file.string();
       words.insert(words.end(), {option, link});
@@ -342,7 +340,7 @@ class Replay {
     const auto command = command_of(module);
     auto process = value_or_fail(Process::start(command, Process::Capture::Errors), module.name);
     const auto end = std::chrono::steady_clock::now() + hc::duration(options_.timeout);
-    std::string said;
+    std::string errors;
     std::array<char, 4096> piece{};
     std::optional<int> status;
     for (bool is_open = true; is_open || !(status = process.poll_status());) {
@@ -350,8 +348,8 @@ class Replay {
           std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
       if (left.count() <= 0)
         throw Failure(hc::Code::Closed,
-                      hc::format("{} has not ended after {} s; --timeout gives it more, --except "
-                                 "leaves it out",
+                      hc::format("{} has not ended after {} s; raise --timeout, or skip it with "
+                                 "--except",
                                  module.name, options_.timeout));
       const std::array watched = {is_open ? process.output() : process.ended()};
       const auto ready = hc::wait_readable(watched, hc::stop_descriptor(), left);
@@ -359,14 +357,14 @@ class Replay {
       if (*ready != 0 || !is_open) continue;
       const auto size = ::read(watched[0], piece.data(), piece.size());
       is_open = size > 0;
-      if (is_open) said.append(piece.data(), static_cast<std::size_t>(size));
-      if (said.size() > kMostSaid) said.erase(0, said.size() - kMostSaid);
+      if (is_open) errors.append(piece.data(), static_cast<std::size_t>(size));
+      if (errors.size() > kMaxErrors) errors.erase(0, errors.size() - kMaxErrors);
     }
     if (*status == 0) return;
-    said.erase(0, said.find_last_of('\n', said.size() < 2 ? 0 : said.size() - 2) + 1);
-    while (said.ends_with('\n')) said.pop_back();
+    errors.erase(0, errors.find_last_of('\n', errors.size() < 2 ? 0 : errors.size() - 2) + 1);
+    while (errors.ends_with('\n')) errors.pop_back();
     throw Failure(hc::Code::Closed,
-                  hc::format("{} failed with status {}: {}", module.name, *status, said));
+                  hc::format("{} failed with status {}: {}", module.name, *status, errors));
   }
 
   bool compare_output(const std::string& output) {
@@ -393,14 +391,14 @@ class Replay {
     return is_same;
   }
 
-  static constexpr std::size_t kMostSaid = 16 << 10;
+  static constexpr std::size_t kMaxErrors = 16 << 10;  // [byte]
 
   const ReplayOptions& options_;
   const GraphRecording recording_;
   hc::Plan plan_;
-  fs::path folder_;  // removed at the end, unless it was named
+  fs::path folder_;  // removed at the end, unless given
   Settings numbers_, times_, shares_;
-  std::map<std::string, std::int64_t> last_;  // `seq` of what a whole step sent last, by output
+  std::map<std::string, std::int64_t> last_;  // last `seq` sent in a complete step, by output
 };
 
 }  // namespace
@@ -409,23 +407,22 @@ void add_replay(CLI::App& app) {
   auto options = std::make_shared<ReplayOptions>();
   options->graph.token = hc::graph_token();
   auto* verb = app.add_subcommand(
-      "replay", "Run the modules of a recorded graph again, and compare what they send");
+      "replay", "Run the modules of a recorded graph again, and compare their outputs");
   auto many = [&](const char* name, std::vector<std::string>& words, const char* doc) {
     verb->add_option(name, words, doc)->allow_extra_args(false);
   };
-  verb->add_option("recording", options->recording, "folder or .mcap that hc run --record wrote")
+  verb->add_option("recording", options->recording, "folder or .mcap of hc run --record")
       ->required();
   verb->add_option("--graph", options->graph.file,
-                   "the graph file that was run (default: the one that a .mcap names)")
+                   "the graph file that was run (default: the one named in a .mcap)")
       ->transform(find_graph);
   many("--set", options->graph.settings, "MODULE.PARAMETER=VALUE, as given to hc run");
-  verb->add_flag("--check", options->check, "compare; status 1 where something differs");
-  verb->add_option("--out", options->out, "keep what the modules send in this folder");
-  many("--except", options->except,
-       "MODULE or MODULE.PORT: do not run, or not compare; repeatable");
+  verb->add_flag("--check", options->check, "compare; status 1 if something differs");
+  verb->add_option("--out", options->out, "keep the modules' outputs in this folder");
+  many("--except", options->except, "MODULE not to run, or MODULE.PORT not to compare; repeatable");
   many("--tolerance", options->numbers, "[MODULE[.PORT]=]NUMBER by which numbers may differ");
   many("--time-tolerance", options->times, "[MODULE[.PORT]=]SECONDS by which times may differ");
-  many("--share", options->shares, "[MODULE[.PORT]=]SHARE of messages that must be the same");
+  many("--share", options->shares, "[MODULE[.PORT]=]SHARE of messages that must be equal");
   verb->add_option("--timeout", options->timeout, "for each module [s]")
       ->check(CLI::Range(0.1, 86400.0));
   verb->callback([options] { Replay(*options).run(); });

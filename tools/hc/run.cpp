@@ -31,13 +31,13 @@ struct RunOptions {
   std::string name;
   bool quiet = false, links = false;
   std::string record;                           // folder, or file of MCAP
-  std::map<std::string, std::string> recorder;  // parameters of who writes that
+  std::map<std::string, std::string> recorder;  // parameters of the module `recorder`
 };
 
-/// Set by SIGUSR1: what is kept of the last time is to be saved.
-volatile std::sig_atomic_t save_requested = 0;
+/// Set by SIGUSR1: save the messages kept by --last.
+volatile std::sig_atomic_t save_recording = 0;
 
-/// What a run came to, for a person: a few lines, the modules' results among them.
+/// Prints a few lines about the run, including the modules' results.
 void print_summary(const RunOptions& options, const hc::RunReport& report) {
   hc::Traffic sum;
   std::uint64_t restarts = 0, ignored = 0;
@@ -78,7 +78,7 @@ void print_links(const hc::GraphState& state) {
   print(text);
 }
 
-/// A graph's name, of letters, digits, `_` and `-` alone.
+/// The graph's name; only letters, digits, `_` and `-`.
 std::string name_of(const RunOptions& options) {
   std::string name = options.name.empty()
                          ? std::filesystem::path(options.graph.file).stem().string()
@@ -89,7 +89,7 @@ std::string name_of(const RunOptions& options) {
   return name.empty() ? "graph" : name;
 }
 
-/// A name that a person gives is theirs alone; one that a file gives gets the process's number.
+/// A name given with --as must be unique; a file's name is made unique by the PID.
 void check_name(const RunOptions& options) {
   const auto name = name_of(options);
   for (const auto& graph : find_running()) {
@@ -97,13 +97,13 @@ void check_name(const RunOptions& options) {
     if (!options.name.empty())
       throw Failure(hc::Code::Invalid, "--as " + name + ": " + graph.text() + " is running");
     if (!options.quiet && ::isatty(STDERR_FILENO) == 1)
-      say(hc::format("hc run: {} is running too; this one is {}.{} (--as gives it a name)",
+      say(hc::format("hc run: {} is already running; this one is {}.{} (--as gives it a name)",
                      graph.text(), name, ::getpid()));
     return;
   }
 }
 
-/// Fails where a recording could not be begun: before anything of the robot starts.
+/// Fails if the folder is not writable, before any module starts.
 void check_writable(const std::filesystem::path& folder, std::error_code failed) {
   const auto path = folder.empty() ? "." : folder.string();
   if (!failed && ::access(path.c_str(), W_OK | X_OK) != 0)
@@ -111,7 +111,7 @@ void check_writable(const std::filesystem::path& folder, std::error_code failed)
   if (failed) throw Failure(hc::Code::System, path + ": " + failed.message());
 }
 
-/// Where the module `recorder` records. What an earlier run has recorded there stays.
+/// Sets the parameters of the module `recorder`. An earlier recording stays unchanged.
 void take_record(const RunOptions& options, hc::LoadOptions& load) {
   if (options.record.empty()) return;
   for (const auto& [name, value] : options.recorder)
@@ -130,13 +130,13 @@ void take_record(const RunOptions& options, hc::LoadOptions& load) {
   const std::filesystem::path path(place.path);
   check_writable(is_mcap ? path.parent_path() : path, failed);
   load.recorder[is_mcap ? "file" : "folder"] = place.path;
-  if (!is_mcap) load.recorder["append"] = "true";  // a recorder that is restarted goes on
-  if (is_mcap) std::signal(SIGUSR1, [](int) { save_requested = 1; });
+  if (!is_mcap) load.recorder["append"] = "true";  // a restarted recorder continues
+  if (is_mcap) std::signal(SIGUSR1, [](int) { save_recording = 1; });
   if (place.path != given.path)
-    say(hc::format("hc run: {} stays; recording into {}", given.path, place.path));
+    say(hc::format("hc run: {} stays as it is; recording to {}", given.path, place.path));
 }
 
-/// Logs the reason as everything else was logged: its reader may have ended.
+/// Logs the error through the outbox, as its reader may have stopped reading.
 [[noreturn]] void fail(Outbox& lines, const hc::Error& error) {
   lines.say("hc run: " + error.text());
   throw Failure(Failure(error).status);
@@ -148,7 +148,7 @@ void run(RunOptions options) {
   hc::LoadOptions load_options = options.graph;
   take_record(options, load_options);
   load_options.holds_ports = true;
-  // What a module starts, such as `hc`, means this graph; no thread reads the environment yet.
+  // Programs started by modules, such as `hc`, use this graph. No thread reads the environment yet.
   ::setenv(hc::kRunSecret, hc::make_secret().c_str(), 1);
   ::setenv("HC_GRAPH", (name_of(options) + "." + std::to_string(::getpid())).c_str(), 1);
   const auto hosts = make_hosts();
@@ -158,7 +158,7 @@ void run(RunOptions options) {
   Outbox lines(STDERR_FILENO);
   const bool has_status = !options.quiet && ::isatty(STDERR_FILENO) == 1;
   if (const auto& unlinked = graph.plan->unlinked; !options.record.empty() && !unlinked.empty()) {
-    lines.say("graph: not recorded, as not linked: " + joined(unlinked));
+    lines.say("graph: unlinked outputs are not recorded: " + joined(unlinked));
   }
   hc::RunOptions run_options;
   run_options.stop = hc::stop_descriptor();
@@ -168,7 +168,7 @@ void run(RunOptions options) {
   };
   run_options.state = [&, recorder = graph.recorder](const hc::GraphState& state) {
     if (has_status) lines.show(status_line(state).substr(0, terminal_size().width - 1));
-    if (std::exchange(save_requested, 0) == 0) return;
+    if (std::exchange(save_recording, 0) == 0) return;
     for (const auto& module : state.modules)
       if (module.name == recorder && module.process > 0) ::kill(module.process, SIGUSR1);
   };
@@ -185,7 +185,7 @@ void run(RunOptions options) {
   for (const auto& module : report->state.modules)
     if (module.status == hc::ModuleStatus::GivenUp) given_up.push_back(module.name);
   if (!given_up.empty()) fail(lines, {hc::Code::Closed, "given up: " + joined(given_up)});
-  if (report->has_errors()) throw Failure(1);  // they are in the summary
+  if (report->has_errors()) throw Failure(1);  // printed in the summary
 }
 
 }  // namespace
@@ -199,18 +199,18 @@ void add_run(CLI::App& app) {
       "--record", options->record,
       "record every linked output into this folder, as MODULE.PORT.mtp, or into one FILE.mcap");
   for (const auto& [name, text] :
-       {std::pair("split", "begin a new .mcap file after so many bytes (1G)"),
-        {"keep", "remove the oldest of such files beyond so many bytes (10G)"},
+       {std::pair("split", "begin a new .mcap file after this many bytes (1G)"),
+        {"keep", "remove the oldest of these files above this many bytes (10G)"},
         {"last", "keep the last seconds in memory, and save them on SIGUSR1"},
-        {"when", "MODULE.PORT: save them when its first number becomes other than 0"}})
+        {"when", "MODULE.PORT: save them when its first number becomes non-zero"}})
     verb->add_option(std::string("--") + name, options->recorder[name], text)->needs(record);
   auto* page = verb->add_flag("--page", options->graph.page,
-                              "serve a page, print its URL, open it where there is a desktop");
+                              "serve a page, print its URL, and open it if there is a desktop");
   verb->add_option("--listen", options->graph.listen,
                    "address for the page that other machines can reach, with TLS; 0.0.0.0: all")
       ->needs(page);
   verb->add_flag("--quiet", options->quiet, "log errors only");
-  verb->add_flag("--links", options->links, "at the end, print what went over each link");
+  verb->add_flag("--links", options->links, "at the end, print the messages of each link");
   verb->callback([options] { run(*options); });
 }
 

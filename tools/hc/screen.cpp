@@ -30,8 +30,7 @@ std::size_t length(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins_character));
 }
 
-/// Text in so many characters, with a mark where some are missing, and without what a terminal
-/// would obey.
+/// Text padded or cut (with "…") to a width, with control characters escaped.
 std::string fitted(const std::string& given, std::size_t width) {
   const auto text = hc::visible(given);
   const auto count = length(text);
@@ -82,7 +81,7 @@ std::string bids_line(const std::vector<Bid>& bids) {
   return text;
 }
 
-/// A column: its heading, width and a cell's text.
+/// A column: heading, width, and the text of a cell.
 template <typename Row>
 struct Column {
   std::string name;
@@ -90,7 +89,7 @@ struct Column {
   std::string (*cell)(const Row& row);
 };
 
-/// The cells of a row; null: the headings.
+/// The cells of a row, or with null the headings.
 template <typename Row>
 std::string cells(const std::vector<Column<Row>>& columns, const Row* row = nullptr) {
   std::string text;
@@ -99,8 +98,8 @@ std::string cells(const std::vector<Column<Row>>& columns, const Row* row = null
   return text;
 }
 
-/// The modules that work for a task in focus, and its mode: those of that mode, and those without a
-/// mode whose messages lead to them.
+/// The mode of each module that works for a task in focus: tasks of that mode, and modules without
+/// a mode whose messages lead to them.
 std::map<std::string, std::string> contributors(const hc::GraphState& state) {
   std::map<std::string, const hc::ModuleState*> modules;
   std::map<std::string, std::string> found;
@@ -122,12 +121,12 @@ std::map<std::string, std::string> contributors(const hc::GraphState& state) {
   return found;
 }
 
-/// Its name, and the host that it runs on, as `hc graph add` takes them.
+/// MODULE or MODULE@HOST, as for `hc graph add`.
 std::string full_name(const hc::ModuleState& module) {
   return module.host.empty() ? module.name : module.name + "@" + module.host;
 }
 
-/// "host robot: clock +3600.000 s ± 120µs, 250µs there and back"
+/// Such as "host robot: clock +3600.000 s ± 120µs, 250µs there and back".
 Line host_line(const hc::HostState& host) {
   if (!host.is_connected || !host.offset || !host.error || !host.latency)
     return {"host " + host.name + ": not connected: " + host.detail, false, true};
@@ -205,7 +204,7 @@ void add_links(const hc::GraphState& state, std::size_t width, std::vector<Line>
   }
 }
 
-/// What is in trouble first.
+/// Moves lines in trouble to the front.
 void sort(std::vector<Line>::iterator begin, std::vector<Line>::iterator end) {
   std::stable_sort(begin, end, [](const Line& a, const Line& b) { return a.is_red && !b.is_red; });
 }

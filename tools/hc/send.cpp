@@ -25,7 +25,7 @@ namespace {
 struct SendOptions {
   std::string out = "-";
   std::string type = "table", scalar = "f64", encoding, text, image, npy;
-  int components = 0;  // 0: the least that the type has
+  int components = 0;  // 0: the least that the type allows
   std::int32_t width = 0;
   hc::Header header;
   int ttl = 8;
@@ -34,7 +34,7 @@ struct SendOptions {
   bool has_text = false, has_type = false, has_shape = false;  // given on the command line
 };
 
-/// @param first, last  of all values that have a name.
+/// The value of a name, or a failure. @param first, last  of all named values.
 template <typename E>
 E named(std::optional<E> value, const std::string& kind, const std::string& name, E first, E last) {
   if (value) return *value;
@@ -109,13 +109,13 @@ hc::Message message_of_npy(const SendOptions& options) {
   return message;
 }
 
-/// The camera module reads images, with libraries that hc does not link: its one message, over a
-/// pipe that becomes our standard input.
+/// Runs the module camera, which reads images with libraries that hc does not link, and takes its
+/// message over a pipe, which replaces standard input.
 hc::Message message_of_image(const SendOptions& options) {
   const std::string program = find_program("camera");
   if (program.empty())
-    throw Failure(hc::Code::NotFound, "module camera, which reads images: it is not there");
-  // The file's name is no part of the command, whatever letters it has.
+    throw Failure(hc::Code::NotFound, "reading images needs the module camera: not installed");
+  // Passed in the environment, so that no character of the path needs quoting.
   ::setenv("HC_CAMERA", program.c_str(), 1);
   ::setenv("HC_IMAGE", options.image.c_str(), 1);
   FILE* pipe =
@@ -126,11 +126,11 @@ hc::Message message_of_image(const SendOptions& options) {
   hc::Message message;
   const bool came = receive(*source, message, options.image);
   ::pclose(pipe);
-  if (!came) throw Failure(1);  // camera has said why
+  if (!came) throw Failure(1);  // camera has logged why
   return message.keep();
 }
 
-/// Refuses options that exclude each other, before anything is sent.
+/// Refuses options that exclude each other.
 void check(const SendOptions& options) {
   std::vector<std::string> given;
   if (options.has_text) given.emplace_back("--text");
@@ -140,7 +140,7 @@ void check(const SendOptions& options) {
   auto refuse = [](const std::string& what) { throw Failure(hc::Code::Invalid, what); };
   if (given.empty() && !options.has_type)
     refuse("nothing to send: give numbers, --text, --image or --npy");
-  if (given.size() > 1) refuse(given[0] + " and " + given[1] + " do not go together");
+  if (given.size() > 1) refuse(given[0] + " and " + given[1] + " exclude each other");
   if (given.size() == 1 && given[0] != "numbers" && options.has_shape)
     refuse("--scalar, --components and --width are for numbers, not for " + given[0]);
   if (given.size() == 1 && given[0] != "numbers" && given[0] != "--npy" && options.has_type)
@@ -180,7 +180,7 @@ void run(const SendOptions& options) {
 void add_send(CLI::App& app) {
   auto options = std::make_shared<SendOptions>();
   auto* verb = app.add_subcommand("send", "Send one message: numbers, text, an image, a .npy file");
-  verb->add_option("--out", options->out, "where it goes")->capture_default_str();
+  verb->add_option("--out", options->out, "destination")->capture_default_str();
   verb->add_option("--text", options->text, "send this as a string");
   verb->add_option("--image", options->image, "send an image file");
   verb->add_option("--npy", options->npy, "send a NumPy array");

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The files of templates/, as the build puts them into this program (cmake/templates.cmake).
+// The files of templates/, built into this program (cmake/templates.cmake).
 
 #include <string_view>
 #include <vector>
 
 namespace tool {
 
-/// @NAME@ stands for the module's name, in path and text.
+/// In path and text, @NAME@ is the module's name.
 struct TemplateFile {
   std::string_view path;
   std::string_view text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc top: what a running graph does, live.
+// hc top: shows a running graph, live.
 #include <poll.h>
 #include <termios.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@
 namespace tool {
 namespace {
 
-/// A terminal that shows one page and reads keys one by one, until this is destroyed.
+/// A terminal with a full-screen page and unbuffered keys, restored by the destructor.
 class Page {
  public:
   Page() {
@@ -39,10 +39,10 @@ class Page {
 
   static Screen screen() {
     const auto size = terminal_size();
-    return {size.width, size.height - 1};  // the cursor's line stays empty
+    return {size.width, size.height - 1};  // the last line is for the cursor
   }
 
-  /// Puts a page over the last one without flicker.
+  /// Overwrites the last page without flicker.
   static void show(const std::string& text) {
     std::string page = "\x1b[H";
     for (char c : text) page += c == '\n' ? std::string("\x1b[K\n") : std::string(1, c);
@@ -54,7 +54,7 @@ class Page {
   bool has_keys_ = false;
 };
 
-/// The bids of a graph's workspaces, as far as their modules publish them.
+/// The bids of a graph's workspaces, if their modules publish them.
 class Bids {
  public:
   Bids(const RunningGraph& graph, const hc::GraphState& state) {
@@ -63,7 +63,7 @@ class Bids {
                         open_port(graph, workspace + ".standings"),
                         {}});
       } catch (const Failure&) {
-        continue;  // it has no such output
+        continue;  // no output `standings`
       }
   }
 
@@ -107,7 +107,7 @@ struct TopOptions {
   bool once = false, json = false;
 };
 
-/// How far a key scrolls; the arrows come as three bytes, PageUp and PageDown as four.
+/// The lines that a key scrolls.
 int lines_of(std::string_view keys, int page) {
   if (keys == "k" || keys == "\x1b[A") return -1;
   if (keys == "j" || keys == "\x1b[B") return 1;
@@ -146,7 +146,7 @@ void top(const TopOptions& options) {
   }
   Bids bids(graph, *state);
   if (is_live) return show(observer, bids);
-  if (auto later = observer.next()) state = later;  // meanwhile bids come
+  if (auto later = observer.next()) state = later;  // bids arrive meanwhile
   print(draw(*state, bids.take(*state), {std::numeric_limits<std::size_t>::max(), 0, true}));
 }
 
@@ -155,8 +155,7 @@ void top(const TopOptions& options) {
 void add_top(CLI::App& app) {
   auto options = std::make_shared<TopOptions>();
   auto* verb = app.add_subcommand("top", "Show a running graph live: modules, links, focus");
-  verb->add_option("graph,--of", options->graph,
-                   "name of the running graph, where there are several");
+  verb->add_option("graph,--of", options->graph, "name of the running graph, if there are several");
   verb->add_flag("--once", options->once, "print once, as without a terminal");
   verb->add_flag("--json", options->json, "print states as lines of JSON, twice a second");
   verb->callback([options] { top(*options); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc trace: what a message was derived from, and how long each step took.
+// hc trace: shows what messages were derived from, and how long each step took.
 
 #include <algorithm>
 #include <chrono>
@@ -27,7 +27,7 @@ namespace {
 using MonotonicClock = std::chrono::steady_clock;
 
 constexpr std::size_t kMostEvents = 5'000'000;
-constexpr std::size_t kShown = 6;               // paths
+constexpr std::size_t kMostPathsShown = 6;
 constexpr std::string_view kSuffix = ".trace";  // of an output
 
 struct TraceOptions {
@@ -57,7 +57,7 @@ struct Collected {
 
 using Links = std::vector<std::pair<std::string, std::string>>;
 
-/// A module, and all from which its messages may be derived.
+/// A module and all modules whose messages lead to it.
 std::set<std::string> upstream_of(const std::string& module, const Links& links) {
   std::set<std::string> found = {module};
   for (std::size_t before = 0; before != found.size();) {
@@ -68,7 +68,7 @@ std::set<std::string> upstream_of(const std::string& module, const Links& links)
   return found;
 }
 
-/// Fails where a graph with these links has no such port.
+/// Fails if no link has this port.
 void check_port(const std::string& port, const Links& links) {
   std::vector<std::string> known;
   for (const auto& [from, to] : links)
@@ -81,8 +81,7 @@ void check_port(const std::string& port, const Links& links) {
 
 Collected collect(const TraceOptions& options) {
   using namespace std::chrono_literals;
-  // Modules tell twice a second.
-  constexpr auto kLast = 1s;
+  constexpr auto kLast = 1s;  // modules report twice a second
   const auto graph = choose_running(options.of);
   const auto state = state_of(graph);
   Collected collected;
@@ -100,7 +99,7 @@ Collected collect(const TraceOptions& options) {
     if (module.status != hc::ModuleStatus::Running) continue;
     auto source =
         hc::open_tap(graph, module.name + "." + hc::kTracePort, link_options(kDefaultLimit));
-    if (!source && source.error().code == hc::Code::Invalid) continue;  // it takes no commands
+    if (!source && source.error().code == hc::Code::Invalid) continue;  // takes no commands
     if (!source) throw Failure(source.error());
     collected.traced.events[module.name];
     watched.push_back({module.name, std::move(*source)});
@@ -165,7 +164,7 @@ std::string table_of(const std::vector<PathSummary>& summaries, std::size_t mess
   auto name_of = [](const Step& step) {
     return step.text() + (step.is_outside ? "  (outside)" : step.renews_time ? "  (new time)" : "");
   };
-  // Columns of names: an arrow takes three bytes.
+  // Counts characters: an arrow has three bytes.
   auto width_of = [](const std::string& text) {
     return static_cast<std::size_t>(
         std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
@@ -173,7 +172,7 @@ std::string table_of(const std::vector<PathSummary>& summaries, std::size_t mess
   for (const auto& summary : summaries)
     for (const auto& step : summary.steps) widest = std::max(widest, width_of(name_of(step)) + 2);
   std::string text;
-  for (std::size_t i = 0; i < std::min(summaries.size(), kShown); ++i) {
+  for (std::size_t i = 0; i < std::min(summaries.size(), kMostPathsShown); ++i) {
     const auto& summary = summaries[i];
     const bool renews = std::ranges::any_of(summary.steps, &Step::renews_time);
     const std::string since =
@@ -198,8 +197,8 @@ std::string table_of(const std::vector<PathSummary>& summaries, std::size_t mess
               "\n";
     }
   }
-  if (summaries.size() > kShown)
-    text += hc::format("\nand {} more paths: --json\n", summaries.size() - kShown);
+  if (summaries.size() > kMostPathsShown)
+    text += hc::format("\nand {} more paths: --json\n", summaries.size() - kMostPathsShown);
   return text;
 }
 
@@ -242,21 +241,19 @@ void trace(const TraceOptions& options) {
     if (auto written = hc::replace_file(options.perfetto, to_chrome_trace(collected.traced));
         !written)
       throw Failure(written.error());
-  if (collected.lost > 0)
-    say(hc::format("hc trace: {} events were lost, as there were too many", collected.lost));
+  if (collected.lost > 0) say(hc::format("hc trace: {} events dropped: too many", collected.lost));
   if (options.port.empty()) return;
   const auto module = module_of(options.port);
   if (!collected.traced.events.contains(module))
-    throw Failure(
-        hc::Code::NotFound,
-        module + " reports nothing of its messages: it does not run, or takes no commands");
+    throw Failure(hc::Code::NotFound,
+                  module + " sends no trace: it does not run, or takes no commands");
   const auto paths = find_paths(collected.traced, options.port);
-  // Each message has at most one critical path that is whole.
+  // Each message has at most one complete critical path.
   const auto messages = static_cast<std::size_t>(
       std::ranges::count_if(paths, [](const auto& path) { return path.is_critical; }));
   if (paths.empty())
     throw Failure(hc::Code::NotFound,
-                  "no message of " + options.port + " could be traced to where it began");
+                  "no message of " + options.port + " could be traced to its origin");
   const auto summaries = summarise(paths);
   print(options.json ? json_of(options.port, summaries, messages, collected.lost)
                      : table_of(summaries, messages));
@@ -271,15 +268,15 @@ void add_trace(CLI::App& app) {
       "trace", "Show what messages were derived from, and how long each step took");
   verb->add_option("port", options->port, "MODULE.PORT of a running graph");
   add_of(*verb, options->of);
-  verb->add_option("--duration", options->duration, "of the trace of a running graph [s]")
+  verb->add_option("--duration", options->duration, "time to trace a running graph [s]")
       ->check(CLI::Range(0.1, 3600.0));
   verb->add_option("--recording", options->recording,
-                   "folder or .mcap that hc run --record wrote, in place of a running graph");
+                   "folder or .mcap of hc run --record, instead of a running graph");
   verb->add_option("--graph", options->graph.file,
                    "graph file of the recording, for modules that take no commands")
       ->transform(find_graph);
   verb->add_option("--perfetto", options->perfetto,
-                   "write all that happened into this file (ui.perfetto.dev opens it)");
+                   "write all events to this file (ui.perfetto.dev opens it)");
   verb->add_flag("--json", options->json, "print one line of JSON");
   verb->callback([options] { trace(*options); });
 }

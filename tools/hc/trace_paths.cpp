@@ -18,8 +18,8 @@ using What = hc::TraceEvent::What;
 using Key = std::tuple<std::int32_t, std::int64_t, std::int64_t>;  // src, seq, time
 
 constexpr std::size_t kMostSteps = 64;
-constexpr std::int64_t kHeld = 1'000'000'000;  // what is older has no part in a new message [ns]
-constexpr int kMostLooks = 10'000;             // at outputs, for one message
+constexpr std::int64_t kMaxAge = 1'000'000'000;  // older messages do not affect a new one [ns]
+constexpr int kMostVisited = 10'000;             // outputs, for one message
 
 Key key_of(const hc::TraceEvent& event) {
   return {event.src, event.seq, event.time};
@@ -40,13 +40,13 @@ struct Sending {
 };
 
 struct Module {
-  std::vector<Visit> visits;                                // as taken
-  std::vector<std::pair<std::int64_t, std::int64_t>> busy;  // apart, in their order
-  std::multimap<std::int64_t, const Visit*> at_time;        // by the message's
-  /// Those of messages that have a time, by input, in the order in which they were handled.
+  std::vector<Visit> visits;                                // in the order of arrival
+  std::vector<std::pair<std::int64_t, std::int64_t>> busy;  // disjoint periods, in order
+  std::multimap<std::int64_t, const Visit*> at_time;        // by time of the message
+  /// Handled messages with a time, by input, in the order of their handlers.
   std::map<std::string, std::vector<const Visit*>> handled;
 
-  /// How long of a period a handler was running.
+  /// The time within a period during which a handler was running.
   [[nodiscard]] std::int64_t busy_within(std::int64_t begin, std::int64_t end) const {
     std::int64_t sum = 0;
     auto each = std::ranges::lower_bound(busy, begin, {}, [](const auto& b) { return b.second; });
@@ -56,12 +56,12 @@ struct Module {
   }
 };
 
-/// Moments of one module, paired.
+/// Groups the events of a module by message.
 Module read_module(const std::vector<hc::TraceEvent>& events) {
   Module module;
-  std::map<std::pair<std::string, Key>, std::size_t> open;  // the newest such visit
+  std::map<std::pair<std::string, Key>, std::size_t> open;  // the newest visit of each message
   std::int64_t begin = 0;
-  int depth = 0;  // messages taken together begin together
+  int depth = 0;  // synchronised messages are handled together
   for (const auto& event : events) {
     const auto name = std::pair(event.port, key_of(event));
     const auto known = open.find(name);
@@ -74,7 +74,7 @@ Module read_module(const std::vector<hc::TraceEvent>& events) {
       if (visit != nullptr) visit->began = event.moment;
     } else if (event.what == What::Ended) {
       if (visit != nullptr) visit->ended = event.moment;
-      depth = std::max(depth - 1, 0);  // tracing may have begun within a handler
+      depth = std::max(depth - 1, 0);  // the trace may begin within a handler
       if (depth == 0 && begin != 0) module.busy.emplace_back(begin, event.moment);
     }
   }
@@ -107,12 +107,12 @@ class PathFinder {
     const std::string at = port.substr(std::min(port.size(), name.size() + 1));
     const auto module = modules_.find(name);
     if (module == modules_.end()) return {};
-    next_ = 1;
+    may_renew_at_ = 1;
     for (const auto& visit : module->second.visits)
       if (visit.port == at && std::get<2>(visit.key) != 0)
         collect([&] { arrive(name, visit); }, visit.took, std::get<2>(visit.key));
     if (!found_.empty()) return std::move(found_);
-    next_ = 0;
+    may_renew_at_ = 0;
     for (const auto& [time, sendings] : sent_at_time_)
       for (const auto& sending : sendings)
         if (time != 0 && sending.module == name && sending.port == at)
@@ -121,7 +121,7 @@ class PathFinder {
   }
 
  private:
-  /// Walks back from a port; `back_` holds the steps that are behind.
+  /// Walks backwards from a port; `back_` has the later steps.
   template <typename Walk>
   void collect(const Walk& walk, std::int64_t end, std::int64_t time) {
     back_.clear();
@@ -129,7 +129,7 @@ class PathFinder {
     end_ = end;
     age_ = end - time;
     first_ = found_.size();
-    looked_ = 0;
+    visited_ = 0;
     walk();
   }
 
@@ -143,7 +143,7 @@ class PathFinder {
     found_.push_back(std::move(path));
   }
 
-  /// Walks on, where the path is critical only if this input is.
+  /// Continues the walk; the path stays critical only if this input is.
   template <typename Walk>
   void branch(bool is_critical, const Walk& walk) {
     const bool was_critical = std::exchange(is_critical_, is_critical_ && is_critical);
@@ -151,7 +151,7 @@ class PathFinder {
     is_critical_ = was_critical;
   }
 
-  /// The path ends at an input.
+  /// Starts at an input.
   void arrive(const std::string& name, const Visit& visit) {
     Step step{name, visit.port, "", false, 0, 0, 0};
     if (visit.began) {
@@ -161,7 +161,7 @@ class PathFinder {
     before(name, visit, step);
   }
 
-  /// Goes on to who sent what was taken; `step` lacks what was before it was taken.
+  /// Continues at the sender of a message; completes `step` with the time before its arrival.
   void before(const std::string& name, const Visit& visit, Step step) {
     if (back_.size() == kMostSteps) return;
     const auto sending = sender(name, visit);
@@ -174,7 +174,7 @@ class PathFinder {
     back_.pop_back();
   }
 
-  /// The last that sent it before it was taken.
+  /// The last sender of a message before its arrival.
   [[nodiscard]] const Sending* sender(const std::string& name, const Visit& visit) const {
     const auto same = sent_.find(visit.key);
     const Sending* last = nullptr;
@@ -189,11 +189,11 @@ class PathFinder {
 
   [[nodiscard]] bool is_linked(const std::string& from, const std::string& to) const {
     return links_.empty() || std::ranges::find(links_, std::pair(from, to)) != links_.end() ||
-           // What `hc run` links on its own may not be among them.
+           // Links added by `hc run` may not be among them.
            std::ranges::none_of(links_, [&](const auto& link) { return link.second == to; });
   }
 
-  /// A module that reported nothing, or the world outside, has sent it.
+  /// Continues at a sender without a trace: a module or a URI.
   void outside(const std::string& name, const Visit& visit, Step step) {
     std::string from;
     for (const auto& link : links_)
@@ -213,7 +213,7 @@ class PathFinder {
                0};
     back_.push_back(std::move(step));
     const auto time = std::get<2>(visit.key);
-    std::map<std::string, const Sending*> inputs;  // the last of each output that leads there
+    std::map<std::string, const Sending*> inputs;  // last message sent to each input of the module
     const auto same = sent_at_time_.find(time);
     for (const auto& link : links_) {
       if (is_uri || module_of(link.second) != other.module || same == sent_at_time_.end()) continue;
@@ -239,17 +239,17 @@ class PathFinder {
     back_.pop_back();
   }
 
-  /// Goes on to what a module has derived a message from.
+  /// Continues at the messages from which a module has derived another.
   void leave(const Sending& sending) {
-    if (found_.size() - first_ == kMostPaths || ++looked_ > kMostLooks) return;
+    if (found_.size() - first_ == kMostPaths || ++visited_ > kMostVisited) return;
     const auto& module = modules_.at(sending.module);
     const auto time = std::get<2>(sending.key);
-    std::map<std::string, const Visit*> inputs;  // the last at each
+    std::map<std::string, const Visit*> inputs;  // last message at each
     const auto [begin, end] = module.at_time.equal_range(time);
     for (auto each = begin; each != end; ++each)
       if (each->second->began && *each->second->began <= sending.moment)
         inputs[each->second->port] = each->second;
-    const bool renews = inputs.empty() && back_.size() == next_;
+    const bool renews = inputs.empty() && back_.size() == may_renew_at_;
     if (renews) inputs = last_handled(module, sending.moment);
     const auto before_this = found_.size();
     follow(sending, inputs, renews);
@@ -257,7 +257,7 @@ class PathFinder {
       finish({sending.module, "", sending.port, false, 0, 0, sending.moment - time}, time);
   }
 
-  /// The last message at each input, in the second before.
+  /// The last message at each input within kMaxAge.
   static std::map<std::string, const Visit*> last_handled(const Module& module,
                                                           std::int64_t moment) {
     std::map<std::string, const Visit*> inputs;
@@ -265,12 +265,13 @@ class PathFinder {
       const auto later = std::ranges::upper_bound(visits, moment, {},
                                                   [](const Visit* visit) { return *visit->began; });
       if (later == visits.begin()) continue;
-      if (const Visit* last = *std::prev(later); *last->began > moment - kHeld) inputs[port] = last;
+      if (const Visit* last = *std::prev(later); *last->began > moment - kMaxAge)
+        inputs[port] = last;
     }
     return inputs;
   }
 
-  /// Continues at each of the messages that a sent one was made of.
+  /// Continues at each of the messages from which another was derived.
   void follow(const Sending& sending, const std::map<std::string, const Visit*>& inputs,
               bool renews) {
     if (inputs.empty()) return;
@@ -281,7 +282,7 @@ class PathFinder {
         last = visit;
     for (const auto& [port, visit] : inputs) {
       Step step{sending.module, port, sending.port, false, 0, 0, 0, renews};
-      // A handler that is still running counts up to here.
+      // A handler that is still running counts up to the moment of sending.
       const auto running = visit->ended && *visit->ended <= sending.moment
                                ? module.busy_within(*visit->began, sending.moment)
                                : sending.moment - *visit->began;
@@ -297,11 +298,11 @@ class PathFinder {
   std::map<std::int64_t, std::vector<Sending>> sent_at_time_;
   std::vector<MessagePath> found_;
   std::vector<Step> back_;
-  std::size_t next_ = 0;  // steps behind the module that may have renewed the time
+  std::size_t may_renew_at_ = 0;  // number of later steps at which a module may renew the time
   bool is_critical_ = true;
   std::int64_t end_ = 0, age_ = 0;
-  std::size_t first_ = 0;  // path of this message
-  int looked_ = 0;
+  std::size_t first_ = 0;  // index of this message's first path
+  int visited_ = 0;
 };
 
 }  // namespace

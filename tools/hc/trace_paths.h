@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// From what modules tell of their messages (hc/contract/trace.h) to the paths of these through the
-// graph: what a message was derived from, and how long each step took. Pure.
+// Reconstructs the paths of messages through a graph from the traces of modules
+// (hc/contract/trace.h): what a message was derived from, and how long each step took. Pure.
 
 #include <cstdint>
 #include <map>
@@ -13,25 +13,24 @@
 
 namespace tool {
 
-/// What was reported, and by whom.
+/// The traces of modules.
 struct Traced {
-  std::map<std::string, std::vector<hc::TraceEvent>> events;  ///< by module, in their order
-  /// "MODULE.PORT", from and to; a URI is the world outside. Without any, a module that tells
-  /// nothing is not passed.
+  std::map<std::string, std::vector<hc::TraceEvent>> events;  ///< by module, in order
+  /// "MODULE.PORT" or a URI, from and to. Without links, paths end at modules without a trace.
   std::vector<std::pair<std::string, std::string>> links;
 };
 
-/// What a module had to do with a message, or with what it was derived from. [ns]
+/// The part of a path within one module. [ns]
 struct Step {
   std::string module;
-  std::string in;               ///< empty: the message begins here, by its time
+  std::string in;               ///< empty: the path begins here, at the message's time
   std::string out;              ///< empty: the path ends here
-  bool is_outside = false;      ///< the module reported nothing: all is `processing`
+  bool is_outside = false;      ///< the module has no trace: all time is `processing`
   std::int64_t link = 0;        ///< from the sender to the input, while the module was free
   std::int64_t waiting = 0;     ///< for the module, a partner message, or a timer that sends
-  std::int64_t processing = 0;  ///< in handlers; of the first step from the message's time on
+  std::int64_t processing = 0;  ///< in handlers; in the first step since the message's time
 
-  /// What it sent has a time of its own: it was derived from what the module handled last.
+  /// The message sent has a new time; it was derived from the messages handled last.
   bool renews_time = false;
 
   [[nodiscard]] std::int64_t sum() const { return link + waiting + processing; }
@@ -41,49 +40,47 @@ struct Step {
 /// The module of "MODULE.PORT".
 std::string module_of(const std::string& port);
 
-/// How a message came to be at the port that was asked for.
+/// A path of a message to the port in question.
 struct MessagePath {
-  std::vector<Step> steps;  ///< first the step where it began
-  std::int64_t age = 0;     ///< when taken by the input, or sent by the output [ns]
-  std::int64_t total =
-      0;  ///< the same from where the path begins; more, where a step renews the time
-  bool is_critical = false;  ///< of the inputs of each step, the one that came last
+  std::vector<Step> steps;   ///< from the origin
+  std::int64_t age = 0;      ///< of the message when taken by the input, or sent by the output [ns]
+  std::int64_t total = 0;    ///< time since the origin; more than `age` if a step renews the time
+  bool is_critical = false;  ///< each step was entered by the input that came last
 };
 
-/// The paths of all messages that were taken at an input, or sent by an output, "MODULE.PORT", as
-/// far as they are known whole. At most `kMostPaths` of one message.
+/// The complete paths of all messages taken at an input, or sent by an output, "MODULE.PORT"; at
+/// most `kMostPaths` for each message.
 ///
-/// An output's message is derived from the last messages of the same time that its module took
-/// before (R43); where there is none, it begins there. Only the module that sends what the port
-/// takes, or whose output the port is, may have renewed the time, as controllers do: then the path
-/// continues at the messages that it handled last within a second, of which the earliest sensed
-/// is critical. Where the port is an input, what its module does with the message after
-/// taking it is the last step, and no part of its age.
+/// A message is derived from the last messages of the same time that its module took before (R43);
+/// if there are none, the path begins there. Only the module that owns the output, or sends to the
+/// input, may have renewed the time, as controllers do: then the path continues at the messages
+/// that it handled last within 1 s, and the one with the earliest time is critical. For an input,
+/// the last step is its module's handling of the message, which is not part of its age.
 std::vector<MessagePath> find_paths(const Traced& traced, const std::string& port);
 inline constexpr std::size_t kMostPaths = 64;
 
-/// Of some durations. [ns]
+/// Statistics of durations. [ns]
 struct Spread {
   std::int64_t median = 0, p99 = 0;
 };
 Spread spread_of(std::vector<std::int64_t> durations);
 
-/// Messages that took the same way.
+/// Statistics of messages with the same path.
 struct PathSummary {
-  std::vector<Step> steps;  ///< their names
+  std::vector<Step> steps;  ///< only their names are valid
   struct Durations {
     Spread link, waiting, processing;
   };
-  std::vector<Durations> durations;        ///< of each step
-  Spread age, total;                       ///< as MessagePath
-  std::size_t messages = 0, critical = 0;  ///< and of how many it was the critical path
+  std::vector<Durations> durations;        ///< by step
+  Spread age, total;                       ///< as in MessagePath
+  std::size_t messages = 0, critical = 0;  ///< messages, and those with it as their critical path
 };
 
-/// Critical paths of the most messages first.
+/// Summaries, sorted by number of critical messages.
 std::vector<PathSummary> summarise(const std::vector<MessagePath>& paths);
 
-/// All that was reported as a trace of Chrome's JSON format, which Perfetto opens: a process for
-/// each module, a slice for each handler, an arrow for each message.
+/// All events in Chrome's JSON trace format, which Perfetto opens: a process for each module, a
+/// slice for each handler, an arrow for each message.
 std::string to_chrome_trace(const Traced& traced);
 
 }  // namespace tool

@@ -13,7 +13,7 @@ using What = TraceEvent::What;
 
 constexpr std::int64_t kSeen = 1000, kLater = 2000;  // times of messages
 
-/// Events of one module, of messages of one time; moments are counted from it on.
+/// Events of one module for messages of one time; moments are relative to it.
 class Events {
  public:
   explicit Events(std::vector<TraceEvent>& events, std::int64_t seen)
@@ -34,7 +34,7 @@ class Events {
   Events& sent(const std::string& port, int src, std::int64_t at) {
     return add(What::Sent, port, src, at);
   }
-  /// A handler of something else.
+  /// A timer handler.
   Events& busy(std::int64_t begin, std::int64_t end) {
     events_.push_back({What::Began, "", 0, 0, 0, seen_ + begin});
     events_.push_back({What::Ended, "", 0, 0, 0, seen_ + end});
@@ -55,7 +55,7 @@ struct Chain : ::testing::Test {
   Events of(const std::string& module, std::int64_t seen = kSeen) {
     return Events(traced.events[module], seen);
   }
-  /// An image that is taken, and the place in it that is sent on.
+  /// Takes an image and sends a position.
   void blob_follows_eye(std::int64_t seen = kSeen) {
     of("eye", seen).sent("left", 1, 100);
     of("blob", seen).took("image", 1, 130).began("image", 1, 135).sent("target", 2, 180);
@@ -92,7 +92,7 @@ TEST_F(Chain, StepsAddUpToTheAge) {
   EXPECT_EQ(words(path), "eye.left 0/0/100, blob: image → target 30/5/45, neck.command 3/21/6");
   EXPECT_EQ(path.age, 203);
   EXPECT_TRUE(path.is_critical);
-  EXPECT_EQ(sum(path) - 1 - 6, path.age);  // what came after it was taken
+  EXPECT_EQ(sum(path) - 1 - 6, path.age);  // without the time after its arrival
 }
 
 TEST_F(Chain, OfAnOutputEndsWithItsSending) {
@@ -211,7 +211,7 @@ TEST_F(Chain, WhatWasSentBeforeTheTraceBeganIsLeftOut) {
 }
 
 TEST_F(Chain, BranchesAreBounded) {
-  // Each of eight modules has two inputs from the one before it: 256 ways.
+  // Each of eight modules has two inputs from the one before it: 256 paths.
   of("m0").sent("a", 1, 0).sent("b", 2, 0);
   for (int i = 1; i <= 8; ++i) {
     auto events = of("m" + std::to_string(i));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The verbs: each adds its subcommand, with what is to be done, to the command line.
+// The verbs of hc: each function adds a subcommand with its callback.
 
 #include <cstdint>
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace tool {
 
-/// For options that are whole numbers: CLI11 takes -1 for the largest, and names ranges of 300
-/// digits.
+/// For options that are whole numbers: CLI11 would read -1 as the largest number, and print ranges
+/// of 300 digits.
 inline CLI::Validator whole_number() {
   return {[](const std::string& text) {
             return text.find_first_not_of("0123456789") == std::string::npos
@@ -28,10 +28,11 @@ inline void add_limit(CLI::App& verb, std::uint64_t& limit) {
   verb.add_option("--limit", limit, "maximum message size [byte]")->check(whole_number());
 }
 inline void add_count(CLI::App& verb, std::uint64_t& count) {
-  verb.add_option("--count", count, "end after so many messages, 0: never")->check(whole_number());
+  verb.add_option("--count", count, "end after this many messages; 0: never")
+      ->check(whole_number());
 }
 inline void add_of(CLI::App& verb, std::string& of) {
-  verb.add_option("--of", of, "name of the running graph, where there are several (hc ps)");
+  verb.add_option("--of", of, "name of the running graph, if there are several (hc ps)");
 }
 inline void add_source(CLI::App& verb, std::string& uri, std::string& of) {
   verb.add_option("source", uri, "URI, file, or MODULE.PORT of a running graph")

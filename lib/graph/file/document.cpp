@@ -7,8 +7,8 @@
 
 #include <hc/base/json_string.h>
 
-// toml++ before 3.4 asserts, or assumes, what hostile text can break (a line end in a table's
-// name), and reports the error right behind it; so it is to go on.
+// toml++ before 3.4 asserts conditions that hostile text violates (a line end in a table's name),
+// although it reports the same error next; so its assertions are disabled.
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
 #define TOML_ASSERT(condition) static_cast<void>(0)
@@ -18,9 +18,8 @@
 namespace hc::internal {
 namespace {
 
-/// toml++ up to 3.4 runs into undefined behaviour at letters outside ASCII in odd places, so it
-/// gets none to see: each of their bytes is written as ~ and two digits, and original() brings it
-/// back.
+/// toml++ up to 3.4 has undefined behaviour for misplaced non-ASCII characters. This encodes each
+/// of their bytes as ~ and two hexadecimal digits; original() decodes them.
 std::string ascii_only(std::string_view text) {
   constexpr std::string_view kHex = "0123456789abcdef";
   std::string result;
@@ -35,7 +34,7 @@ std::string ascii_only(std::string_view text) {
   return result;
 }
 
-/// Where a byte is no UTF-8; npos: nowhere.
+/// Position of the first byte that is not UTF-8; npos: none.
 std::size_t find_no_utf8(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     std::size_t length = utf8_length(text.substr(at));
@@ -45,8 +44,7 @@ std::size_t find_no_utf8(std::string_view text) {
   return std::string_view::npos;
 }
 
-/// Where ~ is written as an escape, \u007e, which original() would take for one of ours; npos:
-/// nowhere.
+/// Position of an escaped ~ (\u007e), which original() would decode by mistake; npos: none.
 std::size_t find_escaped_tilde(std::string_view text) {
   for (std::size_t at = text.find('\\'); at != std::string_view::npos;
        at = text.find('\\', at + 1)) {
@@ -59,16 +57,16 @@ std::size_t find_escaped_tilde(std::string_view text) {
   return std::string_view::npos;
 }
 
-/// Where the string that opens at `at` has ended; the end of `text` where it does not.
+/// The position behind the string that opens at `at`; the end of `text` if it is not closed.
 std::size_t skip_string(std::string_view text, std::size_t at) {
   const char quote = text[at];
   const std::string closing(text.substr(at, 3) == std::string(3, quote) ? 3 : 1, quote);
   for (at += closing.size(); at < text.size(); ++at) {
     if (quote == '"' && text[at] == '\\') {
-      ++at;  // what is escaped
+      ++at;
     } else if (text.substr(at).starts_with(closing)) {
       at += closing.size();
-      // Up to two quotes may stand before the three that close.
+      // Up to two quotes may precede the closing three.
       for (int more = 0; closing.size() == 3 && more < 2 && at < text.size() && text[at] == quote;
            ++more)
         ++at;
@@ -80,9 +78,9 @@ std::size_t skip_string(std::string_view text, std::size_t at) {
   return text.size();
 }
 
-/// Where a key has too many parts, or brackets stand in too many others; npos: nowhere. Each such
-/// level is a call within a call of toml++, which so runs out of stack. What is no TOML may be read
-/// wrongly here, but only behind where toml++ stops.
+/// Position where a key has too many parts, or brackets are nested too deeply; npos: none. toml++
+/// recurses once per level, so the depth is limited first. Invalid TOML may be misread here, but
+/// only beyond the point where toml++ stops.
 std::size_t find_too_deep(std::string_view text) {
   int dots = 0, brackets = 0;
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -110,8 +108,7 @@ std::string original(std::string_view text) {
   return result;
 }
 
-/// What toml++ says of the commonest mistakes explains little, and what replaces a letter
-/// outside ASCII is not what somebody wrote.
+/// Replaces toml++'s messages for the commonest mistakes and for encoded characters.
 std::string in_plain_words(std::string_view description, std::string_view toml) {
   auto says = [&](std::string_view words) {
     return description.find(words) != std::string_view::npos;
@@ -146,7 +143,7 @@ Node convert(const toml::node& from, int file) {
   }
   if (const toml::table* table = from.as_table()) {
     node.value = Node::Table();
-    // toml++ sorts its keys; people expect things in the order in which they wrote them.
+    // toml++ sorts keys; restore the order of the text.
     std::vector<std::tuple<toml::source_index, toml::source_index, Node>> entries;
     for (const auto& [key, each] : *table) {
       const auto& begin = each.source().begin;
@@ -161,14 +158,14 @@ Node convert(const toml::node& from, int file) {
   return node;
 }
 
-/// What stands for `${NAME}` or `${NAME:-DEFAULT}`. @param variable  NAME or NAME:-DEFAULT.
+/// The value of `${NAME}` or `${NAME:-DEFAULT}`. @param variable  NAME or NAME:-DEFAULT.
 Result<std::string> value_of(std::string variable, const Environment& environment) {
   std::optional<std::string> default_value;
   if (auto split = variable.find(":-"); split != std::string::npos) {
     default_value = variable.substr(split + 2);
     variable.resize(split);
   }
-  if (variable.empty()) return Error{Code::Invalid, "no name of a variable in ${}"};
+  if (variable.empty()) return Error{Code::Invalid, "${} names no variable"};
   if (default_value && default_value->find("${") != std::string::npos)
     return Error{Code::Invalid, "variables do not nest: the default of ${" + variable +
                                     "} has a \"${\"; name one variable, or write its value"};
@@ -179,7 +176,7 @@ Result<std::string> value_of(std::string variable, const Environment& environmen
   return value != nullptr && *value != '\0' ? value : default_value.value_or("");
 }
 
-/// Replaces the variables in all strings of a value. One with a problem is Node::Wrong then.
+/// Replaces variables in all strings of a value. A string with a problem becomes Node::Wrong.
 void expand(Node& node, const Environment& environment, Problems& problems) {
   for (Node& each : node.nodes) expand(each, environment, problems);
   if (node.list() != nullptr)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A TOML text as a tree of values, each with its place. Any text is read or refused: what the TOML
-// library cannot handle never reaches it. Pure. Internal to graph.
+// Parses TOML into a tree of values with their places. Safe for any input: text that the TOML
+// library cannot handle is refused before. Pure. Internal to graph.
 
 #include <cstdint>
 #include <optional>
@@ -16,17 +16,17 @@ namespace hc::internal {
 
 /// A value of a document.
 struct Node {
-  struct List {};   ///< its values are in `nodes`
-  struct Table {};  ///< the same, each with its key, in the order of the text
-  struct Wrong {};  ///< its problem has been added
+  struct List {};   ///< see `nodes`
+  struct Table {};  ///< see `nodes`, in the order of the text
+  struct Wrong {};  ///< its problem has been reported
 
-  /// Dates and times, which no graph has, are monostate.
+  /// monostate: a date or time, which graphs do not use.
   std::variant<std::monostate, std::string, std::int64_t, double, bool, List, Table, Wrong> value;
   std::vector<Node> nodes;
   std::string key;  ///< in its table
   Place place;
 
-  /// The value of that type; null where it is of another.
+  /// The value, if it has this type; otherwise null.
   template <typename T>
   [[nodiscard]] const T* as() const {
     return std::get_if<T>(&value);
@@ -34,14 +34,14 @@ struct Node {
   [[nodiscard]] const std::vector<Node>* list() const { return as<List>() ? &nodes : nullptr; }
   [[nodiscard]] const std::vector<Node>* table() const { return as<Table>() ? &nodes : nullptr; }
 
-  /// The value of a key; null where this is no table, or has no such key.
+  /// The value of a key; null if this is not a table or lacks the key.
   [[nodiscard]] const Node* find(std::string_view name) const;
 };
 
-/// Reads a text, and replaces the variables of the environment in its strings.
+/// Parses a text and replaces environment variables in its strings.
 ///
-/// @param file  its number in `problems`.
-/// @returns  its table; nothing where it is not TOML, too long or too deep.
+/// @param file  its index in `problems`.
+/// @returns  the root table; nullopt if it is not TOML, too long or too deeply nested.
 std::optional<Node> read_document(std::string_view text, int file, const Environment& environment,
                                   Problems& problems);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Reads the tables of a document: a table's reader is a list of its keys, each with what takes its
-// value. Internal to graph.
+// Reads tables of a document: each key has a function that takes its value. Internal to graph.
 
 #include <array>
 #include <cstdint>
@@ -18,7 +17,7 @@ namespace hc::internal {
 /// `"NAME"`
 std::string quoted_name(std::string_view name);
 
-/// MODULE.PORT, or a URI where it may be one. Errors: Invalid.
+/// Parses MODULE.PORT, or a URI if allowed. Errors: Invalid.
 Result<GraphPort> parse_port(const std::string& text, bool may_be_uri);
 
 class Fields {
@@ -38,33 +37,33 @@ class Fields {
     problems_.add(node.place, std::move(what), values...);
   }
 
-  /// Hands the values of a table to their keys. Problems: it is no table, has another key, or lacks
-  /// one that is required.
+  /// Passes the values of a table to its keys. Problems: not a table, an unknown key, or a missing
+  /// required key.
   ///
-  /// @param where  for messages: "in module camera".
+  /// @param where  for messages, such as "in module camera".
   void read(const Node& table, const std::string& where, const std::vector<Key>& keys) const;
 
-  /// Problems: a name that is not snake_case. @param what  "module".
+  /// Problems: a name that is not snake_case. @param what  such as "module".
   bool check_name(const Node& node, const std::string& what, std::string_view name) const;
 
-  // What takes a value of that type; of another type it is a problem.
+  // Functions that take a value of one type and report any other as a problem.
   [[nodiscard]] Take text(Lined<std::string>& to) const;
   [[nodiscard]] Take text(std::optional<Lined<std::string>>& to) const;
-  /// The same, which may be empty.
+  /// Like text(), but may be empty.
   [[nodiscard]] Take any_text(Lined<std::string>& to) const;
   [[nodiscard]] Take texts(std::vector<Lined<std::string>>& to) const;
   [[nodiscard]] Take integer(Lined<std::int64_t>& to, std::int64_t min, std::int64_t max) const;
   [[nodiscard]] Take flag(bool& to) const;
   [[nodiscard]] Take numbers(std::array<double, 3>& to) const;
-  /// One of some words, by its place among them.
+  /// One of some words; passes its index.
   [[nodiscard]] Take choice(std::vector<std::string> words,
                             std::function<void(const Node&, std::size_t)> take) const;
-  /// A table with names of one's own.
+  /// A table with arbitrary keys.
   [[nodiscard]] Take each(Take take) const;
-  /// One value, or a list of them.
+  /// A value or a list of values.
   [[nodiscard]] static Take one_or_more(Take take);
 
-  /// A string, number or boolean as text; nothing where it is something else.
+  /// A string, number or boolean as text; nullopt for other types.
   static std::optional<std::string> scalar(const Node& node);
 
  private:

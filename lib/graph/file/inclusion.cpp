@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A graph within a graph: its names get the name of its table as a prefix.
+// Inclusion of a graph; the name of its table becomes a prefix of its names.
 #include <algorithm>
 #include <iterator>
 #include <set>
@@ -63,7 +63,7 @@ void append(Graph& graph, Graph included, Problems& problems) {
       return each.name == mode.name && each.number == mode.number;
     });
   });
-  // What the file around says of a host counts.
+  // The including file's declaration of a host overrides the included one.
   std::erase_if(included.hosts, [&](const GraphHost& host) {
     return std::any_of(graph.hosts.begin(), graph.hosts.end(), [&](const GraphHost& each) {
       return each.name == host.name && problems.file(each.place.file) == graph.file;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Graphs within graphs, and links with the world outside.
+// Included graphs, and links to URIs.
 #include <gtest/gtest.h>
 
 #include <graph/plan/planning_test.h>
@@ -186,7 +186,7 @@ TEST(Outside, ErrorsNameTheLineAndWhatWouldBeRight) {
   EXPECT_EQ(with("filter.out", "tcp:1?rate=2", "rate = 3\n"),
             "g.toml:5: rate is also given in tcp:1?rate=2");
   EXPECT_EQ(with("tcp-listen:1", "filter.in", link_text("filter.out", "tcp-listen:1")),
-            "g.toml:5: another link listens at tcp-listen:1 too");
+            "g.toml:5: another link also listens at tcp-listen:1");
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ class ModuleReader {
       fields_.add(value, R"("{}" must be an address, an input or "all")", value.key);
   }
 
-  /// The links of an input, or of an output to the outside, in the place of those that it had.
+  /// Replaces the links of an input, or those of an output to URIs.
   void read_links(const Node& port, bool to_input) {
     if (!fields_.check_name(port, "port", port.key)) return;
     const GraphPort ours{module_.name, port.key, {}};
@@ -122,7 +122,7 @@ class ModuleReader {
                   is_scale ? "number" : "whole number");
   }
 
-  /// Problems: the first option that is wrong, which is empty then.
+  /// Problems: the first wrong option, whose value is cleared.
   void check_policy(GraphLink& link) {
     Uri policy;
     for (const auto key : kPolicyKeys) {

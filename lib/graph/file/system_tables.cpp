@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What modules share: the tables [hosts.NAME], [modes], [workspace] and [frames.NAME].
+// The tables [hosts.NAME], [modes], [workspace] and [frames.NAME].
 #include <cmath>
 #include <numbers>
 
@@ -19,7 +19,7 @@ std::array<double, 4> quaternion_of(const Angles& degrees) {
   const double cz = std::cos(half(2)), sz = std::sin(half(2));
   std::array<double, 4> quaternion = {cz * cy * sx - sz * sy * cx, cz * sy * cx + sz * cy * sx,
                                       sz * cy * cx - cz * sy * sx, cz * cy * cx + sz * sy * sx};
-  // Of right angles it is exact: 0.5 and not 0.5000000000000001.
+  // Exact for right angles: 0.5, not 0.5000000000000001.
   for (double& part : quaternion) part = std::round(part * 1e15) / 1e15;
   return quaternion;
 }
@@ -63,7 +63,7 @@ void read_host(const Fields& fields, const Node& node, Graph& graph) {
               {{"ssh", fields.texts(host.ssh), true},
                {"hc", fields.text(host.program)},
                {"address", fields.text(host.address)}});
-  // What ssh would take for an option is no destination.
+  // The destination must not look like an option of ssh.
   const Node* ssh = node.table() == nullptr ? nullptr : node.find("ssh");
   if (ssh != nullptr &&
       (host.ssh.empty() || host.ssh.back().value.empty() || host.ssh.back().value.starts_with("-")))
@@ -89,7 +89,7 @@ Fields::Take read_modes(const Fields& fields, Graph& graph) {
 
 Fields::Take read_workspace(const Fields& fields, Graph& graph) {
   return [&](const Node& node) {
-    auto& workspace = graph.workspaces.emplace_back();  // also one that is wrong
+    auto& workspace = graph.workspaces.emplace_back();  // empty if wrong
     workspace.place = node.place;
     fields.read(node, "in the workspace", {{"module", fields.text(workspace), true}});
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frames of a graph: a tree, and the text of it that modules get.
+// Checks the tree of frames of a graph, and writes it as text for modules.
 #include <algorithm>
 #include <sstream>
 
@@ -9,13 +9,13 @@
 namespace hc::internal {
 namespace {
 
-constexpr const char* kFrames = "frames";  // the parameter, and the input
+constexpr const char* kFrames = "frames";  // parameter and input
 
-/// Of links to an input `frames`: who is slow must not keep from moving what moves. So many poses
-/// are four seconds of a source of 250 Hz.
+/// `keep` of links to an input `frames`, so that a slow reader does not block the source: 4 s of
+/// poses at 250 Hz.
 constexpr const char* kKeep = "1024";
 
-/// Metric frames that have a number. Source: spec/mtp-1.md, R44
+/// Numbers of metric frames. Source: spec/mtp-1.md, R44
 const std::map<std::string, std::int64_t> kStandard = {
     {"world", 1},     {"robot", 2},         {"head", 3},       {"left_eye", 4},
     {"right_eye", 5}, {"cyclopean_eye", 6}, {"supervisor", 14}};
@@ -56,7 +56,7 @@ class Frames {
     }
   }
 
-  /// A parent that is no key is the root; there is one.
+  /// A parent that is not declared is the root; there must be one root.
   void check_tree() {
     std::string root;
     std::vector<std::string> known;
@@ -71,7 +71,7 @@ class Frames {
                              suggest(planning_, parent, known), root);
       known.pop_back();
     }
-    std::map<const GraphFrame*, const GraphFrame*> met;  // each on the way up from which first
+    std::map<const GraphFrame*, const GraphFrame*> met;  // by ancestor: the frame it was met from
     for (const auto& frame : graph_.frames) {
       const GraphFrame* at = &frame;
       while (at != nullptr && met.emplace(at, &frame).second) at = parent_of(*at);
@@ -86,7 +86,7 @@ class Frames {
     }
   }
 
-  /// Null where it is the root.
+  /// Null if it is the root.
   [[nodiscard]] const GraphFrame* parent_of(const GraphFrame& frame) const {
     auto parent = by_name_.find(frame.parent.value);
     return parent == by_name_.end() ? nullptr : parent->second;
@@ -104,7 +104,7 @@ class Frames {
                              mover.value.text(), in_words(output->types));
   }
 
-  /// Of frames that one output moves, its messages tell which is meant by their numbers.
+  /// If an output moves several frames, its messages identify them by number.
   void check_numbers_of_moved() {
     std::map<std::string, const GraphFrame*> unnumbered;
     for (const auto& frame : graph_.frames) {
@@ -124,14 +124,14 @@ class Frames {
     return frame == by_name_.end() ? 0 : frame->second->coord.value;
   }
 
-  /// The names of frames as the modules of a file see them, by those that they have here. What that
-  /// file declares has no prefix; nor has a standard frame of another, if it is the only one in
-  /// what the file includes, or, where none is there, in all files.
+  /// The names of frames as the modules of a file see them, by full name. Without prefix are the
+  /// frames declared in that file, and a standard frame if it is the only one of its name in the
+  /// files included there, or, if these have none, in all files.
   [[nodiscard]] std::map<std::string, std::string> names_for(int file,
                                                              const std::string& prefix) const {
     auto local = [](const GraphFrame& frame) { return frame.name.substr(frame.prefix.size()); };
     auto is_inside = [&](const GraphFrame& frame) { return frame.prefix.starts_with(prefix); };
-    std::map<std::string, int> inside, all;  // uses of a name without prefix
+    std::map<std::string, int> inside, all;  // frames by name without prefix
     for (const auto& frame : graph_.frames) {
       ++all[local(frame)];
       if (is_inside(frame)) ++inside[local(frame)];
@@ -147,7 +147,7 @@ class Frames {
     return names;
   }
 
-  /// As G31 has it.
+  /// As in G31.
   [[nodiscard]] std::string text_for(int file, const std::string& prefix) const {
     const auto names = names_for(file, prefix);
     auto name_of = [&](const std::string& name) {
@@ -184,7 +184,7 @@ bool takes_frames(const Planning& planning, const std::string& module) {
 }
 
 void link_frames(Planning& planning) {
-  std::vector<Lined<GraphPort>> movers;  // each once, in the order of the file
+  std::vector<Lined<GraphPort>> movers;  // unique, in the order of the file
   for (const auto& frame : planning.graph.frames) {
     if (!frame.moved_by) continue;
     const GraphPort& port = frame.moved_by->value;

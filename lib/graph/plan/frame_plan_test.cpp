@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames, from the file to the modules that ask for them.
+// Frames, from the file to the modules that take them.
 #include <gtest/gtest.h>
 
 #include <graph/plan/planning_test.h>
@@ -144,7 +144,7 @@ TEST(Frames, AnglesAreRollPitchAndYawAboutAxesThatStandStill) {
     return graph.frames.at(0).rotation;
   };
   constexpr double kHalf = 0.70710678118654752;  // sin(90° / 2)
-  constexpr double kTolerance = 1e-15;           // some roundings of numbers below 1
+  constexpr double kTolerance = 1e-15;           // rounding of numbers below 1
   auto expect = [&](const std::string& angles, const std::array<double, 4>& wanted) {
     for (std::size_t i = 0; i < 4; ++i)
       EXPECT_NEAR(rotation(angles)[i], wanted[i], kTolerance) << angles << " " << i;

@@ -24,7 +24,7 @@ std::string far(const std::string& name, const std::string& host, const std::str
          (from.empty() ? "" : "inputs.in = { from = \"" + from + ".out\"" + more + " }\n");
 }
 
-/// The same, with ports from 7001 on.
+/// plan() with TCP ports from 7001.
 Result<Plan> plan_hosts(const std::string& text, const HostPlaces& places = kPlaces) {
   auto number = std::make_shared<std::uint16_t>(7000);
   auto hold = [number](const std::string&, bool) {
@@ -50,7 +50,7 @@ TEST(HostsOfAGraph, HaveLinksOverTlsBetweenThem) {
   EXPECT_EQ(links[0].reader_uri, "tls:10.0.0.2:7001?wait=60&key=/proc/self/fd/3&peer=F1");
   EXPECT_TRUE(links[1].reader_uri.starts_with("shm:")) << links[1].reader_uri;
   EXPECT_EQ(links[2].reader_uri, "tls:10.0.0.2:7002?wait=60&key=/proc/self/fd/3&peer=F1");
-  // Of the host of hc run each other one knows where it is.
+  // The host of hc run has an address for each other host.
   EXPECT_EQ(links[3].sender_uri,
             "tls-listen:0.0.0.0:7003?readers=1&stay=1&key=/proc/self/fd/3&peer=F1");
   EXPECT_EQ(links[3].reader_uri, "tls:10.0.0.1:7003?wait=60&key=/proc/self/fd/3&peer=F0");
@@ -65,11 +65,11 @@ TEST(HostsOfAGraph, MayHaveAddressesOfVersion6) {
 TEST(HostsOfAGraph, WithoutAnAddressHaveNoLinks) {
   const HostPlaces nowhere = {{"", {"", "", "F0"}}, {"robot", {"", "", "F1"}}};
   EXPECT_EQ(plan_hosts(far("a", "robot") + far("b", "", "a"), nowhere).error().detail,
-            "g.toml:13: host robot has no address that links can use: say address = \"…\" in its "
+            "g.toml:13: host robot has no address that links can use: set address = \"…\" in its "
             "table");
   EXPECT_EQ(plan_hosts(far("a", "") + far("b", "robot", "a"), nowhere).error().detail,
-            "g.toml:13: host robot has no address of this one that links can use: connect to it by "
-            "another, not a link-local one");
+            "g.toml:13: host robot has no address of this host that links can use: connect to it "
+            "by an address that is not link-local");
 }
 
 TEST(HostsOfAGraph, HavePlainLinksWhereTheFileSaysSo) {
@@ -97,7 +97,7 @@ TEST(HostsOfAGraph, ShareATopicOfDdsWhereTheFileSaysSo) {
   EXPECT_TRUE(links[2].reader_uri.starts_with("shm:")) << links[2].reader_uri;
   EXPECT_TRUE(links[3].reader_uri.starts_with("tls:")) << links[3].reader_uri;
   EXPECT_EQ(values_of(planned.modules[0], "--out").size(), 3U);
-  // One reader that is to get all has its writer wait; and the host of hc run may have several
+  // One reader with keep = "all" makes the writer wait; the host of hc run may have several
   // addresses.
   planned = must(plan_hosts(
       far("a", "") + far("b", "lab", "a", dropped) + far("c", "robot", "a", dds), places));
@@ -109,7 +109,7 @@ TEST(HostsOfAGraph, HaveAddressesOfVersion4ForDds) {
   const auto refused = plan_hosts(far("a", "lab") + far("b", "robot", "a", ", via = \"dds\""));
   EXPECT_EQ(
       refused.error().detail,
-      "g.toml:14: dds needs the IPv4 address of host lab, not fe80::3: say address = \"…\" in "
+      "g.toml:14: dds needs the IPv4 address of host lab, not fe80::3: set address = \"…\" in "
       "its table");
   EXPECT_EQ(wrong(kHosts + "[modules.java]\nhost = \"robot\"\n" +
                   far("b", "", "java", ", via = \"dds\"")),
@@ -126,12 +126,12 @@ TEST(HostsOfAGraph, AreGivenToAllModulesOfAnIncludedGraph) {
   EXPECT_EQ(planned.modules[0].host, "robot");
   EXPECT_EQ(planned.modules[1].host, "lab");
   EXPECT_EQ(planned.modules[2].host, "lab");
-  // An empty one is the host of hc run.
+  // An empty host is that of hc run.
   planned = must(plan(outer + "[graphs.head.modules.a]\nhost = \"\"\n",
                       {{"head.toml", far("a", "") + far("b", "lab") + far("c", "")}}, nullptr, {},
                       kPlaces));
   EXPECT_EQ(planned.modules[0].host, "");
-  // What the file around says of a host counts.
+  // The including file's declaration of a host overrides the included one.
   const std::string inner = "[hosts.robot]\nssh = \"other\"\n";
   EXPECT_EQ(wrong(outer, {{"head.toml", inner + far("a", "robot") + far("c", "")}}), "");
   EXPECT_EQ(wrong("[graphs.one]\nfile = \"a\"\n[graphs.two]\nfile = \"a\"\n",
@@ -161,7 +161,7 @@ TEST(HostsOfAGraph, AreChecked) {
       "authenticated");
 }
 
-/// A camera on the robot, and who reads it.
+/// A camera on the robot, and its reader.
 std::string seen(const std::string& policy, const std::string& port = "any",
                  const std::string& host = "", const std::string& camera = "camera") {
   return "[modules.camera]\nhost = \"robot\"\nprogram = \"" + camera +
@@ -176,7 +176,7 @@ TEST(HostsOfAGraph, HaveImagesConvertedByTheirSender) {
             "tls-listen:0.0.0.0:7001?readers=1&stay=1&key=/proc/self/fd/3&peer=F0&keep=latest&as="
             "jpeg&quality=80&scale=0.5");
   EXPECT_EQ(planned.links[0].reader_uri, "tls:10.0.0.2:7001?wait=60&key=/proc/self/fd/3&peer=F1");
-  // Also on one host, by memory that others do not share.
+  // On one host too, over shared memory with its own sending end.
   planned = must(plan_hosts(seen(policy, "any", "robot")));
   EXPECT_EQ(
       planned.links[0].sender_uri,
@@ -186,8 +186,7 @@ TEST(HostsOfAGraph, HaveImagesConvertedByTheirSender) {
 TEST(HostsOfAGraph, HaveNothingConvertedThatCannotBe) {
   EXPECT_EQ(wrong(kHosts + seen("scale = 1.5")),
             "g.toml:13: option scale is a number from 0.01 to 1");
-  EXPECT_EQ(wrong(kHosts + seen("quality = 80")),
-            "g.toml:13: option quality wants as=jpeg beside it");
+  EXPECT_EQ(wrong(kHosts + seen("quality = 80")), "g.toml:13: option quality needs as=jpeg");
   EXPECT_EQ(wrong(kHosts + seen("as = \"gif\"")),
             "g.toml:13: option as is text, binary, zstd or jpeg");
   EXPECT_EQ(wrong(kHosts + seen("as = 1.5")),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be wrong with a link, and with links together.
+// Checks of single links, and of links together.
 #include <algorithm>
 #include <map>
 
@@ -13,12 +13,12 @@
 namespace hc::internal {
 namespace {
 
-/// A link's check; it wants to be asked once for each, in their order.
+/// Checks links one by one; call check() once for each, in their order.
 class LinkCheck {
  public:
   explicit LinkCheck(Planning& planning) : planning_(planning), problems_(planning.problems) {}
 
-  /// Whether more may be said of it.
+  /// Returns whether the link is valid.
   bool check(const GraphLink& link) {
     if (!linked_.insert(link.from.text() + " " + link.to.text()).second) {
       problems_.add(link.place, "duplicate link from {} to {}", link.from.text(), link.to.text());
@@ -53,7 +53,7 @@ class LinkCheck {
   }
 
  private:
-  /// The schemes that links to and from outside may have.
+  /// The schemes of links to and from URIs.
   static std::vector<std::string> schemes_of(const Description& description) {
     std::vector<std::string> schemes = {"file", "tcp", "tcp-listen", "unix", "unix-listen"};
     if (description.transports) schemes = *description.transports;
@@ -84,7 +84,7 @@ class LinkCheck {
                   link.to.text(), supported(from), supported(to), takes);
   }
 
-  /// Null where there is none, or where nobody knows since the module is not described.
+  /// The port; null for a URI, a missing port, or a module that is not described.
   const PortDescription* end(const GraphLink& link, const GraphPort& port, bool is_input) {
     if (!port.uri.empty()) {
       check_uri(link, port, is_input);
@@ -93,13 +93,13 @@ class LinkCheck {
     return find_port(planning_, link.place, port, is_input);
   }
 
-  /// The world outside; its other end is a module.
+  /// Checks an end outside the graph; the other end is a module.
   void check_uri(const GraphLink& link, const GraphPort& outside, bool is_input) {
     const Uri uri = *parse_uri(outside.uri);
-    // In shared memory, it is the writer whose name others find.
+    // Of shared memory, the writer owns the name.
     const bool is_writer = is_input && uri.scheme == "shm";
     if ((is_writer || uri.scheme.ends_with("-listen")) && !may_listen(uri))
-      problems_.add(link.place, "another link {} {} too", is_writer ? "writes to" : "listens at",
+      problems_.add(link.place, "another link also {} {}", is_writer ? "writes to" : "listens at",
                     outside.uri);
     for (const auto& [key, value] : link.policy)
       if (!uri.option(key, "").empty() && !value.value.empty())
@@ -112,18 +112,17 @@ class LinkCheck {
       problems_.add(link.place, "module {} does not support {}: links{}", module, uri.scheme,
                     suggest(planning_, uri.scheme, known));
     else if (auto checked = is_input ? check_outlet(uri) : check_source(uri);
-             !checked && is_ours(uri))
+             !checked && is_known_here(uri))
       problems_.add(link.place, outside.uri + ": " + checked.error().detail);
   }
 
-  /// The same of what a module's output can have.
   static Status check_outlet(Uri uri) {
     auto conversion = take_conversion(uri);
     return conversion ? check_sink(uri) : conversion.error();
   }
 
-  /// Whether nobody else listens there. A TCP port alone is that of the loopback address, and
-  /// 0.0.0.0 takes the port of all.
+  /// Whether no other link listens there. A TCP port without a host is on the loopback address, and
+  /// 0.0.0.0 takes the port of all addresses.
   bool may_listen(const Uri& uri) {
     if (uri.scheme != "tcp-listen") return listening_.insert(uri.scheme + ":" + uri.rest).second;
     const auto colon = uri.rest.rfind(':');
@@ -138,14 +137,14 @@ class LinkCheck {
     return is_free;
   }
 
-  /// A program in another language may know transports that we do not.
-  static bool is_ours(const Uri& uri) {
+  /// A program in another language may support transports unknown to this one.
+  static bool is_known_here(const Uri& uri) {
     const auto schemes = transports();
     return std::find(schemes.begin(), schemes.end(), uri.scheme) != schemes.end();
   }
 
-  /// The policy of a link is its sender's affair but for `memory`, of shared memory its reader's;
-  /// of a topic of DDS each end has its own.
+  /// The sender sets the policy of a link, except over shared memory, where the reader sets `keep`,
+  /// `rate` and `burst`. Each end of a DDS topic has its own.
   void check_outer_policy(const GraphLink& link) {
     const bool is_input = !link.from.uri.empty();
     const std::string& uri = (is_input ? link.from : link.to).uri;
@@ -162,7 +161,8 @@ class LinkCheck {
     }
   }
 
-  /// What the sender is to make of messages, and whether it can and the reader takes it.
+  /// Checks that the sender can convert messages as requested, and that the reader takes the
+  /// result.
   void check_conversion(const GraphLink& link, const std::vector<PortType>& given,
                         const std::vector<PortType>& taken) {
     Uri options;
@@ -179,7 +179,7 @@ class LinkCheck {
       return problems_.add(first->place, kNeedsControl, link.from.module,
                            options.options.front().first);
     const auto conversion = take_conversion(options);
-    if (!conversion) return;  // it has been reported
+    if (!conversion) return;  // already reported
     if (const auto what = hindrance(*conversion, given, taken); !what.empty())
       problems_.add(first->place, link.from.text() + ": " + what);
   }
@@ -199,12 +199,12 @@ class LinkCheck {
   std::map<std::string, std::set<std::string>> tcp_hosts_;  // by port, where a link listens
 };
 
-/// The end of a way, from where it was in `module` before.
-std::string loop_in_words(const std::vector<const GraphLink*>& way, const std::string& module) {
+/// The loop at the end of a path that returns to `module`.
+std::string loop_in_words(const std::vector<const GraphLink*>& path, const std::string& module) {
   std::string text = module;
-  auto begin = std::find_if(way.begin(), way.end(),
+  auto begin = std::find_if(path.begin(), path.end(),
                             [&](const GraphLink* link) { return link->from.module == module; });
-  for (auto link = begin; link != way.end(); ++link) text += " -> " + (*link)->to.module;
+  for (auto link = begin; link != path.end(); ++link) text += " -> " + (*link)->to.module;
   return text;
 }
 
@@ -215,15 +215,14 @@ void check_links(Planning& planning) {
   std::erase_if(planning.graph.links, [&](const auto& link) { return !check.check(link); });
 }
 
-/// A message that comes back to where it came from, and makes another, does so as fast as the
-/// machine can, unless a link on its way has a rate. Behind a router it goes where its address
-/// leads, which is not known here.
+/// A loop without a rate runs as fast as the machine can. Links behind a router are ignored, since
+/// their messages' addresses are not known here.
 void check_loops(Planning& planning) {
   std::map<std::string, std::vector<const GraphLink*>> leaving;
   for (const auto& link : planning.graph.links) {
     const Description* from = planning.description_of(link.from.module);
     const Description* to = planning.description_of(link.to.module);
-    // One at a port that does not exist has been reported.
+    // Missing ports have been reported.
     if ((from != nullptr && find_named(from->outputs, link.from.port) == nullptr) ||
         (to != nullptr && find_input(*to, link.to.port) == nullptr))
       continue;
@@ -234,27 +233,27 @@ void check_loops(Planning& planning) {
       leaving[link.from.module].push_back(&link);
   }
   std::set<std::string> begun, done;
-  std::vector<const GraphLink*> way;
+  std::vector<const GraphLink*> path;
   // Depth first; kMaxModules bounds the depth.
   const std::function<void(const std::string&)> visit = [&](const std::string& module) {
     if (done.contains(module)) return;
     if (!begun.insert(module).second)
-      return planning.problems.add(way.back()->place,
+      return planning.problems.add(path.back()->place,
                                    "loop without a rate: {}; give one of its links a rate, for "
                                    "example rate = 30",
-                                   loop_in_words(way, module));
+                                   loop_in_words(path, module));
     for (const auto* link : leaving[module]) {
-      way.push_back(link);
+      path.push_back(link);
       visit(link->to.module);
-      way.pop_back();
+      path.pop_back();
     }
     done.insert(module);
   };
   for (const auto& module : planning.graph.modules) visit(module.name);
 }
 
-/// Of inputs whose messages are taken together, all are linked or none. Commands link one after the
-/// other, so this is asked of a graph that does not run yet.
+/// Synchronised inputs need links at all of them or at none. Not checked for a running graph, in
+/// which commands add links one by one.
 void check_together(Planning& planning) {
   if (planning.before != nullptr) return;
   std::set<std::string> linked;
@@ -274,10 +273,10 @@ void check_together(Planning& planning) {
   }
 }
 
-/// Two writers to an actor work against each other, unless one at a time is let through: by an
-/// input that is exclusive, or by who routes.
+/// Two writers to an actor work against each other, unless an exclusive input or a router lets only
+/// one of them through at a time.
 void check_actors(Planning& planning) {
-  std::map<std::string, std::string> writers;  // by input, the first
+  std::map<std::string, std::string> writers;  // first writer, by input
   for (const auto& link : planning.graph.links) {
     const Description* description = planning.description_of(link.to.module);
     if (description == nullptr || planning.routes(link.from)) continue;

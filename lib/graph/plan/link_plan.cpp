@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gives each link of a graph, which has been checked, its two ends.
+// Gives each link of a checked graph its two ends.
 #include <arpa/inet.h>
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 namespace hc::internal {
 namespace {
 
-/// Longest name of a link: a socket's has 107 bytes, of which shared memory takes 17.
+/// Longest name of a link: a socket's name has 107 bytes, of which shared memory takes 17.
 constexpr std::size_t kMaxLinkName = 90;
 
-/// 64 bits of a text, as 16 hexadecimal digits. Source: FNV-1a,
+/// A 64-bit hash as 16 hexadecimal digits. Source: FNV-1a,
 /// https://datatracker.ietf.org/doc/html/draft-eastlake-fnv
 std::string digest(std::string_view text) {
   std::uint64_t hash = 0xcbf29ce484222325;
@@ -29,8 +29,8 @@ std::string digest(std::string_view text) {
 
 using Keys = std::span<const std::string_view>;
 
-/// Keys of a policy that need a sending end of the link's own: over sockets or shared memory, and
-/// the last three over DDS; and those that its reader keeps: of shared memory the first two.
+/// Policy keys of the sender: a link with one of them cannot share its sending end; over DDS only
+/// the last three count. Then policy keys of the reader; over shared memory only the first two.
 constexpr std::array<std::string_view, 4> kOfSender = {"memory", "as", "quality", "scale"};
 constexpr std::array<std::string_view, 3> kOfReader = {"rate", "burst", "memory"};
 constexpr Keys kConversion = Keys(kOfSender).last<3>(), kPace = Keys(kOfReader).first<2>();
@@ -40,7 +40,7 @@ bool has(Keys keys, const std::string& key) {
   return std::ranges::find(keys, key) != keys.end();
 }
 
-/// Adds some options of a link's policy.
+/// Adds the options of a link's policy that are among `keys`.
 void add_policy(Uri& uri, const GraphLink& link, Keys keys) {
   for (const auto& [key, value] : link.policy)
     if (has(keys, key)) uri.options.emplace_back(key, value.value);
@@ -77,17 +77,17 @@ class LinkPlanner {
   }
 
  private:
-  /// What is known of a link before its ends.
+  /// A link before it has ends.
   struct Draft {
-    std::string sender_route, reader_route;  // the words of --route
+    std::string sender_route, reader_route;  // for --route
     std::string keep;
-    // Of a link inside the graph:
+    // Only for links inside the graph:
     const LinkTransport* transport = nullptr;
     std::string name;
-    bool is_common = false;  // other links of its output have the same sending end, and name
+    bool is_common = false;  // may share its sending end and name with other links of its output
   };
 
-  /// The sending end of a link, or of several.
+  /// The sending end of one or more links.
   struct Sender {
     std::size_t readers = 0;
     std::string uri;
@@ -101,7 +101,7 @@ class LinkPlanner {
     return port.uri.empty() ? planning_.index.at(port.module) : kOutside;
   }
 
-  /// The words of --route at both ends of each link.
+  /// Computes --route for both ends of each link.
   void find_routes() {
     std::vector<RoutedLink> links;
     std::vector<bool> is_router;
@@ -118,9 +118,9 @@ class LinkPlanner {
     constexpr std::size_t kMostRouters = 7;  // R42: the eighth would leave a ttl of 8 with 0
     const Routes routes = compute_routes(links, is_router);
     if (routes.longest > kMostRouters)
-      planning_.problems.add(
-          {1, 0}, "a message passes {} routers on a way of this graph, and its ttl is for {}",
-          routes.longest, kMostRouters);
+      planning_.problems.add({1, 0},
+                             "a path of this graph has {} routers; the ttl of a message allows {}",
+                             routes.longest, kMostRouters);
     for (std::size_t i = 0; i < drafts_.size(); ++i) {
       const GraphLink& link = graph_.links[i];
       const bool leaves_router = planning_.routes(link.from);
@@ -135,15 +135,15 @@ class LinkPlanner {
     }
   }
 
-  /// Whether a reader waits for the next process of its writer. One without `control` could not be
-  /// informed that none will come.
-  bool lasts(const GraphLink& link) const {
+  /// Whether a reader waits for the next process of its writer. A reader without `control` does
+  /// not, as no command could end its wait.
+  bool reconnects(const GraphLink& link) const {
     return !planning_.planned(link.to.module)->control_uri.empty();
   }
 
-  /// Gives a link its transport and its name: the same in every plan of this graph, and no other's.
-  /// All links of an output by shared memory, or by DDS, have one sending end and name, except for
-  /// those with a policy that needs their own, and one for each time-out.
+  /// Gives a link its transport and a unique name that is the same in every plan of this graph. The
+  /// links of an output over shared memory, or over DDS, share a sending end and a name, except for
+  /// links with a policy of their sender, and separately for each time-out.
   void name_link(const GraphLink& link, Draft& draft) {
     draft.transport = transport_of(planning_, link);
     const bool is_topic = draft.transport->name == "dds";
@@ -158,14 +158,14 @@ class LinkPlanner {
     else if (const auto timeout = link.policy.find("timeout"); timeout != link.policy.end())
       name += ".timeout_" + timeout->second.value;
     if (name.size() > kMaxLinkName) name = token + "." + digest(name);
-    if (is_topic) {  // whose letters are fewer
+    if (is_topic) {  // names of topics have fewer characters
       std::ranges::replace(name, '.', '/');
       std::ranges::replace(name, '-', '_');
     }
     ++senders_[name].readers;
   }
 
-  /// What all readers of a topic let their writer do: it waits for none where each of them drops.
+  /// `keep` of a topic's writer: the largest of its readers.
   std::string keep_of_all(const std::string& name) const {
     std::uint64_t most = 1;
     for (const auto& draft : drafts_) {
@@ -181,13 +181,12 @@ class LinkPlanner {
     return found == planning_.places.end() ? HostPlace{} : found->second;
   }
 
-  /// The address of a host for another: that of `hc run` is where each of the others sees it.
+  /// The address of a host as seen from another; the host of `hc run` has one for each other host.
   [[nodiscard]] std::string address_of(const std::string& host, const std::string& other) const {
     return host.empty() ? place_of(other).runner : place_of(host).address;
   }
 
-  /// The addresses by which the two ends of a topic reach each other, of which the host of `hc run`
-  /// has one for each of the others.
+  /// The addresses of the interfaces at one end of a topic.
   std::string interfaces_of(const std::string& name, bool of_writer, const GraphLink& own) {
     const auto hosts_of = [&](const GraphLink& link) {
       std::pair hosts(planning_.host_of(link.from.module), planning_.host_of(link.to.module));
@@ -204,13 +203,13 @@ class LinkPlanner {
     for (const auto& address : addresses)
       if (!is_v4(address) && !planning_.places.empty())
         planning_.problems.add(
-            own.place, "dds needs the IPv4 address of host {}{}: say address = \"…\" in its table",
+            own.place, "dds needs the IPv4 address of host {}{}: set address = \"…\" in its table",
             here.empty() ? there : here, address.empty() ? "" : ", not " + address);
     return joined(addresses, ",");
   }
 
-  /// What the reader says of its input; images are as good as they are new, so that the newest
-  /// alone waits for who is slow; of anything else all.
+  /// `keep` as given, or that of the reader's input; otherwise `latest` for images and `all` for
+  /// other types.
   std::string keep_of(const GraphLink& link) const {
     if (auto given = link.policy.find("keep"); given != link.policy.end())
       return given->second.value;
@@ -225,7 +224,7 @@ class LinkPlanner {
     return is_image ? "latest" : "all";
   }
 
-  /// The TCP port of a link, as before; else one of its own.
+  /// The TCP port of a link: as in the plan before, or a new one.
   int port_of(const GraphLink& link, const std::string& name) {
     const std::string& host = planning_.host_of(link.from.module);
     const bool is_for_others = planning_.is_between_hosts(link);
@@ -245,7 +244,7 @@ class LinkPlanner {
     return held == nullptr ? 0 : held->number;
   }
 
-  /// Where the writer of a link listens, where its reader connects to, and whom each lets in.
+  /// Sets the addresses of a link's two sockets, and the peer that each accepts.
   void connect_sockets(const GraphLink& link, const Draft& draft, Uri& writer, Uri& reader) {
     if (draft.transport->name == "unix") {
       writer.rest = reader.rest = "@" + draft.name;
@@ -264,9 +263,9 @@ class LinkPlanner {
       planning_.problems.add(
           link.place,
           from.empty()
-              ? "host {} has no address of this one that links can use: connect to it by another, "
-                "not a link-local one"
-              : "host {} has no address that links can use: say address = \"…\" in its table",
+              ? "host {} has no address of this host that links can use: connect to it by an "
+                "address that is not link-local"
+              : "host {} has no address that links can use: set address = \"…\" in its table",
           from.empty() ? to : from);
     const bool is_v6 = address.find(':') != std::string::npos;
     writer.rest = (is_v6 ? "[::]" : "0.0.0.0") + port;
@@ -278,16 +277,15 @@ class LinkPlanner {
     }
   }
 
-  /// Senders wait for their readers, so that it does not matter who starts first. The readers of
-  /// shared memory and of a topic keep their rate, and drop by their own policy; every other link
-  /// has a socket, whose writer does that.
+  /// Senders wait for their readers, so the order of starts does not matter. Over shared memory and
+  /// DDS each reader applies its own rate and `keep`; over sockets the writer does.
   PlannedLink plan_inside(const GraphLink& link, const Draft& draft) {
     Sender& sender = senders_[draft.name];
     Uri writer{std::string(draft.transport->writer),
                draft.name,
                {{"readers", std::to_string(sender.readers)}, {"stay", "1"}}};
     Uri reader{std::string(draft.transport->reader), draft.name, {{"wait", "60"}}};
-    if (lasts(link)) reader.options = {{"reconnect", "86400"}};
+    if (reconnects(link)) reader.options = {{"reconnect", "86400"}};
     if (draft.transport->name == "shm") {
       if (!draft.is_common) add_keep(writer, draft.keep);
       add_policy(writer, link, kOfSender);
@@ -313,10 +311,10 @@ class LinkPlanner {
     }
     add_end(link.to, {true, link.to.port, reader.text(), draft.reader_route});
     return {link.from.text(), link.to.text(), sender.uri, reader.text(), draft.keep, {},
-            lasts(link)};
+            reconnects(link)};
   }
 
-  /// A link with the world outside is as the file says.
+  /// Plans a link to or from a URI.
   PlannedLink plan_outside(const GraphLink& link, const Draft& draft) {
     const bool is_input = !link.from.uri.empty();
     Uri uri = *parse_uri(is_input ? link.from.uri : link.to.uri);
@@ -339,7 +337,7 @@ class LinkPlanner {
 
   Planning& planning_;
   const Graph& graph_;
-  std::vector<Draft> drafts_;              // by number of a link
+  std::vector<Draft> drafts_;              // by index of link
   std::map<std::string, Sender> senders_;  // by name
 };
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// System modes: which there are, who works in them, and who receives the focus.
+// System modes: their numbers, the modules that work in them, and the links of the focus.
 #include <graph/plan/planning.h>
 #include <hc/contract/mode_names.h>
 
 namespace hc::internal {
 namespace {
 
-constexpr const char* kFocus = "focus";  // a workspace's output, and everybody's input
+constexpr const char* kFocus = "focus";  // output of a workspace, input of any module
 
 class Modes {
  public:
@@ -85,7 +85,7 @@ class Modes {
     GraphLink link;
     link.from = {module.workspace, kFocus, {}};
     link.to = {module.name, kFocus, {}};
-    link.policy["keep"] = {"latest", {}};  // a slow reader must not hold the others up
+    link.policy["keep"] = {"latest", {}};  // a slow reader must not block the others
     link.place = module.place;
     if (!planning_.is_linked(link.to)) planning_.graph.links.push_back(std::move(link));
   }
@@ -98,7 +98,7 @@ class Modes {
     return std::nullopt;
   }
 
-  /// The modes of a module, in its command.
+  /// Adds the options --mode, --modes and --exclusive.
   void add_options(const GraphModule& module, PlannedModule& planned) {
     if (module.mode) {
       planned.mode = module.mode->value;
@@ -143,18 +143,18 @@ void plan_modes(Planning& planning) {
   Modes(planning).run();
 }
 
-/// A mode gets the focus by the bids of a module that has it, which go to a workspace, perhaps
-/// through routers. One of a graph that runs may be linked later.
+/// A mode gets the focus only if its task's bids reach a workspace, possibly through routers. Not
+/// checked for a running graph, whose links may be added later.
 void check_bids(Planning& planning) {
   const Graph& graph = planning.graph;
   if (planning.before != nullptr || !planning.problems.empty()) return;
   if (planning.plan.workspaces.empty()) return;
-  Ways back;  // the world outside has no name
+  Edges back;  // the name outside the graph is empty
   for (const auto& link : graph.links)
     if (planning.plan.workspaces.contains(link.to.module) || planning.is_router(link.to.module))
       back[link.to.module].insert(link.from.module);
-  const auto bidding = reach(back, planning.plan.workspaces);  // they, and who sends to them
-  if (bidding.contains("")) return;                            // who bids from outside is not known
+  const auto bidding = reach(back, planning.plan.workspaces);  // workspaces and senders to them
+  if (bidding.contains("")) return;                            // bids from outside are not known
   for (const auto& mode : graph.modes) {
     auto bids = [&](const GraphModule& module) {
       return module.mode && module.mode->value == mode.name && bidding.contains(module.name);

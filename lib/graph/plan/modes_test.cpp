@@ -67,13 +67,13 @@ TEST(Modes, TheFocusIsLinkedToWhoFollowsIt) {
   ASSERT_EQ(planned.links.size(), 6U);
   EXPECT_EQ(planned.links[5].from, "workspace.focus");
   EXPECT_EQ(planned.links[5].to, "actor.focus");
-  // Bids go round by the focus, which makes no messages.
+  // A loop through the focus needs no rate.
   EXPECT_EQ(wrong(kModes + kBid), "");
   EXPECT_EQ(
       wrong(kModes),
       "g.toml:13: mode track never gets the focus: no module with mode = \"track\" sends bids "
       "to a workspace");
-  // A link of one's own stays the only one.
+  // A link of the focus in the file is not duplicated.
   auto own = must(plan(kModes + kBid + link_text("workspace.focus", "actor.focus")));
   EXPECT_EQ(own.links.size(), 6U);
 }

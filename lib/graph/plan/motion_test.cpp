@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What hc check warns of: links that may hold what moves the robot, and loops over two actors.
+// Warnings of hc check: links that can block a module that moves the robot, loops over two actors.
 #include <gtest/gtest.h>
 
 #include <graph/plan/planning_test.h>
@@ -18,7 +18,7 @@ std::string warnings(const std::string& text,
   return lines;
 }
 
-/// A source whose messages a task makes commands of, and which others read.
+/// A task that turns a source's messages into commands, and a watcher that may read the source.
 const std::string kLoop = R"([modules.eye]
 program = "source"
 [modules.task]
@@ -33,10 +33,10 @@ TEST(Motion, ALinkThatMayHoldWhatMovesTheRobotIsWarnedOf) {
   EXPECT_EQ(warnings(kLoop), "");
   EXPECT_EQ(warnings(kLoop + "inputs.in = \"eye.left\"\n"), "") << "the newest";
   const auto held = warnings(kLoop + "inputs.in = { from = \"eye.left\", keep = \"all\" }\n");
-  EXPECT_TRUE(held.starts_with("g.toml:10: watcher.in can hold eye, which moves the robot"))
+  EXPECT_TRUE(held.starts_with("g.toml:10: watcher.in can block eye, which controls the robot"))
       << held;
   const auto default_all = warnings(kLoop + "[modules.filter]\ninputs.in = \"task.bid\"\n");
-  EXPECT_TRUE(default_all.starts_with("g.toml:11: filter.in can hold task")) << default_all;
+  EXPECT_TRUE(default_all.starts_with("g.toml:11: filter.in can block task")) << default_all;
   EXPECT_EQ(warnings(kLoop + "[modules.filter]\ninputs.in = { from = \"task.bid\", keep = 16 }\n"),
             "");
   EXPECT_EQ(warnings(kLoop + "[modules.other]\nprogram = \"source\"\n[modules.filter]\n"
@@ -47,7 +47,7 @@ TEST(Motion, ALinkThatMayHoldWhatMovesTheRobotIsWarnedOf) {
 
 TEST(Motion, ALinkToTheOutsideMayHoldToo) {
   const std::string to = "\n[modules.task.outputs]\nbid = ";
-  EXPECT_TRUE(warnings(kLoop + to + "\"tcp:1\"\n").starts_with("g.toml:12: tcp:1 can hold task"));
+  EXPECT_TRUE(warnings(kLoop + to + "\"tcp:1\"\n").starts_with("g.toml:12: tcp:1 can block task"));
   EXPECT_EQ(warnings(kLoop + to + "\"file:bids\"\n"), "");
 }
 

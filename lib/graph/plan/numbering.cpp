@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Addresses of ports, and whom the messages of an output are for.
+// Addresses of ports, and destinations of outputs.
 
 #include <graph/plan/planning.h>
 #include <graph/plan/routes.h>
@@ -23,7 +23,7 @@ class Numbering {
   }
 
  private:
-  /// The addresses that the file says; of an output where an input has the same name.
+  /// Takes the addresses in the file; if an output and an input have the same name, the output's.
   void take_given(const GraphModule& module) {
     const Description* description = planning_.description_of(module.name);
     for (const auto& [port, address] : module.addresses) {
@@ -41,7 +41,7 @@ class Numbering {
     }
   }
 
-  /// What was numbered before stays so, unless the file gives its number to another.
+  /// Keeps earlier numbers, unless the file assigns them to other ports.
   void keep_numbers(const Plan& before) {
     auto keep = [&](const auto& numbers, auto& kept) {
       for (const auto& [port, number] : numbers)
@@ -66,7 +66,7 @@ class Numbering {
     }
   }
 
-  /// The address that a port had before, or else the least that nobody has, taken.
+  /// The earlier address of a port, or the lowest free one, which is then taken.
   std::int64_t free_address(const std::map<std::string, std::int64_t>& kept,
                             const std::string& port) {
     if (auto old = kept.find(port); old != kept.end()) return old->second;
@@ -74,20 +74,20 @@ class Numbering {
     return next_;
   }
 
-  /// Of an input, which gets one where it has none.
+  /// The address of an input, assigned if it has none.
   std::int64_t address_of(const GraphPort& input) {
     auto [found, is_new] = inputs_.try_emplace(input.text(), 0);
     if (is_new) found->second = free_address(kept_inputs_, input.text());
     return found->second;
   }
 
-  /// The input of that name; nothing where it is none.
+  /// The input of that name; nullopt if there is none.
   std::optional<GraphPort> input_named(const std::string& name) const {
     auto dot = name.find('.');
     if (dot == std::string::npos) return std::nullopt;
     GraphPort port{name.substr(0, dot), name.substr(dot + 1), {}};
     const Description* description = planning_.description_of(port.module);
-    // What is not described may have any input; what is wrong with it has been reported.
+    // A module without a description, which has been reported, may have any input.
     bool may_be = description == nullptr ? planning_.names.contains(port.module)
                                          : find_named(description->inputs, port.port) != nullptr;
     return may_be ? std::optional(port) : std::nullopt;
@@ -129,7 +129,7 @@ void number_ports(Planning& planning) {
   Numbering(planning).run();
 }
 
-/// A number that is the address of no input here, and that no link carries to the outside.
+/// A number must be the address of an input, or pass a link to the outside.
 void check_destinations(Planning& planning) {
   if (!planning.problems.empty()) return;
   std::set<std::int64_t> known;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The steps from a graph to a plan; plan.cpp takes them one after the other. Internal to graph.
+// The steps from a graph to a plan, in the order of make_plan(). Internal to graph.
 
 #include <algorithm>
 #include <map>
@@ -13,19 +13,19 @@
 
 namespace hc::internal {
 
-/// What is known while one plans.
+/// The state of planning.
 struct Planning {
-  Graph graph;  ///< its links have modules, ports and types that fit, as far as they are described
+  Graph graph;  ///< after check_links() with valid links only, as far as modules are described
   Problems& problems;
-  const Plan* before;  ///< of this graph, whose numbers stay; null: there was none
+  const Plan* before;  ///< an earlier plan whose numbers stay; null: none
   const HoldPort& hold_port;
   const HostPlaces& places;
   Plan plan{};
   std::map<std::string, Description> described{};  ///< by module
-  std::map<std::string, std::size_t> index{};      ///< of a module in Plan::modules
+  std::map<std::string, std::size_t> index{};      ///< into Plan::modules, by module
   std::set<std::string> names{};                   ///< of modules
 
-  /// What a module says of itself; null where nobody knows.
+  /// A module's description; null if unknown.
   [[nodiscard]] const Description* description_of(const std::string& module) const {
     auto found = described.find(module);
     return found == described.end() ? nullptr : &found->second;
@@ -34,7 +34,7 @@ struct Planning {
     const Description* description = description_of(module);
     return description != nullptr && description->routes;
   }
-  /// Whether messages leave an output by their address: of a router, one that gives anything.
+  /// Whether an output routes messages by address: an output of any type, of a router.
   [[nodiscard]] bool routes(const GraphPort& output) const {
     if (!output.uri.empty() || !is_router(output.module)) return false;
     const PortDescription* port = find_named(described.at(output.module).outputs, output.port);
@@ -48,11 +48,10 @@ struct Planning {
     return std::any_of(graph.links.begin(), graph.links.end(),
                        [&](const auto& link) { return link.from.text() == output.text(); });
   }
-  /// Where a module runs.
   [[nodiscard]] const std::string& host_of(const std::string& module) const {
     return plan.modules[index.at(module)].host;
   }
-  /// Whether a link, whose ends are both modules, goes from one host to another.
+  /// Whether a link between two modules goes from one host to another.
   [[nodiscard]] bool is_between_hosts(const GraphLink& link) const {
     return host_of(link.from.module) != host_of(link.to.module);
   }
@@ -62,66 +61,66 @@ struct Planning {
   }
 };
 
-/// What is wrong with a module, {}, that has a key, {}, for which its program is too simple.
+/// Problem of a module {} with a key {} that requires --control.
 inline constexpr std::string_view kNeedsControl =
     "module {} cannot have \"{}\": its program does not support --control; see spec/module.md, "
     "sections 3 and 6";
 
-/// Whether a program has a parameter of that name that is a string.
+/// Whether a program has a string parameter of that name.
 bool has_text_parameter(const Description& description, std::string_view name);
 
-/// ", did you mean "camera"?", unless too much is wrong to look for it all.
+/// `, did you mean "camera"?`; empty when there are already many problems.
 std::string suggest(const Planning& planning, std::string_view name,
                     const std::vector<std::string>& known);
 
-/// Says that a module has no such port. @param kind  "input", "output" or "port".
+/// Problem: a module has no such port. @param kind  "input", "output" or "port".
 void add_no_port(Planning& planning, const Place& place, const GraphPort& port,
                  const std::string& kind, const std::vector<PortDescription>& ports);
 
-/// A port that the file names, with the implicit input `focus`; null where there is none, which is
-/// a problem, or where nobody knows since the module is not described.
+/// A port named in the file, or the implicit input `focus`. Null if the module is not described, or
+/// lacks the port, which is a problem.
 const PortDescription* find_port(Planning& planning, const Place& place, const GraphPort& port,
                                  bool is_input);
 
-/// Gives ports their addresses, and messages of outputs their destinations.
+/// Assigns addresses to ports, and destinations to outputs.
 void number_ports(Planning& planning);
 
-/// Modes, focus and exclusive inputs: checks them, hands them to modules, and links the focus to
-/// them.
+/// Checks modes and exclusive inputs, passes them to modules, and links the focus.
 void plan_modes(Planning& planning);
 
-/// Whether a module gets the frames as text: it has a parameter for them.
+/// Whether a module has a text parameter `frames`.
 bool takes_frames(const Planning& planning, const std::string& module);
-/// Links what moves frames to the inputs `frames` of modules that get them as text.
+/// Links outputs that move frames to the inputs `frames` of modules that take frames.
 void link_frames(Planning& planning);
-/// Checks the frames, and hands them to modules that have a parameter `frames`.
+/// Checks the frames and passes them to modules that take frames.
 void plan_frames(Planning& planning);
 
-/// Checks each link on its own; those that are wrong are taken out of the graph.
+/// Checks each link on its own and removes wrong ones from the graph.
 void check_links(Planning& planning);
-/// Loops without a rate, and actors that several command.
+/// Problems: loops without a rate.
 void check_loops(Planning& planning);
+/// Problems: actors with several writers.
 void check_actors(Planning& planning);
-/// Inputs that are taken together and not all linked, modes that can never have the focus,
-/// destinations that nobody has.
+/// Problems: synchronised inputs of which only some are linked.
 void check_together(Planning& planning);
+/// Problems: modes that can never get the focus.
 void check_bids(Planning& planning);
+/// Problems: unknown destination addresses.
 void check_destinations(Planning& planning);
 
-/// What links go over, and the schemes of their ends.
+/// A transport and the URI schemes of its ends.
 struct LinkTransport {
   std::string_view name, writer, reader;
 };
 
-/// What a link between two modules goes over, the first of shm, unix and tcp that both have, or tls
-/// (or tcp or dds, if that is asked for) to another host; null where there is none. Both are
-/// described.
+/// The transport of a link between two described modules: on one host the first of shm, unix and
+/// tcp that both support; between hosts `via`, by default tls. Null if there is none.
 const LinkTransport* transport_of(const Planning& planning, const GraphLink& link);
 
 /// Gives each link its two ends.
 void plan_links(Planning& planning);
 
-/// Warns of links and loops by which a robot may come to harm; behind plan_links().
+/// Warns of links and loops that may move a robot badly; call this after plan_links().
 void check_motion(Planning& planning);
 
 }  // namespace hc::internal

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the tests of plans have in common: programs that are not there, and what they say.
+// Shared by the tests of plans: descriptions of programs that do not exist.
 
 #include <map>
 #include <string>
@@ -13,7 +13,7 @@ namespace hc {
 
 inline const std::string kVersionLine = "version = 1\n";
 
-/// What some programs say of themselves.
+/// Descriptions of the programs in tests.
 inline Result<std::string> describe(const std::string& program, const std::string& = "") {
   auto port = [](const std::string& name, const std::string& type, int coord) {
     return R"({"name":")" + name + R"(","types":[{"type":")" + type +
@@ -33,7 +33,7 @@ inline Result<std::string> describe(const std::string& program, const std::strin
     std::string text = module(port("left", "map", 0) + "," + port("right", "map", 0), "");
     return text.replace(text.size() - 1, 1, R"(,"together":[["left","right"]]})");
   }
-  if (program == "keeper")  // of one input the newest counts, of the other some
+  if (program == "keeper")  // inputs that keep only some messages
     return module(R"({"name":"in","types":[],"keep":1},{"name":"some","types":[],"keep":16})",
                   port("out", "map", 0));
   if (program == "any") return module(R"({"name":"in","types":[]})", "");
@@ -106,7 +106,7 @@ inline Result<std::string> describe(const std::string& program, const std::strin
         "", port("left", "map", 7) + "," + port("right", "map", 8) + R"(,{"name":"pose",)" + pose);
   if (program == "neck")
     return shares(module(port("command", "map", 0), R"({"name":"pose",)" + pose));
-  if (program == "seeker")  // moves something itself too
+  if (program == "seeker")  // takes frames and moves one
     return shares(R"({"name":"x","inputs":[{"name":"frames",)" + pose + R"(],"outputs":[)" +
                   port("command", "map", 0) + R"(,{"name":"pose",)" + pose +
                   R"(],"parameters":[{"name":"frames","type":"string","fixed":true}]})");
@@ -116,9 +116,10 @@ inline Result<std::string> describe(const std::string& program, const std::strin
   return Error{Code::NotFound, "no such program"};
 }
 
-/// A plan, or else all that is wrong, a line each.
+/// Plans a graph. Errors: all problems, a line each.
 ///
-/// @param text  behind `version = 1`, which is its first line, as in `files`, which it may include.
+/// @param text  of the graph file, without its first line `version = 1`.
+/// @param files  that it may include, without that line too.
 inline Result<Plan> plan(const std::string& text,
                          const std::map<std::string, std::string>& files = {},
                          const Plan* before = nullptr, const HoldPort& hold_port = {},
@@ -153,7 +154,7 @@ inline std::vector<std::string> values_of(const PlannedModule& module, const std
   return values;
 }
 
-/// The links of a plan, a line each, with what they keep; or else all that is wrong.
+/// The links of a plan with their `keep`, a line each; or all problems.
 inline std::string links_of(const Result<Plan>& planned) {
   if (!planned) return planned.error().detail;
   std::string text;
@@ -162,7 +163,7 @@ inline std::string links_of(const Result<Plan>& planned) {
   return text;
 }
 
-/// All that is wrong with a graph, a line each; empty: nothing.
+/// The problems of a graph, a line each; empty: none.
 inline std::string wrong(const std::string& text,
                          const std::map<std::string, std::string>& files = {}) {
   auto planned = plan(text, files);

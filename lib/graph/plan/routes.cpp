@@ -21,35 +21,35 @@ class Network {
     return module < is_router_.size() && is_router_[module];
   }
 
-  /// A way from a router.
-  struct Way {
-    std::size_t first = 0;    ///< the link that begins it
-    std::size_t routers = 1;  ///< that are passed on it
+  /// A path from a router.
+  struct Path {
+    std::size_t first_link = 0;
+    std::size_t routers = 1;  ///< on the path
   };
 
-  /// By address, the shortest way there.
-  [[nodiscard]] std::map<std::int64_t, Way> ways(std::size_t router) const {
-    std::map<std::int64_t, Way> ways;
-    std::map<std::size_t, Way> reached = {{router, {}}};  // routers
-    std::deque<std::size_t> next = {router};              // breadth first: the nearest come first
+  /// The shortest path from a router to each address.
+  [[nodiscard]] std::map<std::int64_t, Path> shortest_paths(std::size_t router) const {
+    std::map<std::int64_t, Path> paths;
+    std::map<std::size_t, Path> reached = {{router, {}}};  // routers
+    std::deque<std::size_t> next = {router};               // breadth first
     for (; !next.empty(); next.pop_front())
       for (std::size_t i : leaving_[next.front()]) {
         const RoutedLink& link = links_[i];
-        Way way = reached.at(next.front());
-        if (next.front() == router) way.first = i;
+        Path path = reached.at(next.front());
+        if (next.front() == router) path.first_link = i;
         for (std::int64_t address : link.given ? *link.given : std::vector{link.reaches})
-          if (address > 0) ways.emplace(address, way);
+          if (address > 0) paths.emplace(address, path);
         if (is_router_at(link.to) &&
-            reached.emplace(link.to, Way{way.first, way.routers + 1}).second)
+            reached.emplace(link.to, Path{path.first_link, path.routers + 1}).second)
           next.push_back(link.to);
       }
-    return ways;
+    return paths;
   }
 
  private:
   const std::vector<RoutedLink>& links_;
   const std::vector<bool>& is_router_;
-  std::vector<std::vector<std::size_t>> leaving_;  // by router, the links that leave it
+  std::vector<std::vector<std::size_t>> leaving_;  // outgoing links, by router
 };
 
 }  // namespace
@@ -60,9 +60,9 @@ Routes compute_routes(const std::vector<RoutedLink>& links, const std::vector<bo
   std::vector<std::set<std::int64_t>> passed(links.size());
   for (std::size_t router = 0; router < is_router.size(); ++router)
     if (is_router[router])
-      for (const auto& [address, way] : network.ways(router)) {
-        passed[way.first].insert(address);
-        routes.longest = std::max(routes.longest, way.routers);
+      for (const auto& [address, path] : network.shortest_paths(router)) {
+        passed[path.first_link].insert(address);
+        routes.longest = std::max(routes.longest, path.routers);
       }
   for (std::size_t i = 0; i < links.size(); ++i) {
     auto& addresses = routes.passed.emplace_back();

@@ -10,7 +10,7 @@ namespace {
 
 using Passed = std::vector<std::vector<std::int64_t>>;
 
-/// Modules that are no routers have these numbers in the tests below.
+/// Indices of modules that are not routers.
 constexpr std::size_t kRouters = 10;
 
 Passed compute(const std::vector<RoutedLink>& links, std::size_t routers) {

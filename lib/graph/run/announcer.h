@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Says messages to all who listen, and never waits for one of them. Internal to graph.
+// Broadcasts messages to all connected peers without blocking. Internal to graph.
 
 #include <functional>
 #include <memory>
@@ -13,45 +13,44 @@
 
 namespace hc::internal {
 
-/// The listening end of a Unix socket where messages go in. Unlike a listening sink it is used on
-/// the thread of a loop, does not mind if nobody has come, and has something to say to who comes.
-/// Who is more than kMostWaiting behind misses messages, whole ones. When more than kMostPeers have
-/// come, the one that has read least has to leave: those who come are served.
+/// The writer's end of links over a Unix socket, used on the thread of a loop. Unlike a listening
+/// sink it never blocks, and greets each new peer with `welcome`. A peer with kMaxQueued bytes
+/// unread loses whole messages. Above kMaxPeers, the peer with most unread is disconnected in
+/// favour of the new one.
 class Announcer {
  public:
-  static constexpr std::size_t kMostWaiting = std::size_t{4} << 20;  ///< [byte]
-  static constexpr std::size_t kMostPeers = 64;                      ///< at once
+  static constexpr std::size_t kMaxQueued = std::size_t{4} << 20;  ///< for each peer [byte]
+  static constexpr std::size_t kMaxPeers = 64;
 
   /// @param uri  `unix-listen:…`
-  /// @param welcome  gives what is said first to each who comes; may be empty.
+  /// @param welcome  returns the first messages for a new peer; may be empty.
   ///
   /// Errors: Invalid, System (the name is in use).
   static Result<std::unique_ptr<Announcer>> make(
       Loop& loop, const std::string& uri, std::function<std::vector<Message>()> welcome = {});
 
-  /// Says it to all there are; whether all have it or will.
-  bool say(const Message& message);
-  [[nodiscard]] bool is_heard() const { return !peers_.empty(); }
-  /// Ends all connections there are.
-  void leave_all() { peers_.clear(); }
+  /// Sends a message to all peers; returns false if a peer has lost it.
+  bool send(const Message& message);
+  [[nodiscard]] bool has_peers() const { return !peers_.empty(); }
+  void disconnect_all() { peers_.clear(); }
 
  private:
   struct Peer {
     Descriptor socket;
-    std::string waiting;  // bytes that the socket has not taken
+    std::string queued;  // bytes that the socket has not taken
     Loop::Handle watch;
-    bool has_left = false;
+    bool is_closed = false;
   };
 
   Announcer(Loop& loop, ListeningSocket socket, std::function<std::vector<Message>()> welcome)
       : loop_(loop), socket_(std::move(socket)), welcome_(std::move(welcome)) {}
 
-  void let_in();
-  void leave_idlest();
-  bool put(Peer& peer, const std::string& bytes);
+  void accept();
+  void disconnect_slowest();
+  bool enqueue(Peer& peer, const std::string& bytes);
   void write(Peer& peer);
   void serve(Peer& peer, std::uint32_t events);
-  void forget_those_who_left();
+  void remove_closed();
 
   Loop& loop_;
   ListeningSocket socket_;
@@ -60,9 +59,9 @@ class Announcer {
   Loop::Handle watch_;
 };
 
-/// Says one message to who listens at `unix:…`, if it can be said at once.
+/// Sends one message to the listener at `unix:…` without blocking.
 ///
-/// Errors: Invalid (another URI), Closed (nobody listens), System.
-Status say_at_once(const std::string& uri, const Message& message);
+/// Errors: Invalid (another scheme), Closed (no listener), System.
+Status send_at_once(const std::string& uri, const Message& message);
 
 }  // namespace hc::internal

@@ -30,7 +30,7 @@ class AnnouncerTest : public ::testing::Test {
     return std::move(*source);
   }
   void turn_until(const std::function<bool()>& condition) {
-    // What another object waits for is no event of the loop.
+    // Conditions outside the loop cause no event, so turn it once per millisecond.
     while (!condition()) {
       auto soon = loop_->call_at(std::chrono::steady_clock::now() + 1ms, [] {});
       ASSERT_TRUE(loop_->turn());
@@ -52,31 +52,31 @@ class AnnouncerTest : public ::testing::Test {
 
 TEST_F(AnnouncerTest, AllHearAndWhoComesIsWelcomed) {
   make([&] { return std::vector{line("welcome")}; });
-  announcer_->say(line("to nobody"));
+  announcer_->send(line("to nobody"));
   auto first = listen(), second = listen();
   EXPECT_EQ(hear(*first), "welcome");
   EXPECT_EQ(hear(*second), "welcome");
-  announcer_->say(line("to both"));
+  announcer_->send(line("to both"));
   EXPECT_EQ(hear(*first), "to both");
   EXPECT_EQ(hear(*second), "to both");
   first.reset();
   second.reset();
-  turn_until([&] { return !announcer_->is_heard(); });
+  turn_until([&] { return !announcer_->has_peers(); });
 }
 
 TEST_F(AnnouncerTest, WhoDoesNotListenMissesWholeMessages) {
   make();
   auto source = listen();
-  turn_until([&] { return announcer_->is_heard(); });
-  const std::string large(Announcer::kMostWaiting / 4, 'x');
+  turn_until([&] { return announcer_->has_peers(); });
+  const std::string large(Announcer::kMaxQueued / 4, 'x');
   bool has_room = true;
-  for (int i = 0; i < 16; ++i) has_room = announcer_->say(line(std::to_string(i) + " " + large));
+  for (int i = 0; i < 16; ++i) has_room = announcer_->send(line(std::to_string(i) + " " + large));
   EXPECT_FALSE(has_room);
   std::string last = hear(*source);
   EXPECT_EQ(last.substr(0, 2), "0 ");
-  announcer_->say(line("end"));
+  announcer_->send(line("end"));
   while ((last = hear(*source)) != "end" && last.substr(0, 2) != "15") {
-    announcer_->say(line("end"));
+    announcer_->send(line("end"));
   }
 }
 
@@ -85,10 +85,10 @@ TEST_F(AnnouncerTest, WhoReadsNothingMakesPlaceForWhoComes) {
   auto reader = listen();
   EXPECT_EQ(hear(*reader), "welcome");
   std::vector<std::unique_ptr<Source>> idle;
-  for (std::size_t i = 1; i < Announcer::kMostPeers; ++i) idle.push_back(listen());
+  for (std::size_t i = 1; i < Announcer::kMaxPeers; ++i) idle.push_back(listen());
   auto late = listen();
   EXPECT_EQ(hear(*late), "welcome");
-  announcer_->say(line("to all"));
+  announcer_->send(line("to all"));
   EXPECT_EQ(hear(*reader), "to all");
   EXPECT_EQ(hear(*late), "to all");
 }
@@ -101,13 +101,13 @@ TEST_F(AnnouncerTest, ANameInUseIsAnError) {
 TEST_F(AnnouncerTest, OneMessageIsSaidAtOnceOrNotAtAll) {
   auto source = open_source({"unix-listen", name(), {}});
   ASSERT_TRUE(source);
-  ASSERT_TRUE(say_at_once("unix:" + name(), line("said")));
+  ASSERT_TRUE(send_at_once("unix:" + name(), line("said")));
   EXPECT_EQ(hear(**source), "said");
   source->reset();
-  auto refused = say_at_once("unix:" + name(), line("said"));
+  auto refused = send_at_once("unix:" + name(), line("said"));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Code::Closed);
-  EXPECT_EQ(say_at_once("tcp:1", line("said")).error().code, Code::Invalid);
+  EXPECT_EQ(send_at_once("tcp:1", line("said")).error().code, Code::Invalid);
 }
 
 }  // namespace

@@ -16,8 +16,7 @@ const PlannedEnd* find_same(const std::vector<PlannedEnd>& ends, const PlannedEn
   return found == ends.end() ? nullptr : &*found;
 }
 
-/// A URI without what is said to a writer alone before its first message: the same while readers
-/// come and go.
+/// A URI without `readers`, which a writer uses only before its first message.
 std::string without_readers(const std::string& uri) {
   auto parsed = parse_uri(uri);
   if (!parsed) return uri;
@@ -25,8 +24,7 @@ std::string without_readers(const std::string& uri) {
   return parsed->text();
 }
 
-/// Sets what is new or has another value. The default of what is not given any more is known to the
-/// module alone.
+/// Sets new and changed parameters; resets removed ones by a restart.
 void add_settings(const PlannedModule& before, const PlannedModule& after, ModuleChange& change) {
   for (const auto& [key, value] : before.parameters)
     if (!after.parameters.contains(key)) change.needs_restart = true;

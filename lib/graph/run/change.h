@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The commands that make a running module as another plan says. Pure. Internal to graph.
+// The commands that change a running module to another plan. Pure. Internal to graph.
 
 #include <vector>
 
@@ -10,9 +10,9 @@
 namespace hc::internal {
 
 struct ModuleChange {
-  bool needs_restart = false;  ///< commands cannot make it so, and there are none
-  /// Commands: those of all modules that remove links come first; then those that set parameters
-  /// and add outputs; then those that add inputs.
+  bool needs_restart = false;  ///< commands cannot do it; they are empty
+  /// In the order in which to send them, each to all modules before the next: removed links, then
+  /// new parameters and outputs, then new inputs.
   std::vector<ModuleCommand> unlinks, outputs, inputs;
 
   [[nodiscard]] bool is_empty() const {
@@ -20,10 +20,10 @@ struct ModuleChange {
   }
 };
 
-/// Whether two ends are of the same link, whatever number of readers a writer waits for at first.
+/// Whether two ends are of the same link, ignoring the option `readers`.
 bool is_same_end(const PlannedEnd& one, const PlannedEnd& other);
 
-/// @param before  with the ends as the process knows them.
+/// @param before  with the ends as known to the process.
 ModuleChange change_between(const PlannedModule& before, const PlannedModule& after);
 
 }  // namespace hc::internal

@@ -32,7 +32,7 @@ class ChangeTest : public ::testing::Test {
 
 TEST_F(ChangeTest, WhatStaysAsItIsNeedsNoCommand) {
   EXPECT_TRUE(change().is_empty());
-  after_.restart = Restart::Never;  // the runner's affair
+  after_.restart = Restart::Never;  // does not concern the process
   EXPECT_TRUE(change().is_empty());
 }
 

@@ -20,7 +20,7 @@ Message stamped(const std::string& row, GraphReport what, std::int64_t& seq) {
   return message;
 }
 
-/// The listening end of a socket that a running graph's clients connect to.
+/// The listening URI for a client's URI.
 std::string listening(const std::string& uri) {
   return "unix-listen" + uri.substr(uri.find(':'));
 }
@@ -48,7 +48,7 @@ Message GraphServer::state_message() {
 void GraphServer::publish_state() {
   if (!has_clients()) return;
   soon_.reset();
-  states_->say(state_message());
+  states_->send(state_message());
 }
 
 void GraphServer::changed() {
@@ -57,7 +57,7 @@ void GraphServer::changed() {
 }
 
 void GraphServer::log(const LogLine& line) {
-  if (has_clients()) states_->say(stamped(to_json(line), GraphReport::Log, lines_sent_));
+  if (has_clients()) states_->send(stamped(to_json(line), GraphReport::Log, lines_sent_));
 }
 
 void GraphServer::take_request(const Message& message) const {
@@ -67,7 +67,7 @@ void GraphServer::take_request(const Message& message) const {
                     if (to.empty()) return;
                     auto reply = make_answer(answer);
                     reply.header.seq = seq;
-                    static_cast<void>(say_at_once(to, reply));  // a client that has left needs none
+                    static_cast<void>(send_at_once(to, reply));  // the client may have left
                   });
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a running graph offers to its clients, processes of the same user: its state and its log
-// over one link, and commands over another (spec/graph.md, G45 … G47). Internal to graph.
+// Serves a running graph to clients, processes of the same user: state and log over one link,
+// commands over another (spec/graph.md, G45 … G47). Internal to graph.
 
 #include <functional>
 #include <memory>
@@ -22,8 +22,7 @@ class GraphServer {
   using Reply = std::function<void(const GraphAnswer& answer)>;
   struct Callbacks {
     std::function<GraphState()> state;
-    /// Does what commands say, all of them or none, and answers then or later; the reply may be
-    /// empty.
+    /// Executes all of the commands or none, and replies at once or later; `reply` may be empty.
     std::function<void(const std::vector<std::string>& commands, Reply reply)> obey;
   };
 
@@ -31,13 +30,12 @@ class GraphServer {
   static Result<std::unique_ptr<GraphServer>> make(Loop& loop, const RunningGraph& graph,
                                                    Callbacks callbacks);
 
-  /// Publishes the state, if anybody reads it.
+  /// Publishes the state if there are clients.
   void publish_state();
-  /// Has the state published soon, however often it is called by then.
+  /// Publishes the state soon; combines several calls.
   void changed();
   void log(const LogLine& line);
-  /// Whether a client reads the state.
-  [[nodiscard]] bool has_clients() const { return states_->is_heard(); }
+  [[nodiscard]] bool has_clients() const { return states_->has_peers(); }
 
  private:
   GraphServer(Loop& loop, Callbacks callbacks) : loop_(loop), callbacks_(std::move(callbacks)) {}

@@ -16,7 +16,7 @@
 namespace hc::internal {
 namespace {
 
-/// The socket at which an argument of `--out` has its readers come; none for other links.
+/// The socket to which the readers of an argument of `--out` connect; nullopt for other links.
 std::optional<Uri> socket_of(const std::string& argument) {
   const auto uri = parse_uri(argument.substr(argument.find('=') + 1));
   if (uri && uri->scheme == "shm") return meeting_place(*uri);
@@ -37,7 +37,7 @@ Status HeldNames::hold(const std::vector<std::string>& command) {
       held_.erase(before);
     } else if (!wanted.contains(socket->rest)) {
       auto listening = HC_TRY(listen_unix(*socket));
-      // The number below is the key's in the program (Process::start).
+      // kKeyDescriptor is reserved in the program.
       const int kept = ::fcntl(listening.descriptor.get(), F_DUPFD_CLOEXEC, kKeyDescriptor + 1);
       if (kept < 0) return system_error("fcntl", socket->rest);
       wanted[socket->rest] = Descriptor(kept);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The names at which a module is met by the readers of its outputs, listened to for all its
-// processes. Names are no secret (/proc/net/unix shows them): were one free while its module
-// restarts, another user could take it, and the module would not start again. Internal to graph.
+// Holds the socket names of a module's outputs across its processes. Names are public
+// (/proc/net/unix): if one were free while its module restarts, another user could take it, and the
+// module could not start again. Internal to graph.
 
 #include <map>
 #include <string>
@@ -15,19 +15,19 @@ namespace hc::internal {
 
 class HeldNames {
  public:
-  /// Listens at each name that this command writes to (`--out PORT=shm:NAME`, `unix-listen:@NAME`),
-  /// and lets go of others. Nothing of a command without `--control`, which listens itself
-  /// (spec/module.md, section 4).
+  /// Listens at each name to which this command writes (`--out PORT=shm:NAME`,
+  /// `unix-listen:@NAME`), and releases all others. Holds none for a command without `--control`,
+  /// which listens itself (spec/module.md, section 4).
   ///
   /// Errors: Invalid, System (a name is in use).
   Status hold(const std::vector<std::string>& command);
-  /// Lets go of all: who connects is refused from then on.
-  void let_go() { held_.clear(); }
-  /// For Process::start().
+  /// Releases all names; connections are refused from then on.
+  void release() { held_.clear(); }
+  /// For Inherited::listeners.
   [[nodiscard]] std::vector<int> descriptors() const;
 
  private:
-  std::map<std::string, Descriptor> held_;  // by the name of the socket
+  std::map<std::string, Descriptor> held_;  // by name of the socket
 };
 
 }  // namespace hc::internal

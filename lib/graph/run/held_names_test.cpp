@@ -59,12 +59,12 @@ TEST(HeldNames, are_free_for_nobody_else_until_they_are_let_go) {
   EXPECT_TRUE(is_free("shm:" + name("in")));
   ASSERT_TRUE(names.hold({"camera", "--control", "unix:@c", "--out", "left=" + left()}));
   EXPECT_TRUE(is_free(right()));
-  names.let_go();
+  names.release();
   EXPECT_TRUE(is_free(left()));
 }
 
 TEST(HeldNames, none_has_the_number_of_a_key) {
-  ::close(kKeyDescriptor);  // a test has no such file open, or can do without it
+  ::close(kKeyDescriptor);  // in case the test has inherited it
   HeldNames names;
   ASSERT_TRUE(names.hold(writer()));
   for (const int number : names.descriptors()) EXPECT_GT(number, kKeyDescriptor);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a process writes, line by line, and the last lines of its log. Pure. Internal to graph.
+// Splits the output of a process into lines and keeps the last ones. Pure. Internal to graph.
 
 #include <algorithm>
 #include <deque>
@@ -13,16 +13,15 @@
 
 namespace hc::internal {
 
-/// Makes lines of pieces of text, and keeps the last ones.
 class Lines {
  public:
-  static constexpr std::size_t kMaxLine = 4096;  ///< longer ones come in parts [byte]
-  static constexpr std::size_t kLast = 20;       ///< so many are kept
+  static constexpr std::size_t kMaxLine = 4096;  ///< longer lines are split [byte]
+  static constexpr std::size_t kLast = 20;       ///< lines kept
 
   using Take = std::function<void(const std::string& line)>;
 
-  /// Takes what was read; `take` gets each line that is whole now, and none that is empty, as it is
-  /// visible at a terminal.
+  /// Adds a piece of text; `take` gets each complete line that is not empty, with control
+  /// characters escaped.
   void add(std::string_view piece, const Take& take) {
     while (!piece.empty()) {
       const auto end = piece.find('\n');
@@ -33,20 +32,19 @@ class Lines {
     }
   }
 
-  /// Takes what was begun as a line: there comes no more of it.
+  /// Ends the last line, if it is incomplete.
   void finish(const Take& take) {
     if (begun_.ends_with('\r')) begun_.pop_back();
     if (begun_.empty()) return;
     take(visible(std::exchange(begun_, {})));
   }
 
-  /// Keeps a line among the last ones.
   void keep(const std::string& line) {
     if (last_.size() == kLast) last_.pop_front();
     last_.push_back(line);
   }
 
-  /// The last lines, the newest at the end.
+  /// The kept lines, oldest first.
   [[nodiscard]] const std::deque<std::string>& last() const { return last_; }
   void forget() { last_.clear(); }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is asked of a graph that runs.
+// Commands to a running graph.
 #include <graph/run/live_change_test.h>
 
 #include <atomic>
@@ -11,8 +11,7 @@ TEST_F(LiveChange, WrongCommandsAreAnsweredAndChangeNothing) {
   add("camera").known = rate();
   beside([&] {
     EXPECT_EQ(ask({"remov camera"}), Lines{"no command \"remov\", did you mean \"remove\"?"});
-    EXPECT_EQ(ask({"stop it", "restart camra"}),
-              (Lines{"the command is: stop", "no module \"camra\""}));
+    EXPECT_EQ(ask({"stop it", "restart camra"}), (Lines{"usage: stop", "no module \"camra\""}));
     EXPECT_EQ(ask({}), Lines{"there is no command"});
     EXPECT_EQ(ask({"remove camera"}), (Lines{"one problem", "another"}));
     EXPECT_EQ(ask({"remove camra"}), Lines{"no module \"camra\", did you mean \"camera\"?"});
@@ -36,7 +35,7 @@ TEST_F(LiveChange, TheGraphGoesOnWhileAChangeIsPlanned) {
   plans_ = [&](int) {
     if (++plans == 1) await(again.descriptor());
   };
-  heard_ = [&](std::string_view) {
+  on_line_ = [&](std::string_view) {
     if (count("a: started") == 2) again.raise();
   };
   beside([&] {
@@ -123,7 +122,7 @@ TEST_F(LiveChange, WhoHasEndedRestsUntilThereIsMoreToRead) {
   auto& reader = add("reader", "exit 0");
   reader.ends = {{true, "in", "unix:@one?wait=1", ""}, {true, "in", "unix:@two?wait=1", ""}};
   add("stays");
-  heard_ = [this](std::string_view line) {
+  on_line_ = [this](std::string_view line) {
     if (line != "reader: ended" || thread_.joinable()) return;
     thread_ = std::thread([this] {
       Plan other = plan_;

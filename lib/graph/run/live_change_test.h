@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A graph that runs and is changed, for tests: the commands it gets, and what it is planned as
-// then.
+// Shared by tests that change a running graph.
 
 #include <poll.h>
 
@@ -22,7 +21,7 @@ namespace hc {
 
 using Lines = std::vector<std::string>;
 
-/// A graph that is loaded again when it is asked to be, as the plan that a test gave it.
+/// A running graph whose loader returns the plan set by plan_next().
 class LiveChange : public Run, private GraphLoader {
  protected:
   LiveChange() {
@@ -45,12 +44,12 @@ class LiveChange : public Run, private GraphLoader {
     return {{"rate", state}};
   }
 
-  /// Asks the graph that runs; gives its answer.
-  static Lines ask(const Lines& commands, const std::string& who = "answer") {
-    // A process that is being forked beside this may hold the socket of the last call for a moment.
+  /// Sends commands to the running graph; returns its answer.
+  static Lines ask(const Lines& commands, const std::string& name = "answer") {
+    // A unique name: a process forked meanwhile may keep the last socket open for a moment.
     static std::atomic<int> calls = 0;
     const std::string place =
-        "@live-" + who + "-" + std::to_string(::getpid()) + "-" + std::to_string(++calls);
+        "@live-" + name + "-" + std::to_string(::getpid()) + "-" + std::to_string(++calls);
     auto answers = open_source({"unix-listen", place, {}});
     HC_CHECK(answers, answers.error().detail);
     Lines rows = {"reply unix:" + place};
@@ -64,7 +63,7 @@ class LiveChange : public Run, private GraphLoader {
     return rows_of(answer);
   }
 
-  /// Does something beside the graph, and ends it then.
+  /// Calls a function on another thread, then stops the graph.
   void beside(std::function<void()> what) {
     thread_ = std::thread([this, what = std::move(what)] {
       what();
@@ -82,7 +81,7 @@ class LiveChange : public Run, private GraphLoader {
     std::lock_guard lock(mutex_);
     next_ = std::move(plan);
   }
-  /// Has the graph become a plan, by a command of no consequence.
+  /// Changes the graph to a plan, by a command whose effect the loader ignores.
   void change_to(const Plan& next) {
     plan_next(next);
     EXPECT_EQ(ask({"add x p"}), Lines{"ok"});
@@ -92,7 +91,7 @@ class LiveChange : public Run, private GraphLoader {
     return was_reloaded_;
   }
 
-  std::function<void(int stop)> plans_;  // called when it is planned
+  std::function<void(int stop)> plans_;  // called while planning
   std::thread thread_;
 
  private:
@@ -119,7 +118,7 @@ class LiveChange : public Run, private GraphLoader {
   bool was_reloaded_ = false;
 };
 
-/// Waits until somebody does not want to wait any more.
+/// Blocks until `stop` is readable.
 inline void await(int stop) {
   pollfd polled{stop, POLLIN, 0};
   HC_CHECK(::poll(&polled, 1, -1) == 1, "poll");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands that modules get when their graph changes.
+// Commands to modules when their graph changes.
 #include <graph/run/live_change_test.h>
 
 #include <memory>
@@ -7,7 +7,7 @@
 namespace hc {
 namespace {
 
-/// Takes the commands for a module, in its place.
+/// Receives the commands for a module.
 class Listener {
  public:
   explicit Listener(const PlannedModule& module)
@@ -47,7 +47,7 @@ TEST_F(LiveCommands, ReachAModuleThatListens) {
   });
   ASSERT_TRUE(run());
   EXPECT_EQ(count("camera: started"), 1);
-  EXPECT_TRUE(said("camera: set rate=10"));
+  EXPECT_TRUE(logged("camera: set rate=10"));
 }
 
 TEST_F(LiveCommands, AreReportedWhereAModuleRefusesOne) {
@@ -74,7 +74,7 @@ TEST_F(LiveCommands, WhoComesToListenGetsTheDifference) {
       other.modules[0].ends[0].uri = "unix:@" + std::to_string(i) + "?reconnect=1";
       change_to(other);
     }
-    EXPECT_EQ(ask({"add x p"}), Lines{"ok"});  // which makes no difference
+    EXPECT_EQ(ask({"add x p"}), Lines{"ok"});  // the same plan again
     Listener module(plan_.modules[0]);
     EXPECT_EQ(module.next(), "unlink in in=unix:@a?reconnect=1");
     EXPECT_EQ(module.next(), "set rate=1100");

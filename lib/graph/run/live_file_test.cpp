@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A graph whose file is edited as it runs.
+// A graph whose file is edited while it runs.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -8,7 +8,7 @@
 namespace hc {
 namespace {
 
-/// A graph that is read from a file.
+/// A running graph with a file.
 class LiveFile : public LiveChange {
  protected:
   LiveFile() {
@@ -25,7 +25,7 @@ class LiveFile : public LiveChange {
 
 TEST_F(LiveFile, AnEditedFileIsReadAnew) {
   add("a");
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     if (line == "a: started") write();
     if (line == "graph: keeping the running version") {
       EXPECT_TRUE(was_reloaded());
@@ -44,8 +44,8 @@ TEST_F(LiveFile, AnEditedFileIsReadAnew) {
     if (line == "b: started") stop();
   };
   ASSERT_TRUE(run());
-  EXPECT_TRUE(said("graph: one problem"));
-  EXPECT_TRUE(said("graph: another"));
+  EXPECT_TRUE(logged("graph: one problem"));
+  EXPECT_TRUE(logged("graph: another"));
   EXPECT_EQ(count("a: started"), 1);
 }
 
@@ -57,20 +57,20 @@ TEST_F(LiveFile, AnotherEditTakesThePlaceOfTheOneThatIsRead) {
     write();
     await(stop);
   };
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     if (line == "a: started") write();
   };
   stop_at("graph: unchanged");
   ASSERT_TRUE(run());
   EXPECT_EQ(plans, 2);
-  EXPECT_FALSE(said("graph: keeping the running version"));
+  EXPECT_FALSE(logged("graph: keeping the running version"));
 }
 
 TEST_F(LiveFile, AFileThatIsTakenAwayIsLoggedOnce) {
   add("a");
   plan_next(plan_);
   const std::string is_gone = "graph: " + file_ + " has been removed; keeping the running version";
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     if (line == "a: started") remove();
     if (line != is_gone) return;
     write();
@@ -78,8 +78,8 @@ TEST_F(LiveFile, AFileThatIsTakenAwayIsLoggedOnce) {
   };
   int states = 0;
   options_.state = [&](const GraphState&) {
-    // By the second it has been noticed that the file was there, and has been removed again.
-    if (said(is_gone) && ++states == 3) write();
+    // By the second state, the runner has noticed that the file was there and was removed again.
+    if (logged(is_gone) && ++states == 3) write();
   };
   stop_at("graph: unchanged");
   ASSERT_TRUE(run());

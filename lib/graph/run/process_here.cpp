@@ -19,9 +19,9 @@ namespace {
 using internal::Announcer;
 using internal::Intake;
 
-constexpr std::size_t kPiece = std::size_t{64} << 10;  // a pipe holds as much
-constexpr int kLastPieces = 16;  // a pipe can be made to hold a MiB; source: man 7 pipe
-constexpr std::uint64_t kMostReported = std::uint64_t{1} << 20;  // in one message [byte]
+constexpr std::size_t kPiece = std::size_t{64} << 10;  // default capacity of a pipe
+constexpr int kLastPieces = 16;  // a pipe can be enlarged to 1 MiB; source: man 7 pipe
+constexpr std::uint64_t kMaxReport = std::uint64_t{1} << 20;  // [byte]
 
 class ProcessHere final : public ModuleProcess {
  public:
@@ -30,7 +30,7 @@ class ProcessHere final : public ModuleProcess {
 
   Status listen(const std::string& manage_uri) {
     LinkOptions options;
-    options.limits.element_bytes = kMostReported;
+    options.limits.element_bytes = kMaxReport;
     reports_ = HC_TRY(Intake::make(
         loop_, manage_uri, [this](const Message& message) { callbacks_.reported(message); },
         options));
@@ -41,16 +41,16 @@ class ProcessHere final : public ModuleProcess {
     if (control_uri.empty()) commands_.reset();
     if (!control_uri.empty() && !commands_)
       commands_ = HC_TRY(Announcer::make(loop_, control_uri, [this] {
-        return process_ ? callbacks_.listens() : std::vector<Message>();
+        return process_ ? callbacks_.connected() : std::vector<Message>();
       }));
     HC_TRY(names_.hold(command));
     auto started =
         HC_TRY(Process::start(command, Process::Capture::Errors, {key_, names_.descriptors()}));
-    auto said = HC_TRY(loop_.watch(started.output(), EPOLLIN, [this](auto) { read(); }));
-    auto ended = HC_TRY(loop_.watch(started.ended(), EPOLLIN, [this](auto) { look(); }));
+    auto output = HC_TRY(loop_.watch(started.output(), EPOLLIN, [this](auto) { read(); }));
+    auto end = HC_TRY(loop_.watch(started.ended(), EPOLLIN, [this](auto) { check_end(); }));
     process_.emplace(std::move(started));
-    said_ = std::move(said);
-    ended_ = std::move(ended);
+    output_ = std::move(output);
+    end_ = std::move(end);
     return {};
   }
 
@@ -62,27 +62,27 @@ class ProcessHere final : public ModuleProcess {
     if (process_) process_->kill();
   }
 
-  void look() override {
+  void check_end() override {
     const auto status = process_ ? process_->poll_status() : std::nullopt;
     if (!status) return;
     reports_->take_rest();
-    // Its last lines are in the pipe, which another process may hold open for ever.
-    for (int piece = 0; piece < kLastPieces && said_; ++piece) read();
-    said_.reset();
-    ended_.reset();
+    // Read its last lines. Not until the end of the pipe: another process may keep it open.
+    for (int piece = 0; piece < kLastPieces && output_; ++piece) read();
+    output_.reset();
+    end_.reset();
     process_.reset();
     processes_.clear();
     memory_.reset();
-    if (commands_) commands_->leave_all();
+    if (commands_) commands_->disconnect_all();
     callbacks_.ended(*status);
   }
 
-  void let_names_go() override { names_.let_go(); }
+  void release_names() override { names_.release(); }
 
   [[nodiscard]] bool is_listening() const override {
-    return process_ && commands_ && commands_->is_heard();
+    return process_ && commands_ && commands_->has_peers();
   }
-  bool send(const Message& command) override { return !commands_ || commands_->say(command); }
+  bool send(const Message& command) override { return !commands_ || commands_->send(command); }
 
   [[nodiscard]] pid_t number() const override { return process_ ? process_->number() : 0; }
   Usage usage(bool with_memory) override {
@@ -96,16 +96,16 @@ class ProcessHere final : public ModuleProcess {
   }
 
  private:
-  /// Hands on one piece of its log, so that a module that never stops does not keep the loop from
-  /// other work. After too much, reading pauses.
+  /// Reads one piece of its log per turn, so that endless output does not block the loop; pauses
+  /// above the limit.
   void read() {
     static thread_local std::array<char, kPiece> piece;
-    static_cast<void>(said_.want(EPOLLIN));
+    static_cast<void>(output_.want(EPOLLIN));
     const ssize_t size = ::read(process_->output(), piece.data(), piece.size());
-    if (size == 0) said_.reset();
-    if (size <= 0 || callbacks_.said({piece.data(), static_cast<std::size_t>(size)})) return;
-    static_cast<void>(said_.want(0));
-    said_.call_at(std::chrono::steady_clock::now() + LogLimit::kPause);
+    if (size == 0) output_.reset();
+    if (size <= 0 || callbacks_.wrote({piece.data(), static_cast<std::size_t>(size)})) return;
+    static_cast<void>(output_.want(0));
+    output_.call_at(std::chrono::steady_clock::now() + LogLimit::kPause);
   }
 
   Loop& loop_;
@@ -113,11 +113,11 @@ class ProcessHere final : public ModuleProcess {
   const ModuleCallbacks callbacks_;
   std::unique_ptr<Intake> reports_;
   std::unique_ptr<Announcer> commands_;
-  internal::HeldNames names_;  // of all its processes
+  internal::HeldNames names_;
   std::optional<Process> process_;
-  std::vector<pid_t> processes_;         // when they were last looked for,
-  std::optional<std::uint64_t> memory_;  // and this
-  Loop::Handle said_, ended_;
+  std::vector<pid_t> processes_;         // as last found
+  std::optional<std::uint64_t> memory_;  // as last measured
+  Loop::Handle output_, end_;
 };
 
 }  // namespace
@@ -130,13 +130,13 @@ Result<std::unique_ptr<ModuleProcess>> make_process_here(Loop& loop, const std::
 }
 
 Result<std::shared_ptr<void>> read_in_place_here(Loop& loop, std::string reader_uri, int key) {
-  // Modules find the key at another descriptor.
+  // The key has another descriptor here than in modules.
   if (const auto at = reader_uri.find(kKeyFile); at != std::string::npos && key >= 0)
     reader_uri.replace(at, kKeyFile.size(), "/proc/self/fd/" + std::to_string(key));
   auto uri = HC_TRY(parse_uri(reader_uri));
-  constexpr std::array<std::string_view, 4> kWhoMay = {"same_user", "key", "peer", "interface"};
+  constexpr std::array<std::string_view, 4> kNeeded = {"same_user", "key", "peer", "interface"};
   std::erase_if(uri.options, [&](const auto& option) {
-    return std::find(kWhoMay.begin(), kWhoMay.end(), option.first) == kWhoMay.end();
+    return std::find(kNeeded.begin(), kNeeded.end(), option.first) == kNeeded.end();
   });
   uri.options.emplace_back("reconnect", "86400");
   if (uri.scheme == "shm" || uri.scheme == "dds") uri.options.emplace_back("keep", "latest");

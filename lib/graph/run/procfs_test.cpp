@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A shell that has said that it is ready.
+/// A shell that has printed something.
 Process ready_shell(const std::string& script) {
   auto process = Process::start({"/bin/sh", "-c", script}, Process::Capture::Output);
   HC_CHECK(process, process.error().detail);
@@ -27,7 +27,7 @@ TEST(ProcessLook, FindsAllThatDescends) {
   auto process = ready_shell("setsid sh -c 'echo; sleep 1000; true' & exec sleep 1000");
   const pid_t program = process.number();
   EXPECT_EQ(::kill(program, 0), 0);
-  // The shell's own child is forked behind the line that was heard.
+  // The inner shell forks its child only after its line.
   std::vector<pid_t> all;
   while (all.size() < 3) all = descendants(process.guard_number());
   EXPECT_EQ(all.front(), program);

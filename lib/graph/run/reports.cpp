@@ -9,10 +9,9 @@
 namespace hc::internal {
 namespace {
 
-constexpr std::size_t kMostKey = 4096;  // of an end [byte]
+constexpr std::size_t kMaxKey = 4096;  // [byte]
 
-/// The end of a link without its options: the same while its policy changes, and readers come and
-/// go.
+/// Identifies an end of a link, without its options, which may change.
 std::string end_key(const PlannedEnd& end) {
   std::string key = (end.is_input ? "in " : "out ") + end.port + " ";
   auto parsed = parse_uri(end.uri);
@@ -21,7 +20,7 @@ std::string end_key(const PlannedEnd& end) {
   return key + parsed->text();
 }
 
-/// Adds what another link, or process, of the same end has counted.
+/// Adds the counters of another link or process at the same end.
 void add(const LinkCounters& row, LinkCounters& sum) {
   sum.traffic += row.traffic;
   sum.ignored += row.ignored;
@@ -32,7 +31,7 @@ void add(const LinkCounters& row, LinkCounters& sum) {
 
 }  // namespace
 
-/// Has what comes next count from 0.
+/// Moves the current counters to the past ones.
 void Reports::Counted::end() {
   add(std::exchange(now, {}), past);
   report.per_second = report.bytes_per_second = 0;
@@ -70,7 +69,7 @@ bool Reports::take(const Message& message, MonotonicTime now) {
     case Report::Counters:
       break;
   }
-  // A program that is no module of ours may leave src out.
+  // Programs with their own implementation of reports may leave src at 0.
   if (message.header.src <= static_cast<int>(Report::Counters))
     take_counters(read_counters(message), now);
   return false;
@@ -92,8 +91,8 @@ void Reports::take_counters(const std::vector<LinkCounters>& rows, MonotonicTime
 }
 
 void Reports::count(Counted& counted, const LinkCounters& row, bool is_input, MonotonicTime now) {
-  constexpr double kSilent = 5;      // after which nothing comes any more [s]
-  constexpr double kShortest = 0.1;  // what came together says nothing of a rate [s]
+  constexpr double kSilent = 5;      // then the rate is 0 [s]
+  constexpr double kShortest = 0.1;  // least interval for a rate [s]
   const Traffic& traffic = row.traffic;
   if (traffic.messages < counted.now.traffic.messages) counted.end();  // the link was replaced
   const Traffic& before = counted.measured;
@@ -114,8 +113,7 @@ void Reports::count(Counted& counted, const LinkCounters& row, bool is_input, Mo
     report.bytes_per_second = is_first ? 0 : bytes / seconds;
     counted.arrived = now;
     counted.measured = traffic;
-  } else if (messages == 0 &&
-             report.per_second * seconds > 1) {  // less than one in the time since the last
+  } else if (messages == 0 && report.per_second * seconds > 1) {  // a message is overdue
     const double slower = seconds > kSilent ? 0 : 1 / (seconds * report.per_second);
     report.per_second *= slower;
     report.bytes_per_second *= slower;
@@ -133,7 +131,7 @@ bool Reports::take_links(const Message& message) {
   std::vector<std::string> order;
   for (const auto& link : read_links(message)) {
     if (order.size() == kMostEnds) break;
-    order.push_back(end_key({link.is_input, link.port, link.uri, {}}).substr(0, kMostKey));
+    order.push_back(end_key({link.is_input, link.port, link.uri, {}}).substr(0, kMaxKey));
   }
   has_links_ = true;
   for (auto& [key, counted] : ends_)
@@ -143,7 +141,7 @@ bool Reports::take_links(const Message& message) {
 
 bool Reports::take_state(const StateReport& state) {
   StateReport before = std::exchange(state_, state);
-  before.blocked_row = state.blocked_row;  // no change yet: it may be short
+  before.blocked_row = state.blocked_row;  // not a change, as most blocks are short
   return before != state;
 }
 

@@ -14,8 +14,7 @@ class ReportsTest : public ::testing::Test {
  protected:
   static Message table(std::int32_t src, std::vector<std::vector<std::int64_t>> rows) {
     Draft draft = Draft::make({MatrixType::Table, static_cast<std::uint8_t>(rows[0].size()),
-                               Scalar::I64, Encoding::Binary},
-                              1, static_cast<std::int32_t>(rows.size()));
+                               Scalar::I64, Encoding::Binary}, static_cast<std::int32_t>(rows.size()), 1);
     for (std::size_t i = 0; i < rows.size(); ++i)
       std::copy(rows[i].begin(), rows[i].end(), draft.view<std::int64_t>().row(i).begin());
     draft.header.src = src;
@@ -26,7 +25,7 @@ class ReportsTest : public ::testing::Test {
     message.header.src = src;
     return message;
   }
-  /// Counters as of after half a second more.
+  /// Reports counters, 0.5 s after the last ones.
   void count(std::vector<std::vector<std::int64_t>> rows) {
     reports_.take(table(1, std::move(rows)), now_ += 500ms);
   }
@@ -118,7 +117,7 @@ TEST_F(ReportsTest, CountsGoOnWhenItIsStartedAnew) {
   count({{2, 2}, {200, 2000}});
   EXPECT_EQ(reports_.find(out_)->traffic.messages, 300U);
   EXPECT_EQ(reports_.find(out_)->per_second, 0);
-  count({{2, 2}, {50, 500}});  // a link that was opened again counts from 0 too
+  count({{2, 2}, {50, 500}});  // a reopened link counts from 0
   EXPECT_EQ(reports_.find(out_)->traffic.messages, 350U);
 }
 
@@ -128,11 +127,11 @@ TEST_F(ReportsTest, CountsGoOnWhenALinkGetsAnotherPolicy) {
   PlannedEnd other{false, "out", "shm:t.a.out?readers=2&stay=1&rate=5", ""};
   reports_.set_ends({other, in_});
   EXPECT_EQ(reports_.find(other)->traffic.messages, 100U);
-  count({{1, 1}, {110, 1100}});  // as it is taken away
+  count({{1, 1}, {110, 1100}});  // at its removal
   reports_.take(rows(2, {"in in unix:@t"}), now_);
   count({{2, 2}});
   reports_.take(rows(2, {"in in unix:@t", "out out shm:t.a.out?readers=2&stay=1&rate=5"}), now_);
-  count({{3, 3}, {200, 2000}});  // more than before already
+  count({{3, 3}, {200, 2000}});  // the new link has already counted more
   EXPECT_EQ(reports_.find(in_)->traffic.messages, 3U);
   EXPECT_EQ(reports_.find(other)->traffic.messages, 310U);
 }
@@ -177,7 +176,7 @@ TEST_F(ReportsTest, ParametersAndModeTellOfChangesAlone) {
   EXPECT_TRUE(reports_.take(table(4, {{2, 1, 0}}), now_));
   EXPECT_FALSE(reports_.take(table(4, {{2, 1, 0}}), now_));
   EXPECT_EQ(reports_.state().blocked_row, 0);
-  EXPECT_FALSE(reports_.take(table(4, {{2, 1, 0, 2}}), now_));  // no change yet: it may be short
+  EXPECT_FALSE(reports_.take(table(4, {{2, 1, 0, 2}}), now_));  // not a change
   EXPECT_EQ(reports_.state().blocked_row, 2);
   EXPECT_EQ(reports_.blocked_output(), "out");
   EXPECT_EQ(reports_.state().mode, 2);

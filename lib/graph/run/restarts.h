@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// When a module that has ended is started again, and when it is given up. Pure: the time is passed
-// in.
+// Decides when to restart an ended module, and when to give up. Pure: the time is a parameter.
 
 #include <chrono>
 #include <cstdint>
@@ -14,19 +13,18 @@
 
 namespace hc::internal {
 
-/// The starts of one module.
+/// The restarts of one module.
 ///
-/// The first few follow one another at once; then each is put off by a delay that doubles, uniform
-/// between its half and its whole, so that many who lost the same thing do not come back together.
-/// A run that was long enough makes all that came before forgotten.
+/// The first few are immediate; then a delay doubles each time, randomly reduced by up to a half,
+/// so that modules that failed together do not restart together. A long run resets the count.
 class Restarts {
  public:
   static constexpr int kBadArguments = 2;  ///< exit status: a restart would fail again
 
   enum class Next {
     End,     ///< it has done its work
-    Again,   ///< it is to be started once `delay` has passed
-    GiveUp,  ///< it is not started again, though it has not done its work
+    Again,   ///< start it after `delay`
+    GiveUp,  ///< it has failed permanently
   };
   struct Decision {
     Next next = Next::End;
@@ -39,17 +37,15 @@ class Restarts {
         random_(seed),
         delay_(limits.first_delay, limits.longest_delay) {}
 
-  /// Notes that the module has been started.
   void started(MonotonicTime now);
 
-  /// Says what follows its end. Status 2, bad arguments, would be the same again.
+  /// Decides after its end.
   Decision ended(int status, MonotonicTime now);
 
-  /// Says what follows where it was lost with its host: the start does not count, as it has not
-  /// failed.
+  /// Decides after the connection to its host was lost: that start does not count.
   Decision lost(MonotonicTime now);
 
-  /// Forgets all starts: somebody has changed what made it fail.
+  /// Forgets all starts, since the cause of failures may have been fixed.
   void reset();
   void set_policy(Restart policy) { policy_ = policy; }
 
@@ -60,8 +56,8 @@ class Restarts {
   RestartLimits limits_;
   std::minstd_rand random_;
   std::vector<MonotonicTime> starts_;  // within the window
-  int delayed_ = 0;                    // starts that were put off,
-  Backoff delay_;                      // and for how long
+  int delayed_ = 0;                    // starts with a delay
+  Backoff delay_;
 };
 
 }  // namespace hc::internal

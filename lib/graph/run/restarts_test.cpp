@@ -11,10 +11,10 @@ namespace {
 using namespace std::chrono_literals;
 using Next = Restarts::Next;
 
-/// A module's starts and ends, at times that pass at once.
+/// Starts and ends a module, with a simulated clock.
 class RestartsTest : public ::testing::Test {
  protected:
-  /// Runs once for so long.
+  /// Runs once for this time.
   Restarts::Decision run(Restarts& restarts, std::chrono::nanoseconds time, int status = 1) {
     restarts.started(now_);
     now_ += time;

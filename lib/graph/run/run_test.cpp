@@ -26,14 +26,14 @@ TEST_F(Run, AFailureEndsTheOthers) {
   const auto report = refused(run());
   EXPECT_EQ(report.code, Code::Closed);
   EXPECT_EQ(report.detail, "module b: failed with status 3");
-  EXPECT_TRUE(said("b: failed with status 3"));
-  EXPECT_TRUE(said("a: ended"));  // by our signal, which it did not catch
+  EXPECT_TRUE(logged("b: failed with status 3"));
+  EXPECT_TRUE(logged("a: ended"));  // by SIGTERM, which it did not catch
 }
 
 TEST_F(Run, ASignalIsNamed) {
   add("a", "kill -KILL $$");
   EXPECT_EQ(refused(run()).detail, "module a: killed by signal 9");
-  EXPECT_TRUE(said("a: killed by signal 9"));
+  EXPECT_TRUE(logged("a: killed by signal 9"));
 }
 
 TEST_F(Run, AMissingProgramIsNamed) {
@@ -41,17 +41,17 @@ TEST_F(Run, AMissingProgramIsNamed) {
   add("b", "");
   plan_.modules[1].program = "/nowhere/program";
   EXPECT_EQ(refused(run()).detail, "module b: failed with status 127");
-  EXPECT_TRUE(said("b: exec(/nowhere/program): No such file or directory"));
+  EXPECT_TRUE(logged("b: exec(/nowhere/program): No such file or directory"));
 }
 
 TEST_F(Run, AFloodOfLinesDoesNotKeepItFromStopping) {
-  // The module is always one line ahead: for each that is heard, one more has been said.
+  // The module is always one line ahead of the reader.
   std::string path = ::testing::TempDir() + token_;
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   add("a", "echo flood >&2; exec 3>" + path + "; while echo flood >&2; do echo >&3; done");
   stop_at("a: flood");
   Descriptor fifo;
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     if (line != "a: flood") return;
     if (!fifo) fifo = Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     char letter = 0;
@@ -64,7 +64,7 @@ TEST_F(Run, AFloodOfLinesDoesNotKeepItFromStopping) {
 }
 
 TEST_F(Run, WhoHoldsStandardErrorOpenIsNotWaitedFor) {
-  // The shell continues when standard output is closed, which is when the sleep begins.
+  // The outer shell continues when the sleep has closed standard output.
   add("a", "pid=$(setsid sh -c 'echo $$; exec sleep 1000 >&2' &); echo $pid >&2");
   must(run());
   ASSERT_EQ(lines_.size(), 3U);
@@ -73,11 +73,11 @@ TEST_F(Run, WhoHoldsStandardErrorOpenIsNotWaitedFor) {
 }
 
 TEST_F(Run, LastWordsAreHeard) {
-  constexpr int kLines = 8000;  // some 40 kB, which stand in the pipe when it has ended
+  constexpr int kLines = 8000;  // about 40 kB, still in the pipe when it has ended
   add("a", "seq 1 " + std::to_string(kLines) + " >&2");
   must(run());
   EXPECT_EQ(lines_.size(), kLines + 2U);
-  EXPECT_TRUE(said("a: 8000"));
+  EXPECT_TRUE(logged("a: 8000"));
 }
 
 }  // namespace

@@ -50,18 +50,18 @@ Status Runner::begin() {
   }));
   if (options_.hosts != nullptr) {
     hosts_ = HC_TRY(
-        loop_->watch(options_.hosts->descriptor(), EPOLLIN, [this](auto) { look_at_hosts(); }));
+        loop_->watch(options_.hosts->descriptor(), EPOLLIN, [this](auto) { update_hosts(); }));
   }
   if (options_.loader != nullptr && !graph_.files.empty()) {
     files_ = HC_TRY(FileWatch::make(*loop_, graph_.files, [this] { reload(); }));
   }
-  // All listen before one starts: who comes early finds its peers.
+  // Listen for all modules before starting the first.
   for (const auto& planned : plan_.modules) {
     modules_[planned.name] = HC_TRY(make(planned));
   }
   pollfd stop{options_.stop, POLLIN, 0};
   for (const auto& planned : plan_.modules) {
-    if (::poll(&stop, 1, 0) > 0) break;  // the loop ends those that have been started
+    if (::poll(&stop, 1, 0) > 0) break;  // the loop will end the started ones
     HC_TRY(find(planned.name)->start());
   }
   tick();
@@ -72,10 +72,12 @@ Result<std::unique_ptr<Supervised>> Runner::make(const PlannedModule& module) {
   const std::string& name = module.name;
   Supervised::Callbacks callbacks;
   callbacks.event = [this, name](Level level, const auto& text) { log({name, level, text}); };
-  callbacks.said = [this, name](Level level, const auto& text) { take_line({name, level, text}); };
-  callbacks.failed = [this, name](const std::deque<std::string>& last_words) {
+  callbacks.logged = [this, name](Level level, const auto& text) {
+    take_line({name, level, text});
+  };
+  callbacks.failed = [this, name](const std::deque<std::string>& last_lines) {
     if (!options_.with_module_lines)
-      for (const auto& line : last_words) print({name, Level::Warning, line});
+      for (const auto& line : last_lines) print({name, Level::Warning, line});
   };
   callbacks.changed = [this] {
     is_unsettled_ = true;
@@ -114,7 +116,7 @@ Supervised* Runner::at(const std::string& end) const {
   return find(end.substr(0, end.find('.')));
 }
 
-/// The modules that a module is linked to, but for itself.
+/// The modules linked to a module, except itself.
 std::set<Supervised*> Runner::neighbours_of(const std::string& name) const {
   std::set<Supervised*> neighbours;
   for (const auto& link : plan_.links) {
@@ -126,8 +128,8 @@ std::set<Supervised*> Runner::neighbours_of(const std::string& name) const {
   return neighbours;
 }
 
-/// Who ends when a module does, though not for good: its neighbours without `control`, and theirs,
-/// which may have ended before these have.
+/// The modules that end, temporarily, when a module ends: its neighbours without `control`, and
+/// transitively theirs, in any order.
 std::set<Supervised*> Runner::cut_off_by(const std::string& name) const {
   std::set<Supervised*> cut_off;
   std::vector<std::string> way = {name};
@@ -161,7 +163,7 @@ void Runner::take_line(LogLine line) {
   if (server_ && line.level != Level::Notice) server_->log(line);
 }
 
-/// Puts "MODULE.PORT → MODULE.PORT" in the place of a link's URI.
+/// Replaces a link's URI by "MODULE.PORT → MODULE.PORT".
 std::string Runner::with_link_names(std::string line) const {
   const bool has_token = !plan_.token.empty() && line.find(plan_.token) != std::string::npos;
   if (!has_token && plan_.ports.empty()) return line;
@@ -177,7 +179,7 @@ std::string Runner::with_link_names(std::string line) const {
 
 void Runner::tick() {
   const auto time = now();
-  for (auto& [name, module] : modules_) module->look(time);
+  for (auto& [name, module] : modules_) module->check(time);
   if (ticks_++ % kTicksOfState == 0) {
     if (server_ && server_->has_clients()) {
       for (auto& [name, module] : modules_)
@@ -189,10 +191,10 @@ void Runner::tick() {
   tick_ = loop_->call_at(MonotonicClock::now() + kTick, [this] { tick(); });
 }
 
-/// A host has been lost, or is there again.
-void Runner::look_at_hosts() {
+/// Handles lost and restored connections to hosts.
+void Runner::update_hosts() {
   for (const auto& line : options_.hosts->take_events()) log(line, Level::Warning);
-  for (auto& [name, module] : modules_) module->look_at_host();
+  for (auto& [name, module] : modules_) module->check_host();
   is_unsettled_ = true;
   if (server_) server_->changed();
 }
@@ -202,7 +204,7 @@ bool Runner::is_over() const {
                                          [](const auto& entry) { return entry.second->is_over(); });
 }
 
-/// Does what follows of what has happened in a turn.
+/// Handles the consequences of a turn.
 void Runner::settle() {
   if (!failures_.empty()) settle_failures();
   for (const auto& [name, module] : modules_)
@@ -214,11 +216,10 @@ void Runner::settle() {
   std::erase_if(leaving_, [](const auto& entry) { return entry.second->is_over(); });
 }
 
-/// Ends the graph. Who was killed is the cause of what others say of their links.
+/// Ends the graph. A killed module is the cause; its peers' errors are symptoms.
 void Runner::settle_failures() {
-  // A copy, since what is noted may add to them; and behind the others, so that none is blamed for
-  // our own signal.
-  for (auto& [name, module] : modules_) module->look_for_end();
+  // Note all ends so far, before the runner's own signals end more modules.
+  for (auto& [name, module] : modules_) module->check_end();
   auto cause = std::find_if(failures_.begin(), failures_.end(),
                             [](const Failure& each) { return each.status > kSignal; });
   if (cause == failures_.end()) cause = failures_.begin();
@@ -234,17 +235,16 @@ void Runner::end_all() {
   for (auto& [name, module] : modules_) module->end();
 }
 
-/// Sees to it that no writer waits for a reader that has ended for good, and no reader for a
-/// writer.
+/// Makes sure that no module waits for a reader or writer that has ended for good.
 void Runner::settle_links() {
   if (is_stopping_) return;
-  std::map<LinkName, const PlannedLink*> to_read;  // in the place of their readers
+  std::map<LinkName, const PlannedLink*> to_read;  // instead of their readers
   for (const auto& link : plan_.links) {
     const Supervised* writer = at(link.from);
     Supervised* reader = at(link.to);
     if (writer == nullptr || reader == nullptr) continue;
     if (reader->is_over() && !writer->is_over()) to_read[{link.from, link.to}] = &link;
-    if (reader->is_over() || !link.lasts) continue;
+    if (reader->is_over() || !link.reconnects) continue;
     reader->finish_input(link.end(true), writer->status() == ModuleStatus::Ended);
   }
   std::erase_if(drains_, [&](const auto& entry) { return !to_read.contains(entry.first); });
@@ -257,7 +257,7 @@ void Runner::settle_links() {
   end_unneeded();
 }
 
-/// What reads in the place of a module that is over, on its host.
+/// Reads a link in place of a module that has ended, on its host.
 Result<std::shared_ptr<void>> Runner::drain_for(const PlannedModule& reader,
                                                 const std::string& uri) const {
   if (!reader.host.empty() && options_.hosts != nullptr)
@@ -265,9 +265,9 @@ Result<std::shared_ptr<void>> Runner::drain_for(const PlannedModule& reader,
   return read_in_place_here(*loop_, uri, options_.hosts == nullptr ? -1 : options_.hosts->key());
 }
 
-/// A module all of whose readers have done their work has nothing left to do.
+/// Ends modules whose readers have all finished.
 void Runner::end_unneeded() {
-  std::map<std::string, bool> is_needed;  // of writers
+  std::map<std::string, bool> is_needed;  // by writer
   for (const auto& link : plan_.links) {
     const Supervised* reader = at(link.to);
     const bool is_done = reader != nullptr && reader->status() == ModuleStatus::Ended;

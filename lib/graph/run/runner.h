@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A graph at work: its modules, the links between them, and what others ask of it. Internal to
-// graph.
+// Runs a graph: modules, the links between them, and commands of clients. Internal to graph.
 
 #include <deque>
 #include <functional>
@@ -34,30 +33,29 @@ class Runner {
     std::string module;
     int status;
   };
-  struct Change {                        // that is wanted
-    std::vector<GraphCommand> commands;  // none: a file was edited
+  struct Change {
+    std::vector<GraphCommand> commands;  // empty: a file was edited
     GraphServer::Reply reply;
   };
 
   Status begin();
   Result<std::unique_ptr<Supervised>> make(const PlannedModule& module);
   [[nodiscard]] Supervised* find(const std::string& name) const;
-  /// The module of "MODULE.PORT"; null where it is the world outside.
+  /// The module of "MODULE.PORT"; null outside the graph.
   [[nodiscard]] Supervised* at(const std::string& end) const;
 
   [[nodiscard]] std::set<Supervised*> neighbours_of(const std::string& name) const;
   [[nodiscard]] std::set<Supervised*> cut_off_by(const std::string& name) const;
 
   void print(const LogLine& line) const;
-  /// Prints a line, and publishes it in the log.
+  /// Prints and publishes a line.
   void log(const LogLine& line);
   void log(const std::string& text, Level level = Level::Info) { log({"graph", level, text}); }
-  /// Takes a line of a module's log.
   void take_line(LogLine line);
   [[nodiscard]] std::string with_link_names(std::string line) const;
 
   void tick();
-  void look_at_hosts();
+  void update_hosts();
   void settle();
   void settle_failures();
   void settle_links();
@@ -90,26 +88,25 @@ class Runner {
   static constexpr std::size_t kMaxResults = 100;
 
   const RunOptions& options_;
-  Graph graph_;  // as `plan_` was made of it
+  Graph graph_;  // from which `plan_` was made
   Plan plan_;
   MonotonicTime begun_{0};
   int ticks_ = 0;
   bool is_stopping_ = false, is_stopped_ = false;
-  bool is_file_gone_ = false;  // the graph's own
-  bool is_running_ = false;    // all modules of its begin have run
+  bool is_file_gone_ = false;  // the graph file was removed
+  bool is_running_ = false;    // all first modules have run
   bool is_unsettled_ = false;  // a module has started or ended, or links have changed
   std::vector<Failure> failures_;
   std::vector<LogLine> results_;  // and errors
   Status outcome_;
-  std::deque<Change> changes_;           // the first of them may be being planned
-  std::map<std::string, int> observed_;  // outputs that have been observed, and their numbers
-  std::unique_ptr<Loop> own_loop_;       // without hosts, which have a loop
+  std::deque<Change> changes_;           // queued; the first may be in planning
+  std::map<std::string, int> observed_;  // numbers of outputs that have been observed
+  std::unique_ptr<Loop> own_loop_;       // null if hosts provide one
   Loop* loop_ = nullptr;
   std::unique_ptr<GraphServer> server_;
   std::unique_ptr<FileWatch> files_;
   Aside planning_;
-  // In the place of readers that are over; null: it failed.
-  std::map<LinkName, std::shared_ptr<void>> drains_;
+  std::map<LinkName, std::shared_ptr<void>> drains_;  // replace ended readers; null: it failed
   std::map<std::string, std::unique_ptr<Supervised>> modules_, leaving_;  // by name
   Loop::Handle stop_, tick_, hosts_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a running graph is changed: by its files, and by commands.
+// Changes of a running graph, by its files and by commands.
 #include <graph/run/runner.h>
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kIsStopping = "the graph is stopping";
 
-constexpr std::size_t kMostChanges = 100;  // that wait, as some may need a slow program
+constexpr std::size_t kMostChanges = 100;  // queued while a slow program describes itself
 
 using Commands = std::vector<GraphCommand>;
 
@@ -21,7 +21,7 @@ bool has_edits(const Commands& commands) {
                      [](const GraphCommand& command) { return command.is_edit(); });
 }
 
-/// Whether commands leave modules and links as they are.
+/// Whether the edits among the commands only set parameters.
 bool only_set(const Commands& commands) {
   return std::all_of(commands.begin(), commands.end(), [](const GraphCommand& command) {
     return !command.is_edit() || command.verb == GraphCommand::Verb::Set;
@@ -30,7 +30,7 @@ bool only_set(const Commands& commands) {
 
 }  // namespace
 
-/// Loads the graph again, as its files have changed.
+/// Reloads the graph after a change of its files.
 void Runner::reload() {
   if (is_stopping_) return;
   const auto& file = graph_.files.front();
@@ -40,14 +40,14 @@ void Runner::reload() {
   is_file_gone_ = is_gone;
   if (is_gone) return;
   auto is_reload = [](const Change& change) { return change.commands.empty(); };
-  // A queued reload reads the newest files; one in progress is out of date.
+  // A queued reload will read the newest files; one in progress is out of date.
   if (!changes_.empty() && std::any_of(changes_.begin() + 1, changes_.end(), is_reload)) return;
   if (!changes_.empty() && is_reload(changes_.front())) planning_.stop();
   changes_.push_back({});
   begin_changes();
 }
 
-/// Does all of some commands, or none.
+/// Executes all commands, or none.
 void Runner::obey(const std::vector<std::string>& lines, const GraphServer::Reply& reply) {
   std::vector<std::string> wrong;
   Commands commands;
@@ -56,7 +56,7 @@ void Runner::obey(const std::vector<std::string>& lines, const GraphServer::Repl
     if (!command)
       wrong.push_back(command.error().detail);
     else if (command->is_question() && lines.size() > 1)
-      wrong.push_back(line + ": it stands alone in a message");
+      wrong.push_back(line + ": send it alone in a message");
     else if (command->is_question())
       return reply(answer_to(*command));
     else if (command->verb == GraphCommand::Verb::Restart && find(command->words[0]) == nullptr)
@@ -66,8 +66,7 @@ void Runner::obey(const std::vector<std::string>& lines, const GraphServer::Repl
   }
   if (lines.empty()) wrong.emplace_back("there is no command");
   if (is_stopping_) wrong.emplace_back(kIsStopping);
-  if (changes_.size() >= kMostChanges)
-    wrong.emplace_back("too many changes are waiting; try again");
+  if (changes_.size() >= kMostChanges) wrong.emplace_back("too many queued changes; try again");
   if (!wrong.empty()) return reply({false, wrong});
   if (!has_edits(commands)) {
     carry_out(commands);
@@ -83,7 +82,7 @@ GraphAnswer Runner::answer_to(const GraphCommand& question) {
   return found ? GraphAnswer{true, {*found}} : GraphAnswer{false, {found.error().detail}};
 }
 
-/// Opens an output to observers; of an input, the output that it is linked to.
+/// Opens an output to observers. For an input, opens the output linked to it.
 Result<std::string> Runner::observe(const std::string& port) {
   std::vector<std::string> known, writers;
   for (const auto& [output, address] : plan_.sources) known.push_back(output);
@@ -100,8 +99,7 @@ Result<std::string> Runner::observe(const std::string& port) {
       plan_.sources.contains(output) || output.ends_with("." + std::string(kTracePort));
   Supervised* module = is_output ? at(output) : nullptr;
   if (module == nullptr && !writers.empty())
-    return Error{Code::Invalid,
-                 port + " is fed by " + output + ", which no module of the graph is"};
+    return Error{Code::Invalid, port + " is fed by " + output + ", which is outside the graph"};
   if (module == nullptr)
     return Error{Code::Invalid, "no port \"" + port + "\"" + suggestion(port, known)};
   if (module->plan().control_uri.empty())
@@ -122,7 +120,7 @@ Result<std::string> Runner::describe(const std::string& module) const {
   return Error{Code::Invalid, "no module \"" + module + "\"" + suggestion(module, known)};
 }
 
-/// Does what commands say that change nothing in the plan.
+/// Executes the commands that do not change the plan.
 void Runner::carry_out(const Commands& commands) {
   for (const auto& command : commands) {
     if (command.verb == GraphCommand::Verb::Restart) {
@@ -134,8 +132,8 @@ void Runner::carry_out(const Commands& commands) {
   }
 }
 
-/// Does the changes that are wanted, up to the first that has to be planned: that is done on
-/// another thread, as a new program may be slow to describe itself.
+/// Makes queued changes up to the first that needs planning, which happens on another thread, as a
+/// new program may be slow to describe itself.
 void Runner::begin_changes() {
   while (!changes_.empty() && !is_stopping_ && !planning_.is_busy()) {
     const Commands& commands = changes_.front().commands;
@@ -179,7 +177,7 @@ void Runner::take_planned(Result<LoadedGraph>& loaded) {
   if (wrong.empty()) {
     graph_ = std::move(loaded->graph);
     change_to(std::move(*loaded->plan));
-  } else if (is_reload && !planning_.is_stopped()) {  // else there is a newer edit
+  } else if (is_reload && !planning_.is_stopped()) {  // otherwise a newer edit follows
     for (const auto& line : wrong) log(line, Level::Warning);
     log("keeping the running version", Level::Warning);
   }
@@ -189,7 +187,7 @@ void Runner::take_planned(Result<LoadedGraph>& loaded) {
   begin_changes();
 }
 
-/// Does the rest of the first change, and answers it.
+/// Completes the first change and answers it.
 void Runner::end_change(const GraphAnswer& answer) {
   const Change change = std::move(changes_.front());
   changes_.pop_front();
@@ -197,14 +195,14 @@ void Runner::end_change(const GraphAnswer& answer) {
   if (change.reply) change.reply(answer);
 }
 
-/// Answers changes that will not be made.
+/// Refuses all queued changes.
 void Runner::refuse_changes() {
   planning_.stop();
   for (const auto& change : std::exchange(changes_, {}))
     if (change.reply) change.reply({false, {kIsStopping}});
 }
 
-/// Sets all parameters that commands name, or none. The answer says which modules are restarted.
+/// Sets all parameters, or none. The answer lists restarted modules.
 GraphAnswer Runner::set_parameters(const Commands& commands) {
   std::vector<std::string> wrong, remarks;
   std::map<std::string, PlannedModule> changed;
@@ -231,8 +229,8 @@ GraphAnswer Runner::set_parameters(const Commands& commands) {
   return {true, remarks};
 }
 
-/// Makes the running graph as another plan says: links are removed before any are added, and
-/// outputs are there before inputs.
+/// Changes the running graph to another plan: removes links before adding any, and adds outputs
+/// before inputs.
 void Runner::change_to(Plan plan) {
   plan_ = std::move(plan);
   is_unsettled_ = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a graph that runs does, put together of what its modules report.
+// The state of a running graph, from the reports of its modules.
 #include <unistd.h>
 
 #include <algorithm>
@@ -29,9 +29,9 @@ GraphState Runner::state() const {
     const auto* module = find(planned.name);
     if (module == nullptr) continue;
     state.modules.push_back(module->state());
-    // A stop outlives the process that was told of it.
+    // A stop outlives the process that reported it.
     if (any_stops(module->reports().state().stops)) state.stopped.insert(planned.name);
-    // Reported by modules that receive the focus or decide it; stale unless they run.
+    // The focus, as reported by modules that receive or decide it; stale unless they run.
     if (module->status() != ModuleStatus::Running) continue;
     const bool decides = plan_.workspaces.contains(planned.name);
     const auto focus = state.focus.find(decides ? planned.name : planned.workspace);
@@ -49,8 +49,8 @@ GraphState Runner::state() const {
   return state;
 }
 
-/// The input for which a module waits. Where several share what it writes to, it is one of those
-/// that do not run, or else of those that lose nothing.
+/// The input for which a module waits. If several share the sending end: those with keep = "all",
+/// and among them those that do not run.
 std::string Runner::waited_for(const std::string& name) const {
   std::vector<const PlannedLink*> links;
   for (const auto& link : plan_.links)
@@ -92,12 +92,12 @@ LinkState Runner::state_of(const PlannedLink& link) const {
   const auto *sender = report_of(false), *reader = report_of(true);
   const auto* counts = sender != nullptr ? sender : reader;
   if (counts != nullptr) state.traffic = counts->traffic;
-  // What it carried is what its reader has taken; a sender may count what waits or is lost.
+  // Rates are the reader's: a sender also counts queued and dropped messages.
   if (const auto* last = reader != nullptr ? reader : counts; last != nullptr) {
     state.per_second = last->per_second;
     state.bytes_per_second = last->bytes_per_second;
   }
-  // Of a link between modules, their states show why nothing goes over it.
+  // Between modules, their states explain why nothing passes.
   const bool is_input = link.sender_uri.empty();
   const bool is_outside = is_input || link.reader_uri.empty();
   const auto* inner = at(is_input ? link.to : link.from);

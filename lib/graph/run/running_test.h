@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the tests of graphs that run share: a graph of shells, and what is heard of it. Internal.
+// Shared by the tests of running graphs: a graph of shells, and its log. Internal.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ inline std::string peer_of(const std::string& listening) {
   return "unix" + listening.substr(listening.find(':'));
 }
 
-/// A graph of shells, each with the script that it runs; what is said of it is in `lines`.
+/// A graph of shells, each with its script; the log is in `lines_`.
 class Run : public ::testing::Test {
  protected:
   PlannedModule& add(const std::string& name, const std::string& script) {
@@ -35,11 +35,11 @@ class Run : public ::testing::Test {
 
   Result<RunReport> run() {
     options_.stop = stop_.descriptor();
-    options_.event = [this](const LogLine& said) {
-      const std::string line = said.line();
+    options_.event = [this](const LogLine& event) {
+      const std::string line = event.line();
       lines_.emplace_back(line);
       if (line == stop_at_ && count(line) == stop_at_count_) stop();
-      if (heard_) heard_(line);
+      if (on_line_) on_line_(line);
     };
     return run_graph(loaded(plan_), options_);
   }
@@ -57,13 +57,13 @@ class Run : public ::testing::Test {
   }
 
   void stop() const { stop_.raise(); }
-  /// Asks the graph to end when a line is said so often.
+  /// Stops the graph when a line has been logged this many times.
   void stop_at(const std::string& line, int times = 1) {
     stop_at_ = line;
     stop_at_count_ = times;
   }
 
-  bool said(const std::string& line) const { return count(line) > 0; }
+  bool logged(const std::string& line) const { return count(line) > 0; }
   std::ptrdiff_t count(const std::string& line) const {
     return std::count(lines_.begin(), lines_.end(), line);
   }
@@ -72,7 +72,7 @@ class Run : public ::testing::Test {
   Plan plan_;
   std::vector<std::string> files_;
   RunOptions options_;
-  std::function<void(std::string_view line)> heard_;
+  std::function<void(std::string_view line)> on_line_;
   std::string stop_at_;
   int stop_at_count_ = 1;
   Event stop_ = must(Event::make());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the start of a module to its end, and its commands.
+// Starts, restarts, ends and commands a module.
 #include <graph/run/supervised.h>
 
 #include <array>
@@ -17,8 +17,8 @@ namespace {
 using MonotonicClock = std::chrono::steady_clock;
 using Verb = ModuleCommand::Verb;
 
-constexpr int kCutOff = 1;                             // a failure, as far as restarts go
-constexpr std::chrono::milliseconds kCauseDelay{200};  // until the cause of an end is seen, at most
+constexpr int kCutOff = 1;                             // counts as a failure for restarts
+constexpr std::chrono::milliseconds kCauseDelay{200};  // for the cause of an end to appear
 
 std::string seconds_in_words(std::chrono::nanoseconds time) {
   char text[32];
@@ -44,7 +44,7 @@ Supervised::Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& 
                        Callbacks callbacks, Hosts* hosts)
     : loop_(loop),
       plan_(std::move(plan)),
-      told_(plan_),
+      known_(plan_),
       limits_(limits),
       callbacks_(std::move(callbacks)),
       hosts_(hosts),
@@ -61,7 +61,7 @@ Result<std::unique_ptr<Supervised>> Supervised::make(Loop& loop, PlannedModule p
   return module;
 }
 
-/// Makes what runs its processes on the host of the plan, unless it is there.
+/// Makes the ModuleProcess on the host of the plan, unless it exists.
 Status Supervised::make_process() {
   const auto there = host();
   HC_CHECK(there != nullptr || plan_.host.empty(), plan_.name, plan_.host);
@@ -77,16 +77,16 @@ Status Supervised::make_process() {
     made = HC_TRY(make_process_here(loop_, plan_.manage_uri, hosts_ == nullptr ? -1 : hosts_->key(),
                                     std::move(callbacks)));
   }
-  // The one before, on another host, may be what calls this.
+  // The old one, on another host, may be the caller of this function.
   if (process_) loop_.post([before = std::shared_ptr(std::move(process_))] {});
   process_ = std::move(made);
   process_host_ = there;
   return {};
 }
 
-/// The commands for a process that has just connected: what has changed since it was started.
+/// The commands for a process that has just connected: changes since its start.
 std::vector<Message> Supervised::catch_up() {
-  const auto change = change_between(told_, plan_);
+  const auto change = change_between(known_, plan_);
   std::vector<Message> commands;
   auto add = [&](const ModuleCommand& command) { commands.push_back(message_of(command)); };
   for (const auto* some : {&change.unlinks, &change.outputs, &change.inputs})
@@ -94,15 +94,14 @@ std::vector<Message> Supervised::catch_up() {
   for (const auto& input : finished_) add({Verb::Finish, true, input, {}});
   for (const auto& [port, observed] : observed_) add({Verb::Link, false, observed.end.text(), {}});
   if (wall_offset_ != 0) add({Verb::WallOffset, true, std::to_string(wall_offset_), {}});
-  set_told();
+  update_known();
   return commands;
 }
 
-/// Notes that the process knows all that the plan says. It continues to know links by the
-/// URIs that it has them by.
-void Supervised::set_told() {
-  auto ends = std::exchange(told_, plan_).ends;
-  for (auto& end : told_.ends)
+/// Notes that the process knows the plan. It keeps the URIs under which it knows its links.
+void Supervised::update_known() {
+  auto ends = std::exchange(known_, plan_).ends;
+  for (auto& end : known_.ends)
     for (const auto& before : ends)
       if (is_same_end(end, before)) end.uri = before.uri;
 }
@@ -111,7 +110,7 @@ void Supervised::change(ModuleStatus status, const std::string& detail) {
   if (status_ == status && detail_ == detail) return;
   status_ = status;
   detail_ = detail;
-  if (is_over()) process_->let_names_go();
+  if (is_over()) process_->release_names();
   callbacks_.changed();
 }
 
@@ -119,12 +118,12 @@ std::shared_ptr<Host> Supervised::host() const {
   return hosts_ == nullptr || plan_.host.empty() ? nullptr : hosts_->find(plan_.host);
 }
 
-void Supervised::look_at_host() {
+void Supervised::check_host() {
   const auto there = awaits_host_ ? host() : nullptr;
   if (there && there->state().is_connected) start_again();
 }
 
-/// Has a module on another host go by the time here.
+/// Sends the clock offset to a module on another host.
 void Supervised::send_wall_offset() {
   constexpr std::int64_t kNear = 20'000;  // [ns]
   const auto there = takes_commands() && process_->runs() ? process_host_ : nullptr;
@@ -154,14 +153,14 @@ Status Supervised::start() {
   ++starts_;
   wall_offset_ = there && takes_commands() ? there->wall_offset() : 0;
   PlannedModule plan = plan_;
-  // One that decides on the focus begins with the stops that its last process knew of.
+  // A workspace starts with the stops of its last process.
   if (const auto& stops = reports_.state().stops; !stops.empty() && plan.known.contains(kStops))
     plan.parameters.try_emplace(kStops, stops_text(stops));
   if (there && takes_commands()) plan.add_option("--wall_offset", std::to_string(wall_offset_));
   if (takes_commands() && callbacks_.is_graph_running()) plan.options.emplace_back("--join");
   if (auto started = process_->start(plan.command(), plan.control_uri); !started)
     return Error{started.error().code, plan_.name + ": " + started.error().detail};
-  told_ = plan_;
+  known_ = plan_;
   callbacks_.event(Level::Info, "started");
   change(takes_commands() ? ModuleStatus::Starting : ModuleStatus::Running);
   return {};
@@ -172,7 +171,7 @@ void Supervised::start_again() {
   if (started) return;
   callbacks_.event(Level::Warning, started.error().detail);
   forget_process();
-  go_on(kCannotExecute);
+  handle_end(kCannotExecute);
 }
 
 void Supervised::end() {
@@ -195,7 +194,7 @@ void Supervised::restart() {
   ask_to_end();
 }
 
-/// Of one without a process, what follows its end follows at once.
+/// Without a process, it ends at once.
 void Supervised::ask_to_end() {
   if (!process_->runs()) {
     timer_.reset();
@@ -211,15 +210,15 @@ void Supervised::ask_to_end() {
 }
 
 ModuleChange Supervised::adopt(PlannedModule plan) {
-  // A connected one has got all commands so far; another catches up, and only this plan's part is
-  // new.
-  auto change = change_between(process_->is_listening() ? told_ : plan_, plan);
-  const bool needs_restart = change_between(told_, plan).needs_restart;
+  // A connected process has all earlier commands. Another one catches up when it connects, so only
+  // the difference between the plans is new.
+  auto change = change_between(process_->is_listening() ? known_ : plan_, plan);
+  const bool needs_restart = change_between(known_, plan).needs_restart;
   plan_ = std::move(plan);
   reports_.set_ends(plan_.ends);
   restarts_.set_policy(plan_.restart);
   if (change.is_empty() && !needs_restart) return {};
-  // A module that has done its work has more to do when it has something else to read.
+  // A module that has finished is restarted only for new inputs.
   const bool is_at_rest = status_ == ModuleStatus::Ended && change.inputs.empty();
   if (needs_restart || change.needs_restart || (!process_->runs() && !is_at_rest)) {
     restart();
@@ -227,7 +226,7 @@ ModuleChange Supervised::adopt(PlannedModule plan) {
     restarted.needs_restart = true;
     return restarted;
   }
-  if (process_->is_listening()) set_told();
+  if (process_->is_listening()) update_known();
   for (const auto& command : change.outputs)
     if (command.verb == Verb::Set) callbacks_.event(Level::Info, text(command));
   return change;
@@ -252,23 +251,23 @@ void Supervised::note_end(int status) {
   lines_.finish([this](const std::string& line) { take_line(Level::Info, line); });
   note_dropped_lines(now() + LogLimit::kPeriod);
   forget_process();
-  go_on(status);
+  handle_end(status);
 }
 
 void Supervised::forget_process() {
   reports_.end();
-  heard_ = silence_ = blocked_ = MonotonicTime(0);
+  reported_ = silence_ = blocked_ = MonotonicTime(0);
   timer_.reset();
   usage_ = {};
   measured_ = MonotonicTime(0);
   processor_ = 0;
 }
 
-/// Does what is to be done when a process has ended.
-void Supervised::go_on(int status) {
+/// Restarts or ends the module after its process has ended.
+void Supervised::handle_end(int status) {
   exit_ = status;
   auto words = why_ended(status);
-  // A process that the signal ended before it could handle it has done as it was asked.
+  // The signal may end a process before it has set a handler, which is not a failure.
   const bool is_as_asked = wish_ != Wish::None && (status == 0 || status == kSignal + SIGTERM);
   if (wish_ == Wish::End || wish_ == Wish::Restart || is_as_asked) {
     callbacks_.event(is_as_asked ? Level::Info : Level::Warning,
@@ -290,8 +289,8 @@ void Supervised::go_on(int status) {
   decide(status);
 }
 
-/// Restarts a process that has ended unasked, or gives it up. Called at once, or from the timer
-/// when the cause may be a link that was cut.
+/// Restarts a process that has ended by itself, or gives it up. Called at once, or by the timer if
+/// the cause may be a link that was cut.
 void Supervised::decide(int status) {
   awaits_cause_ = false;
   const auto words = why_ended(status);

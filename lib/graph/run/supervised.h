@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// One module of a graph that runs: its process, and the next one where that fails; what it says and
-// reports; and the commands it gets. Internal to graph.
+// Supervises one module of a running graph: its process and restarts, its log and reports, and its
+// commands. Internal to graph.
 
 #include <deque>
 #include <map>
@@ -24,103 +24,101 @@
 
 namespace hc::internal {
 
-inline constexpr int kSignal = 128;  ///< the status of who was killed by one is above
+inline constexpr int kSignal = 128;  ///< plus a signal: status of a process killed by it
 
 inline MonotonicTime now() {
   return SystemClock().monotonic();
 }
 
-/// How a process has ended, by its status: "failed with status 1".
+/// A status in words, such as "failed with status 1".
 std::string end_in_words(int status);
 
 class Supervised {
  public:
-  /// Called when something happens to it. None may destroy it.
+  /// They must not destroy it.
   struct Callbacks {
-    std::function<void(Level level, const std::string& text)> event;  ///< "started"
-    std::function<void(Level level, const std::string& text)> said;   ///< by the module itself
-    std::function<void(const std::deque<std::string>& last_words)> failed;
-    std::function<void()> changed;      ///< its state, other than in numbers
-    std::function<void()> ended;        ///< for good
-    std::function<void()> interrupted;  ///< its process ends, and another will follow
-    std::function<bool()> has_work;     ///< a writer of its inputs is not over; of one without,
-                                        ///< a reader
+    std::function<void(Level level, const std::string& text)> event;   ///< such as "started"
+    std::function<void(Level level, const std::string& text)> logged;  ///< by the module itself
+    std::function<void(const std::deque<std::string>& last_lines)> failed;
+    std::function<void()> changed;           ///< its state, except for counters
+    std::function<void()> ended;             ///< for good
+    std::function<void()> interrupted;       ///< its process ends and will be restarted
+    std::function<bool()> has_work;          ///< some writer of its inputs (a module without
+                                             ///< writers: some reader) has not ended for good
     std::function<bool()> is_graph_running;  ///< all its modules have run before
   };
 
-  /// Listens to a module, which is not started yet. Errors: Invalid, System (a name is in use).
-  /// @param hosts  that it may run on; null: this one alone.
+  /// Listens for a module's reports; does not start it. Errors: Invalid, System (a name is in use).
+  /// @param hosts  null: it runs on this host.
   static Result<std::unique_ptr<Supervised>> make(Loop& loop, PlannedModule plan,
                                                   const SupervisionLimits& limits,
                                                   Callbacks callbacks, Hosts* hosts = nullptr);
 
-  /// Starts it. Errors: System; of later starts they are events.
+  /// Starts it. Errors: System; those of restarts are events.
   Status start();
-  /// Ends it for good: SIGTERM, and SIGKILL when it has had its time.
+  /// Ends it for good: SIGTERM, then SIGKILL after the grace time.
   void end();
-  /// Ends it since nobody needs it any more. If it fails all the same, it has failed.
+  /// Ends it because it is no longer needed. Unlike with end(), a failure then counts.
   void dismiss();
-  /// Ends it where it runs, and starts it, also if it has failed permanently.
+  /// Ends it if it runs, and starts it again, even after a permanent failure.
   void restart();
 
-  /// Takes another plan, and restarts where commands cannot make it so. @returns  the commands for
+  /// Takes another plan, and restarts if commands are not enough. @returns  the commands for
   /// send_commands().
   ModuleChange adopt(PlannedModule plan);
-  /// Sends commands. They reach a module that has not connected yet when it connects; one
-  /// that accepts no commands is restarted.
+  /// Sends commands. A module that has not connected yet gets them when it connects; one that does
+  /// not read them is restarted.
   void send_commands(const std::vector<ModuleCommand>& commands);
 
-  /// Sends it `finish` when an input's writer has ended for good, and `link` when there is one
+  /// Sends it `finish` when an input's writer has ended for good, and `link` when it is started
   /// again; each once.
   void finish_input(const PlannedEnd& end, bool is_finished);
-  /// A module that it is linked to is interrupted. One without `control` takes that for the end of
-  /// its work, and is restarted when it ends.
+  /// Notes that a linked module is interrupted. A module without `control` ends then, as if its
+  /// work were done, and is restarted.
   void note_interruption();
-  /// Has it open an output for clients, under a name that no other link has. It is closed when no
-  /// reader has been connected for kObserved.
+  /// Opens an output for observers, under a unique name; closes it after kObserved without readers.
   ///
-  /// @returns  the URI that observers read. Errors: Closed (its host is not connected).
+  /// @returns  the URI for observers. Errors: Closed (its host is not connected).
   Result<std::string> observe(const std::string& port, const std::string& name);
   static constexpr std::chrono::seconds kObserved{5};
 
-  /// Starts it if it waits for its host, and that is there.
-  void look_at_host();
-  /// Looks whether it still reports.
-  void look(MonotonicTime now);
-  /// Takes stock of what its processes use.
+  /// Starts it if it waits for its host, and the host is connected.
+  void check_host();
+  /// Checks for missing reports.
+  void check(MonotonicTime now);
+  /// Measures the CPU time and memory of its processes.
   void measure(MonotonicTime now, bool with_memory);
-  /// Looks whether its process has ended, without waiting for the event.
-  void look_for_end() { process_->look(); }
+  /// Checks whether its process has ended, without waiting for the event.
+  void check_end() { process_->check_end(); }
 
   [[nodiscard]] const PlannedModule& plan() const { return plan_; }
   [[nodiscard]] ModuleStatus status() const { return status_; }
-  /// Whether it runs, or has run.
   [[nodiscard]] bool has_run() const {
     return starts_ > 1 || status_ == ModuleStatus::Running || is_over();
   }
   [[nodiscard]] bool is_over() const {
     return status_ == ModuleStatus::Ended || status_ == ModuleStatus::GivenUp;
   }
-  /// Ended or is about to, because it was asked to.
+  /// Has ended or will end on request.
   [[nodiscard]] bool is_to_end() const { return wish_ == Wish::End || wish_ == Wish::Dismissal; }
   [[nodiscard]] std::optional<int> exit() const { return exit_; }
   [[nodiscard]] const Reports& reports() const { return reports_; }
   [[nodiscard]] ModuleState state() const;
-  /// Whether a link is the one for whose reader it waits.
+  /// Whether it waits for the reader of a link.
   [[nodiscard]] bool waits_on(const PlannedLink& link) const;
 
  private:
   Supervised(Loop& loop, PlannedModule plan, const SupervisionLimits& limits, Callbacks callbacks,
              Hosts* hosts);
 
-  /// What its process has been asked to end for.
+  /// Why its process has been asked to end.
   enum class Wish { None, End, Restart, Dismissal };
 
   struct Observed {
     PlannedEnd end;
     std::string uri;  // for observers
     MonotonicTime until{0};
-    std::shared_ptr<const HeldPort> held = {};  // where it is read from another host
+    std::shared_ptr<const HeldPort> held = {};  // if the module is on another host
   };
 
   [[nodiscard]] std::shared_ptr<Host> host() const;
@@ -129,7 +127,7 @@ class Supervised {
   Status open_observed(Observed& observed, const std::string& name);
   void end_observations(MonotonicTime time);
   std::vector<Message> catch_up();
-  void set_told();
+  void update_known();
   [[nodiscard]] bool takes_commands() const { return !plan_.control_uri.empty(); }
   void change(ModuleStatus status, const std::string& detail = "");
   void ask_to_end();
@@ -137,11 +135,11 @@ class Supervised {
   void take_line(Level level, std::string text);
   void note_dropped_lines(MonotonicTime time);
   void take_report(const Message& message);
-  void look_at_silent();
+  void check_silent();
   bool kill_if_hung(bool is_blocked);
   void note_end(int status);
   void forget_process();
-  void go_on(int status);
+  void handle_end(int status);
   void decide(int status);
   [[nodiscard]] bool can_be_cut_off() const;
   [[nodiscard]] std::string why_ended(int status) const;
@@ -149,36 +147,37 @@ class Supervised {
 
   Loop& loop_;
   PlannedModule plan_;
-  PlannedModule told_;  // as its process knows it, which may know links by their older URIs
+  PlannedModule known_;  // the plan as known to its process, possibly with older URIs of links
   SupervisionLimits limits_;
   Callbacks callbacks_;
   Hosts* hosts_;
   bool awaits_host_ = false;
-  std::int64_t wall_offset_ = 0;  // as its process knows it, of another host [ns]
+  std::int64_t wall_offset_ = 0;  // last sent to a process on another host [ns]
   ModuleStatus status_ = ModuleStatus::Waiting;
   std::string detail_;
   Wish wish_ = Wish::None;
-  bool is_interrupted_ = false;  // a link has been cut that this process cannot mend
-  bool awaits_cause_ = false;    // it has ended, perhaps since a link was cut
+  bool is_interrupted_ = false;  // a link was cut that this process cannot restore
+  bool awaits_cause_ = false;    // it has ended, perhaps because a link was cut
   std::optional<int> exit_;
   int starts_ = 0;
   Restarts restarts_;
   Lines lines_;
   LogLimit log_limit_;
-  int results_ = 0;                 // and errors, among what it has said
-  Level said_level_ = Level::Info;  // of the last line,
-  MonotonicTime said_at_{0};        // and when it was said
+  int results_ = 0;  // results and errors so far
+  Level last_level_ = Level::Info;
+  MonotonicTime last_line_time_{0};
   Reports reports_;
-  MonotonicTime heard_{0};                // when this process reported last; 0: it has not
-  MonotonicTime looked_{0}, silence_{0};  // the last look; without a sign, as far as one looked
-  MonotonicTime blocked_{0};              // since when it waits for a reader; 0: it does not
-  std::string hung_;  // why this process was killed: "hung for 5 s"; empty: it was not
+  MonotonicTime reported_{0};  // time of this process's last report; 0: none
+  MonotonicTime checked_{0};   // time of the last check
+  MonotonicTime silence_{0};   // duration without reports, as far as checked
+  MonotonicTime blocked_{0};   // start of its wait for a reader; 0: it does not wait
+  std::string hung_;           // why this process was killed, "hung for 5 s"; empty: it was not
   Usage usage_;
   MonotonicTime measured_{0};
   double processor_ = 0;
-  std::set<std::string> finished_;            // inputs it has to finish
+  std::set<std::string> finished_;            // inputs whose writers have ended for good
   std::map<std::string, Observed> observed_;  // by output
-  std::shared_ptr<Host> process_host_;        // null: this one
+  std::shared_ptr<Host> process_host_;        // null: this host
   std::unique_ptr<ModuleProcess> process_;
   Loop::Handle timer_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is seen of a module that runs: its lines, its reports, what it uses, and its outputs.
+// Observes a running module: its log, reports, usage and outputs.
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 namespace hc::internal {
 namespace {
 
-constexpr int kMostResults = 100;  // that are never dropped; as many are printed at the end
-// Observers never make a module wait: with or without one, it keeps a few messages for them.
+constexpr int kMostResults = 100;  // never dropped; as many as are printed at the end
+// Observers never make a module wait.
 constexpr const char* kObserverPolicy = "?readers=0&stay=1&keep=16";
 
 }  // namespace
@@ -29,7 +29,7 @@ Result<std::string> Supervised::observe(const std::string& port, const std::stri
   return found->second.uri;
 }
 
-/// Where an output is opened for observers: those of another host come with the key of this one.
+/// Chooses the URIs of an output for observers. On another host, they use the key of this host.
 Status Supervised::open_observed(Observed& observed, const std::string& name) {
   if (const auto there = host()) {
     observed.held = HC_TRY(there->spare_port());
@@ -52,9 +52,9 @@ Status Supervised::open_observed(Observed& observed, const std::string& name) {
 }
 
 void Supervised::end_observations(MonotonicTime time) {
-  // Readers of a process that is being restarted wait for the next one.
+  // While a process restarts, its readers wait for the next one.
   for (auto& [port, observed] : observed_)
-    if (heard_ == MonotonicTime(0) || reports_.peers_of(observed.end) > 0)
+    if (reported_ == MonotonicTime(0) || reports_.peers_of(observed.end) > 0)
       observed.until = time + kObserved;
   std::erase_if(observed_, [&](const auto& entry) {
     const bool is_over = time >= entry.second.until;
@@ -63,26 +63,25 @@ void Supervised::end_observations(MonotonicTime time) {
   });
 }
 
-/// Whether more may come at once.
 bool Supervised::take_text(std::string_view text) {
   lines_.add(text, [this](const std::string& line) { take_line(Level::Info, line); });
   return !log_limit_.is_over();
 }
 
 void Supervised::take_line(Level level, std::string text) {
-  // A module's own name is before what it writes to standard error.
+  // Modules prefix lines on standard error with their name.
   const std::string prefix = plan_.name + ": ";
   if (text.starts_with(prefix)) text.erase(0, prefix.size());
-  const bool is_repeated = level == Level::Result || level == Level::Error;  // at the end
+  const bool is_repeated = level == Level::Result || level == Level::Error;  // at the graph's end
   if (is_repeated) ++results_;
   const bool is_kept = is_repeated && results_ <= kMostResults;
   if (!is_kept && !log_limit_.passes(text.size(), now())) return;
   if (level != Level::Notice) {
     lines_.keep(text);
-    said_level_ = level;
-    said_at_ = now();
+    last_level_ = level;
+    last_line_time_ = now();
   }
-  callbacks_.said(level, text);
+  callbacks_.logged(level, text);
 }
 
 void Supervised::note_dropped_lines(MonotonicTime time) {
@@ -91,12 +90,12 @@ void Supervised::note_dropped_lines(MonotonicTime time) {
 }
 
 void Supervised::take_report(const Message& message) {
-  heard_ = now();
+  reported_ = now();
   silence_ = MonotonicTime(0);
-  const bool has_changed = reports_.take(message, heard_);
+  const bool has_changed = reports_.take(message, reported_);
   const bool is_blocked = reports_.state().blocked_row != 0;
   if (!is_blocked) blocked_ = MonotonicTime(0);
-  if (is_blocked && blocked_ == MonotonicTime(0)) blocked_ = heard_;
+  if (is_blocked && blocked_ == MonotonicTime(0)) blocked_ = reported_;
   if (message.header.src == static_cast<int>(Report::Log))
     if (const auto line = read_log(message)) take_line(line->level, visible(line->text));
   if (status_ == ModuleStatus::Stalled) callbacks_.event(Level::Info, "resumed");
@@ -106,22 +105,22 @@ void Supervised::take_report(const Message& message) {
   if (has_changed) callbacks_.changed();
 }
 
-void Supervised::look(MonotonicTime time) {
+void Supervised::check(MonotonicTime time) {
   constexpr MonotonicTime kMostAtOnce = std::chrono::seconds(1);
   end_observations(time);
   send_wall_offset();
   note_dropped_lines(time);
-  // A gap between two looks counts as a second at most: this process was stopped or starved itself.
-  const auto before = std::exchange(looked_, time);
+  // A gap between checks counts at most 1 s, as this process itself was stopped or starved.
+  const auto before = std::exchange(checked_, time);
   if (!process_->runs()) return;
   if (before != MonotonicTime(0)) silence_ += std::min(time - before, kMostAtOnce);
-  const bool is_silent = heard_ == MonotonicTime(0);
-  if (is_silent) look_at_silent();
+  const bool is_silent = reported_ == MonotonicTime(0);
+  if (is_silent) check_silent();
   const bool is_stalled = status_ == ModuleStatus::Stalled;
   const bool is_blocked = reports_.state().blocked_row != 0;
   if (kill_if_hung(is_blocked) || is_silent) return;
   if (status_ != ModuleStatus::Running && !(is_stalled && is_blocked)) return;
-  if (time - heard_ < limits_.stall) return;
+  if (time - reported_ < limits_.stall) return;
   const bool is_stopped = process_->usage(false).is_stopped;
   if (is_blocked && !is_stopped) {
     if (is_stalled) callbacks_.event(Level::Info, "resumed");
@@ -135,16 +134,16 @@ void Supervised::look(MonotonicTime time) {
   callbacks_.event(Level::Warning, "unresponsive: " + detail_);
 }
 
-/// Kills a process whose last report is older than the graph allows, or that a signal has stopped
-/// for that time; returns whether it did. A process in a debugger, or one that runs and waits for a
-/// reader, is spared. The first report has more time, for the loading of libraries.
+/// Kills a process after `hang` without a report, or stopped by a signal; returns whether it did.
+/// Spares a process in a debugger, and one that waits for a reader. The first report has more time,
+/// for loading libraries.
 bool Supervised::kill_if_hung(bool is_blocked) {
   if (!hung_.empty() || status_ == ModuleStatus::Stopping) return false;
   MonotonicTime patience = plan_.hang;
   if (patience == MonotonicTime(0) || silence_ < patience) return false;
   const auto usage = process_->usage(false);
   if (usage.is_traced || (is_blocked && !usage.is_stopped)) return false;
-  if (heard_ == MonotonicTime(0) && !usage.is_stopped) {
+  if (reported_ == MonotonicTime(0) && !usage.is_stopped) {
     if (!takes_commands()) return false;  // it may never report
     patience = std::max(patience, limits_.first_report);
     if (silence_ < patience) return false;
@@ -155,9 +154,8 @@ bool Supervised::kill_if_hung(bool is_blocked) {
   return true;
 }
 
-/// Asks the kernel whether a module that has sent no reports has been stopped by a signal, and from
-/// when on.
-void Supervised::look_at_silent() {
+/// Asks the kernel whether a module without reports is stopped by a signal.
+void Supervised::check_silent() {
   const bool is_stalled = status_ == ModuleStatus::Stalled;
   const auto usual = takes_commands() ? ModuleStatus::Starting : ModuleStatus::Running;
   if (status_ != usual && !is_stalled) return;
@@ -204,8 +202,8 @@ ModuleState Supervised::state() const {
     state.waits = std::chrono::duration<double>(now() - blocked_).count();
   if (!lines_.last().empty()) {
     state.last_line = lines_.last().back();
-    state.last_level = said_level_;
-    state.last_line_age = std::chrono::duration<double>(now() - said_at_).count();
+    state.last_level = last_level_;
+    state.last_line_age = std::chrono::duration<double>(now() - last_line_time_).count();
   }
   state.parameters = plan_.parameters;
   for (const auto& [key, value] : reports_.parameters()) state.parameters[key] = value;

@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Reports, as a module does, on the thread that hears of the graph.
+/// Sends reports as a module does, on the thread of on_line_.
 class Reporter {
  public:
   explicit Reporter(const PlannedModule& module)
@@ -40,7 +40,7 @@ class Reporter {
   std::unique_ptr<Sink> sink_;
 };
 
-/// Modules that end, or do nothing any more.
+/// Modules that end or hang.
 class Supervision : public Run {
  protected:
   Supervision() {
@@ -58,12 +58,12 @@ class Supervision : public Run {
             const std::string& reader = "") {
     plan_.links.push_back({from, to, sender, reader, "all", {}, false});
   }
-  /// The number that a module says of itself, as its process; 0: the line is another.
+  /// The PID printed by a module; 0 for any other line.
   static pid_t process_in(std::string_view line) {
-    const std::string said(line.substr(std::min(line.size(), line.find(": ") + 2)));
-    return std::atoi(said.c_str());
+    const std::string text(line.substr(std::min(line.size(), line.find(": ") + 2)));
+    return std::atoi(text.c_str());
   }
-  /// What reports in the place of a module that has been started.
+  /// Reports on behalf of a started module.
   Reporter& reporter(const std::string& name) {
     auto& reporter = reporters_[name];
     if (!reporter)
@@ -81,7 +81,7 @@ class Supervision : public Run {
 TEST_F(Supervision, OneThatIsKilledComesBackAndTheOthersGoOn) {
   add("a", "echo $$ >&2; exec sleep 1000");
   add("b");
-  heard_ = [this](std::string_view line) {
+  on_line_ = [this](std::string_view line) {
     const pid_t process = process_in(line);
     if (process == 0) return;
     if (count("a: started") == 3) return stop();
@@ -101,7 +101,7 @@ TEST_F(Supervision, OneThatEndsBeforeItsCutOffWriterDoesIsRestarted) {
   link("first.out", "second.in");
   link("second.out", "third.in");
   std::map<std::string, pid_t> pids;
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     const auto name = std::string(line.substr(0, line.find(':')));
     const pid_t process = process_in(line);
     if (process > 0 && pids.emplace(name, process).second && pids.size() == 2)
@@ -134,7 +134,7 @@ TEST_F(Supervision, BadArgumentsWouldBeBadAgain) {
 TEST_F(Supervision, OneThatSendsNoReportsIsSeenToBeStopped) {
   add("a", "echo $$ >&2; exec sleep 1000");
   pid_t process = 0;
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     if (process == 0 && (process = process_in(line)) > 0) ::kill(process, SIGSTOP);
     if (line == "a: unresponsive: stopped by a signal") ::kill(process, SIGCONT);
     if (line == "a: resumed") stop();
@@ -154,7 +154,7 @@ TEST_F(Supervision, AStoppingGraphStartsNothingAgain) {
   options_.limits.restarts.first_delay = options_.limits.restarts.longest_delay = 1h;
   add("a", "exit 3");
   add("b");
-  heard_ = [this](std::string_view line) {
+  on_line_ = [this](std::string_view line) {
     if (line.find("restarting in") != std::string_view::npos) stop();
   };
   auto report = must(run());
@@ -167,7 +167,7 @@ TEST_F(Supervision, WhoDoesNotEndWhenAskedToIsKilled) {
   add("a", "trap '' TERM; echo ready >&2; while :; do sleep 1000; done");
   stop_at("a: ready");
   must(run());
-  EXPECT_TRUE(said("a: killed by signal 9"));
+  EXPECT_TRUE(logged("a: killed by signal 9"));
 }
 
 TEST_F(Supervision, AQuietOnePrintsItsLastLinesWhenItFails) {
@@ -182,21 +182,21 @@ TEST_F(Supervision, AQuietOnePrintsItsLastLinesWhenItFails) {
 TEST_F(Supervision, OneThatIsStoppedIsShownAsStalledAndGoesOn) {
   options_.limits.stall = 50ms;
   add("a", "kill -STOP $$; exec sleep 1000");
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     if (line == "a: started") reporter("a").count(1);
     if (line == "a: unresponsive: stopped by a signal" || line == "a: unresponsive: busy")
       reporter("a").count(2);
     if (line == "a: resumed") stop();
   };
   must(run());
-  EXPECT_TRUE(said("a: resumed"));
+  EXPECT_TRUE(logged("a: resumed"));
 }
 
 TEST_F(Supervision, OneThatWaitsForAReaderIsNotStalledUnlessItIsStopped) {
   options_.limits.stall = 50ms;
   add("a", "echo $$ >&2; exec sleep 1000");
   pid_t process = 0;
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     if (line == "a: started") reporter("a").publish_state(true);
     if (process == 0) process = process_in(line);
     if (line == "a: unresponsive: busy") stop();
@@ -218,10 +218,10 @@ TEST_F(Supervision, OneThatWaitsForAReaderIsNotStalledUnlessItIsStopped) {
 TEST_F(Supervision, OneThatHangsIsKilledAndRestarted) {
   add("hung").hang = 1s;
   add("stopped").hang = 1s;
-  add("waits").hang = 1s;  // for a reader, which is not its fault
+  add("waits").hang = 1s;  // for a reader: spared
   add("patient");
   std::set<std::string> again;
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     const std::string name(line.substr(0, line.find(':')));
     if (line.ends_with(": started")) {
       if (reporters_.erase(name) > 0) again.insert(name);
@@ -235,8 +235,8 @@ TEST_F(Supervision, OneThatHangsIsKilledAndRestarted) {
         ::kill(module.process, SIGSTOP);
   };
   auto report = must(run());
-  EXPECT_TRUE(said("hung: hung for 1 s; restarting"));
-  EXPECT_TRUE(said("stopped: hung for 1 s; restarting"));
+  EXPECT_TRUE(logged("hung: hung for 1 s; restarting"));
+  EXPECT_TRUE(logged("stopped: hung for 1 s; restarting"));
   EXPECT_EQ(module(report, "hung").restarts, 1);
   EXPECT_EQ(module(report, "waits").restarts, 0);
   EXPECT_EQ(module(report, "patient").restarts, 0);
@@ -255,7 +255,7 @@ TEST_F(Supervision, OneThatHangsBeforeItsFirstReportIsKilledAndRestarted) {
         ::kill(module.process, SIGSTOP);
   };
   std::set<std::string> hung;
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     if (line.ends_with(": hung for 1 s; restarting")) hung.emplace(line, 0, line.find(':'));
     if (hung.size() == 3) stop();
   };
@@ -269,13 +269,13 @@ TEST_F(Supervision, OneThatLoadsForLongerThanItsHangIsLeftAlone) {
   slow.hang = 1s;
   slow.control_uri = "unix-listen:@" + token_ + ".slow";
   add("hung").hang = 3s;
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     if (line != "hung: started") return;
     if (!reporters_.empty()) return stop();
     reporter("hung").publish_state(false);
   };
   auto report = must(run());
-  EXPECT_TRUE(said("hung: hung for 3 s; restarting"));
+  EXPECT_TRUE(logged("hung: hung for 3 s; restarting"));
   EXPECT_EQ(module(report, "slow").restarts, 0);
 }
 
@@ -284,7 +284,7 @@ TEST_F(Supervision, OneThatWaitsSaysForWhomSinceWhen) {
   add("a").ends = {{false, "out", uri, ""}};
   add("b").ends = {{true, "in", peer_of(uri), ""}};
   link("a.out", "b.in", uri, peer_of(uri));
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     if (line == "a: started") reporter("a").publish_state(true);
   };
   std::optional<double> waits;
@@ -303,7 +303,7 @@ TEST_F(Supervision, CountsAreThoseOfAllProcesses) {
   auto& module = add("a", "read line </dev/null; exit 1", Restart::Failure);
   module.ends = {{false, "out", "unix-listen:@" + token_ + ".a.out", ""}};
   link("a.out", "tcp:1", module.ends[0].uri);
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     if (line == "a: started") Reporter(plan_.modules[0]).count(5);
   };
   auto report = must(run());
@@ -315,7 +315,7 @@ TEST_F(Supervision, TheRateOfALinkIsOfWhatItsReaderTakes) {
   add("writer").ends = {{false, "out", uri, ""}};
   add("reader").ends = {{true, "in", peer_of(uri), ""}};
   link("writer.out", "reader.in", uri, peer_of(uri));
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     if (line.ends_with(": started")) reporter(std::string(line.substr(0, line.find(':'))));
   };
   LinkState link;
@@ -335,14 +335,14 @@ TEST_F(Supervision, TheRateOfALinkIsOfWhatItsReaderTakes) {
 
 TEST_F(Supervision, AReportThatIsTooLargeIsNotTaken) {
   add("a");
-  options_.limits.stall = 1ms;  // shows that the next one has been taken
+  options_.limits.stall = 1ms;  // shows that the next report has been taken
   std::thread reporting;
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     if (line == "a: started")
       reporting = std::thread([&module = plan_.modules[0]] {
         auto large = make_rows(std::array{"large=" + std::string(std::size_t{2} << 20, 'x')});
         large.header.src = 3;
-        // Whether all of it can be sent before we are left is a matter of luck.
+        // It may be disconnected before all is sent.
         static_cast<void>((*open_sink(*parse_uri(peer_of(module.manage_uri))))->send(large));
         Reporter(module).count(1);
       });
@@ -382,20 +382,20 @@ TEST_F(Supervision, WhoFailsThoughNobodyNeedsItHasFailed) {
   add("reader", "trap 'exit 0' TERM; echo $$ >&2; while :; do sleep 0.01; done");
   link("writer.out", "reader.in");
   pid_t reader = 0;
-  heard_ = [&](std::string_view line) {
+  on_line_ = [&](std::string_view line) {
     if (reader == 0) reader = process_in(line);
-    if (reader > 0 && said("writer: ready")) ::kill(reader, SIGTERM);
+    if (reader > 0 && logged("writer: ready")) ::kill(reader, SIGTERM);
   };
   EXPECT_EQ(refused(run()).detail, "module writer: failed with status 7");
 }
 
-/// What the test writes in the place of the module "writer" comes to readers, or to those in their
-/// place: all the output's `readers` are waited for.
+/// The test writes on behalf of the module "writer", and waits for all `readers` of the output: the
+/// modules, or the drains that replace them.
 class StandIns : public Supervision {
  protected:
   void write_for(const std::string& sender_uri) {
     add("writer");
-    heard_ = [this, sender_uri](std::string_view line) {
+    on_line_ = [this, sender_uri](std::string_view line) {
       failures_ += line.find(": failed") != std::string_view::npos ? 1 : 0;
       if (failures_ < static_cast<int>(plan_.links.size()) || thread_.joinable()) return;
       thread_ = std::thread([this, sender_uri] {
@@ -409,9 +409,9 @@ class StandIns : public Supervision {
     ASSERT_TRUE(report) << report.error().detail;
   }
   void add_link(const std::string& reader, const std::string& uri, const std::string& in,
-                bool lasts) {
+                bool reconnects) {
     add(reader, "exit 2");
-    plan_.links.push_back({"writer.out", reader + ".in", uri, in, "all", {}, lasts});
+    plan_.links.push_back({"writer.out", reader + ".in", uri, in, "all", {}, reconnects});
   }
 
   int failures_ = 0;

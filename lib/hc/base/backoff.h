@@ -28,12 +28,11 @@ class Backoff {
   /// When the next attempt may be made; 0 before the first failure.
   [[nodiscard]] Time due() const { return due_; }
 
-  /// An attempt has failed.
   void fail(Time now) { due_ = now + next(); }
-  /// The same for a caller that sleeps by itself: returns the pause.
+  /// For a caller that sleeps by itself: records a failed attempt and returns the pause.
   Time next() { return std::exchange(pause_, std::min(2 * pause_, longest_)); }
 
-  /// The next attempt may be made at once, and pauses start over.
+  /// Makes the next attempt due at once and starts again with the shortest pause.
   void reset() {
     due_ = {};
     pause_ = first_;

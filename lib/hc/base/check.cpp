@@ -11,7 +11,7 @@ void check_failed_with(const char* condition, const char* file, int line,
                        const std::string& values) {
   std::string text = std::string(file) + ":" + std::to_string(line) +
                      ": check failed: " + condition + (values.empty() ? "" : ":") + values + "\n";
-  // A bug's last words; there is nobody left to tell if this write fails.
+  // If this write fails, the bug cannot be reported in any other way.
   [[maybe_unused]] auto written = ::write(STDERR_FILENO, text.data(), text.size());
   std::abort();
 }

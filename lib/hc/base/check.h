@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// HC_CHECK: stops the program where a bug shows, with the values that show it.
-// For bugs alone, ours or the caller's; what the world can cause returns a Result.
+// HC_CHECK: aborts where a bug is detected and prints the values that show it. For bugs only, of
+// this code or its caller; a failure of files, peers or devices is returned as a Result.
 
 #include <sstream>
 #include <string>
@@ -22,7 +22,7 @@ template <typename... Values>
 
 }  // namespace hc::internal
 
-/// Aborts with file, line, the condition's text and the values when `cond` is false. Always on.
+/// Aborts if `cond` is false, printing file, line, condition and values. Always on.
 #define HC_CHECK(cond, ...)                                                               \
   do {                                                                                    \
     if (!(cond)) [[unlikely]]                                                             \

@@ -6,8 +6,8 @@
 namespace hc::internal {
 namespace {
 
-constexpr std::int64_t kFar = 100'000'000;  // [ns]
-constexpr std::int64_t kSlow = 1000;        // the clock's speed changes by one part of it
+constexpr std::int64_t kMaxSlewed = 100'000'000;  // [ns]; larger differences are stepped
+constexpr std::int64_t kSlewDivisor = 1000;       // slews by 1/1000 of the elapsed time
 
 }  // namespace
 
@@ -17,15 +17,15 @@ void DistantWall::set(std::int64_t to_wall, MonotonicTime now) {
   const std::int64_t behind = is_set() ? now.count() + to_wall - wall(now) : 0;
   const std::lock_guard lock(mutex_);
   to_wall_ = to_wall;
-  behind_ = std::abs(behind) > kFar ? 0 : behind;
+  behind_ = std::abs(behind) > kMaxSlewed ? 0 : behind;
   since_ = now;
   is_set_ = true;
 }
 
 std::int64_t DistantWall::wall(MonotonicTime now) const {
   const std::lock_guard lock(mutex_);
-  const auto made_up = std::max<std::int64_t>(0, (now - since_).count()) / kSlow;
-  return now.count() + to_wall_ - behind_ + std::clamp(behind_, -made_up, made_up);
+  const auto slewed = std::max<std::int64_t>(0, (now - since_).count()) / kSlewDivisor;
+  return now.count() + to_wall_ - behind_ + std::clamp(behind_, -slewed, slewed);
 }
 
 }  // namespace hc::internal

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // The two clocks: a monotonic one for every timer, and the wall clock that stamps messages.
-// Tests turn a ManualClock by hand.
+// Tests advance a ManualClock.
 
 #include <algorithm>
 #include <atomic>
@@ -11,10 +11,9 @@
 
 namespace hc {
 
-/// Time since some fixed moment; never goes back, whatever happens to the wall clock.
+/// Time since a fixed moment; never goes back, even if the wall clock is set.
 using MonotonicTime = std::chrono::nanoseconds;
 
-/// A time or period in seconds.
 constexpr double seconds(std::int64_t nanoseconds) {
   return static_cast<double>(nanoseconds) * 1e-9;
 }
@@ -22,7 +21,7 @@ constexpr double seconds(std::chrono::nanoseconds period) {
   return seconds(period.count());
 }
 
-/// The period of so many seconds; at most 292 years, and 0 where it is not a number.
+/// A duration given in seconds, limited to 292 years; 0 for NaN.
 constexpr std::chrono::nanoseconds duration(double seconds) {
   constexpr double kLongest = 9.2e18;  // [ns]
   if (!(seconds == seconds)) return {};
@@ -30,7 +29,6 @@ constexpr std::chrono::nanoseconds duration(double seconds) {
       static_cast<std::int64_t>(std::clamp(seconds * 1e9, -kLongest, kLongest)));
 }
 
-/// Where the time comes from.
 class Clock {
  public:
   virtual ~Clock() = default;
@@ -41,29 +39,30 @@ class Clock {
 
 namespace internal {
 
-/// The wall clock of another host, out of the monotonic clock of this one: it does not jump when
-/// the wall clock of this host is set. Set by one thread, read by any.
+/// The wall clock of another host, derived from this host's monotonic clock: setting the wall clock
+/// of this host does not make it jump. Set by one thread, read by any.
 class DistantWall {
  public:
-  /// Has wall() give the monotonic clock plus `to_wall` [ns]. Where an earlier call has it give
-  /// something else, it nears that by 1 ms per second, or jumps where it is more than 0.1 s off.
+  /// Makes wall() the monotonic clock plus `to_wall` [ns]. A later call adjusts it gradually, by
+  /// 1 ms per second; a difference of more than 0.1 s is stepped.
   void set(std::int64_t to_wall, MonotonicTime now);
   [[nodiscard]] bool is_set() const { return is_set_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::int64_t wall(MonotonicTime now) const;
 
  private:
   std::atomic<bool> is_set_ = false;
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards the members below
   std::int64_t to_wall_ = 0, behind_ = 0;
   MonotonicTime since_{0};
 };
 
-/// The wall clock that SystemClock uses, where it is set (--wall_offset).
+/// The wall clock that SystemClock uses once it is set (--wall_offset).
 extern DistantWall distant_wall;
 
 }  // namespace internal
 
-/// The machine's clocks; in a module on another host than `hc run`, the wall clock of that.
+/// The machine's clocks; in a module on another host than `hc run`, with the wall clock of the
+/// latter.
 class SystemClock final : public Clock {
  public:
   [[nodiscard]] MonotonicTime monotonic() const override {
@@ -78,7 +77,7 @@ class SystemClock final : public Clock {
   }
 };
 
-/// A clock that a test sets. One thread turns it, any may look.
+/// A clock for tests. One thread advances it, any thread may read it.
 class ManualClock final : public Clock {
  public:
   [[nodiscard]] MonotonicTime monotonic() const override { return monotonic_; }

@@ -13,7 +13,6 @@ namespace {
 
 constexpr int kNone = -1;
 
-/// Puts values into one pattern, from the left to the right.
 class Formatter {
  public:
   Formatter(std::string_view pattern, std::initializer_list<FormatValue> values)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Text with values in it: the part of std::format that we need, which g++ 12 lacks. Pure.
+// The part of std::format that this project uses; g++ 12 has no <format>. Pure.
 
 #include <cstdint>
 #include <initializer_list>
@@ -32,19 +32,19 @@ std::string format(std::string_view pattern, std::initializer_list<FormatValue> 
 
 }  // namespace internal
 
-/// Puts values into a pattern as std::format does.
+/// Formats values as std::format does.
 ///
 ///     format("{:<{}} {:>8} {:.2f}", name, width, count, 0.5)
 ///
-/// A field is `{}` or `{:[<|>][0][width][.precision][f|g|x]}`; width and precision may be `{}`, the
-/// next values. A text is as wide as it has UTF-8 code points. `{{` and `}}` are braces. A pattern
-/// that does not fit its values is a bug.
+/// A field is `{}` or `{:[<|>][0][width][.precision][f|g|x]}`; width and precision may be `{}` and
+/// then take the next values. The width of a text is its number of UTF-8 code points. `{{` and `}}`
+/// are braces. A pattern that does not match its values is a bug.
 template <typename... Values>
 std::string format(std::string_view pattern, const Values&... values) {
   return internal::format(pattern, {internal::format_value(values)...});
 }
 
-/// Words, or whole numbers, one after the other.
+/// Joins words or integers with a separator.
 template <typename Words>
 std::string joined(const Words& words, std::string_view between) {
   std::string text;
@@ -58,7 +58,7 @@ std::string joined(const Words& words, std::string_view between) {
   return text;
 }
 
-/// Two lower-case hexadecimal digits of each byte.
+/// Two lower-case hexadecimal digits per byte.
 std::string hexadecimal(std::span<const unsigned char> bytes);
 
 }  // namespace hc

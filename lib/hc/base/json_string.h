@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Strings of JSON (RFC 8259): what --describe and hc cat --json print. Pure.
+// JSON strings (RFC 8259), as --describe and hc cat --json print them. Pure.
 
 #include <cstddef>
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace hc {
 
-/// Bytes of the well-formed UTF-8 character at the start of `text`; 0 when there is none.
+/// Length in bytes of the UTF-8 character at the start of `text`; 0 if it is not well-formed.
 std::size_t utf8_length(std::string_view text);
 
-/// Appends `text` in quotes, escaped. Each byte that is not UTF-8 becomes U+FFFD.
+/// Appends `text`, quoted and escaped. Each byte that is not UTF-8 becomes U+FFFD.
 void append_json_string(std::string_view text, std::string& json);
 
 }  // namespace hc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Parameters of a module: declared once with unit, default and range, set on the command line and,
+// Parameters of a module: declared with unit, default and range; set on the command line and,
 // unless they are fixed, while the module runs.
 
 #include <cstdint>
@@ -15,17 +15,16 @@
 
 namespace hc {
 
-/// What a parameter can be.
 using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
 
-/// What a parameter may be, beyond its type.
+/// Constraints on a parameter's value, and how it is set.
 struct ParameterOptions {
   double min = -std::numeric_limits<double>::infinity();  ///< of a number
   double max = std::numeric_limits<double>::infinity();   ///< of a number
-  std::int64_t step = 1;  ///< of a whole number that has a least one: from there in such steps
+  std::int64_t step = 1;  ///< of an integer that has a minimum: the values are min, min + step, …
   std::vector<std::string> choices = {};  ///< of a string; empty: any string
   bool positional = false;  ///< may be given without its name, in the order of declaration
-  bool fixed = false;       ///< read at the start alone: the module is restarted to change it
+  bool fixed = false;       ///< read at start-up only; changing it restarts the module
 };
 
 /// A parameter as declared, with its value.
@@ -34,25 +33,25 @@ struct ParameterState {
   std::string unit;  ///< [SI], "" for none
   std::string doc;
   ParameterOptions options;
-  ParameterValue default_value;  ///< the default
+  ParameterValue default_value;
   ParameterValue value;
 
   /// Sets the value from text: true, false, 12, 0.5, any string.
   ///
-  /// Errors: Invalid (not of the type, out of range, not one of the choices).
+  /// Errors: Invalid (wrong type, out of range, not one of the choices).
   Status set(std::string_view text);
 };
 
-/// "from 0 to 1", "at least 0"; empty: any number.
+/// "from 0 to 1", "at least 0"; empty: unrestricted.
 std::string range_in_words(const ParameterOptions& options);
 
 /// "bool", "integer", "number", "string"
 std::string_view type_name(const ParameterValue& value);
 
-/// The value as set() reads it.
+/// The value in the form that set() reads.
 std::string text(const ParameterValue& value);
 
-/// A module's own view of a parameter: `*hue` is its value now.
+/// A module's handle of a parameter: `*hue` is its current value.
 template <typename T>
 class Parameter {
  public:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a function gives that the world can make fail: a value, or an Error that says why.
-// Names follow std::expected, which is to replace Result where compilers have it.
+// The result of a function that can fail: a value, or an Error with the reason.
+// Names follow std::expected, which is to replace Result once the compilers have it.
 
 #include <string>
 #include <string_view>
@@ -12,23 +12,22 @@
 
 namespace hc {
 
-/// The kinds of failure. `doc/reference.md` lists them with the exit status they lead to.
+/// The kinds of failure. `doc/reference.md` lists them with their exit statuses.
 enum class Code {
   Malformed,    ///< bytes that break a rule of the format
-  Unsupported,  ///< a version, encoding, transport or device that this build does not have
-  TooLarge,     ///< more than a limit allows
+  Unsupported,  ///< a version, encoding, transport or device that this build does not support
+  TooLarge,     ///< exceeds a limit
   Truncated,    ///< a stream that ended inside a message
   Closed,       ///< the other side has closed
   Stopped,      ///< this side was asked to stop while it waited
-  NotFound,     ///< a name that nothing has, or a peer that never was there
-  Invalid,      ///< arguments, parameters or a graph file that make no sense
+  NotFound,     ///< no such name or file, or the peer never existed
+  Invalid,      ///< inconsistent arguments, parameters or graph file
   System,       ///< a system call or a library failed; the detail says which and why
 };
 
 /// Name of a code as error lines show it, such as "Malformed".
 std::string_view name(Code code);
 
-/// Why something failed.
 struct Error {
   Code code = Code::System;
   std::string detail;  ///< one sentence with the values, without a line end
@@ -92,12 +91,13 @@ using Status = Result<void>;
 
 }  // namespace hc
 
-/// The value of a Result, in a function that returns one too: an error is what that returns.
+/// The value of a Result, for functions that return a Result: an error is returned to the caller.
 ///
 ///     auto socket = HC_TRY(open_socket(address));
 ///     HC_TRY(check_name(uri));
 ///
-/// For whole statements, not for parts of a larger expression, which would not be ended in order.
+/// For whole statements and initializers only: leaving a larger expression would skip
+/// destructors.
 #define HC_TRY(...)                \
   __extension__({                  \
     auto hc_tried = (__VA_ARGS__); \

@@ -8,8 +8,8 @@
 namespace hc {
 namespace {
 
-/// Letters to change, add or leave out, and neighbours to swap, until one word is the other.
-/// Source: optimal string alignment, by the usual table of which three rows are kept.
+/// Edit distance: letters to change, insert or delete and neighbours to swap.
+/// Source: optimal string alignment; three rows of the table are kept.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before, last, row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -31,7 +31,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
   constexpr std::size_t kNear = 3;
   const std::string* best = nullptr;
-  // A third of its letters, to which the dashes of an option do not count.
+  // A third of the letters may differ; leading dashes of an option do not count.
   const std::size_t letters = name.size() - std::min(name.find_first_not_of('-'), name.size());
   std::size_t beyond = std::min(kNear, (letters + 1) / 3) + 1;
   for (const auto& word : known)

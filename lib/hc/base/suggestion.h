@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What somebody may have meant who misspelt a name. Pure.
+// Suggests a known name for a misspelt one. Pure.
 
 #include <string>
 #include <string_view>
@@ -8,7 +8,7 @@
 
 namespace hc {
 
-/// ", did you mean "camera"?" where one of `known` is spelled nearly as `name`; else empty.
+/// ", did you mean "camera"?" if one of `known` is similar to `name`; else empty.
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 
 }  // namespace hc

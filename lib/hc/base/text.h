@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Texts taken apart: words between marks, numbers, names of enumerators; and the digits of bytes.
-// Pure.
+// Parsing and writing of small texts: separators, numbers, names of enumerators, hex digits. Pure.
 
 #include <algorithm>
 #include <array>
@@ -13,14 +12,15 @@
 
 namespace hc {
 
-/// The part of `text` before `mark`, which is taken off it with the mark; all where there is none.
+/// The part of `text` before `mark`, or all of it without one; removes it and the mark from `text`.
 inline std::string_view take_until(std::string_view& text, char mark) {
   const auto part = text.substr(0, text.find(mark));
   text.remove_prefix(std::min(text.size(), part.size() + 1));
   return part;
 }
 
-/// Whether a text is a number, with nothing before or behind it, that fits; sets `number` then.
+/// Parses a text that consists of one number; false, with `number` unchanged, if it does not or the
+/// number is out of range.
 template <typename Number>
 bool read_number(std::string_view text, Number& number) {
   const char* const end = text.data() + text.size();
@@ -38,7 +38,7 @@ inline std::string hexadecimal_byte(char byte) {
   return {kDigits[value >> 4], kDigits[value & 15]};
 }
 
-/// The enumerator of that name.
+/// The enumerator with a name.
 /// @param names  of the enumerators 0, 1, 2, …
 template <typename Enum, std::size_t kCount>
 std::optional<Enum> enum_named(const std::array<std::string_view, kCount>& names,

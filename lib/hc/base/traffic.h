@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How much went over a link. Pure.
+// Counters of a link. Pure.
 
 #include <array>
 #include <cstdint>
 
 namespace hc {
 
-/// What went over a link, and what did not.
+/// Messages sent or received over a link, and those lost.
 struct Traffic {
   std::uint64_t messages = 0;
-  /// Sent, as on the wire; elements alone where there is none (inproc), with their header (shm).
+  /// As on the wire; without one, the elements (inproc), or the elements and the header (shm).
   std::uint64_t bytes = 0;
-  /// Messages delayed by `rate`: they went later, or are among the dropped.
+  /// Messages delayed by `rate`: sent later, or also counted as dropped.
   std::uint64_t delayed = 0;
-  /// Messages dropped because a newer one arrived while the reader was slow (`keep`),
+  /// Messages dropped because a newer one arrived while the reader was slow (`keep`).
   std::uint64_t dropped_newer = 0;
-  /// … while they were delayed (`rate`),
+  /// Messages dropped because a newer one arrived while they were delayed (`rate`).
   std::uint64_t throttled = 0;
-  /// … because there was no memory for them (`memory`),
+  /// Messages dropped because the memory of the link was used up (`memory`).
   std::uint64_t dropped_memory = 0;
-  /// … because the connection was lost while they were on their way (`reconnect`).
+  /// Messages dropped because the connection was lost while they were in transit (`reconnect`).
   std::uint64_t dropped_disconnect = 0;
-  /// … because the reader had taken nothing for so long (`timeout`).
+  /// Messages dropped because the reader had read nothing for `timeout`.
   std::uint64_t dropped_timeout = 0;
-  /// Messages that came and were dropped: damaged, unfit, or saying what cannot be.
+  /// Messages that arrived and were dropped as damaged, of an unsuitable type, or inconsistent.
   std::uint64_t bad = 0;
 
   Traffic& operator+=(const Traffic& other);
@@ -34,7 +34,7 @@ struct Traffic {
   }
 };
 
-/// Its members in the order in which a module reports them.
+/// The counters in the order in which a module reports them.
 constexpr std::array kTrafficMembers = {
     &Traffic::messages,           &Traffic::bytes,           &Traffic::delayed,
     &Traffic::dropped_newer,      &Traffic::throttled,       &Traffic::dropped_memory,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Which of several sources is obeyed where only one can be: a stick, a command, a tracker. Pure.
+// Decides which of several sources is in control: a joystick, a command, a tracker. Pure.
 
 #include <chrono>
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace hc {
 
-/// Lets one source have the turn: the first that asks keeps it until it lets go or is silent, and
-/// all others wait. Two sources that contradict each other therefore never alternate.
+/// Gives control to one source at a time: the first that asks keeps it until it releases it or is
+/// silent. Two sources that contradict each other therefore never alternate.
 ///
 ///     if (!turn.take(message.header.src, now)) return;  // another stick is pushed
 ///     steer(message);
@@ -18,21 +18,21 @@ namespace hc {
 template <typename Source>
 class Turn {
  public:
-  /// @param silence  a source that has not asked for longer than this has lost its turn.
+  /// @param silence  a source that has not asked for longer than this loses its turn.
   explicit Turn(std::chrono::nanoseconds silence) : silence_(silence) {}
 
-  /// Whether `source` has the turn now; it takes it where nobody has.
+  /// Whether `source` has the turn; takes it if it is free.
   bool take(const Source& source, MonotonicTime now) {
     if (const auto* other = holder(now); other != nullptr && *other != source) return false;
     holder_ = source;
     heard_ = now;
     return true;
   }
-  /// Ends the turn of `source`; without effect if another has it.
+  /// Ends the turn of `source`; no effect if another has it.
   void release(const Source& source) {
     if (holder_ == source) holder_.reset();
   }
-  /// Who has the turn; null: nobody.
+  /// The source that has the turn; null: none.
   [[nodiscard]] const Source* holder(MonotonicTime now) const {
     return holder_ && now - heard_ <= silence_ ? &*holder_ : nullptr;
   }

@@ -62,7 +62,7 @@ Result<Uri> parse_uri(std::string_view text) {
                  "a URI is at most 4096 bytes long, this one has " + std::to_string(text.size())};
   auto is_control = [](char c) { return (c >= 0 && c < 0x20) || c == 0x7f; };
   if (std::any_of(text.begin(), text.end(), is_control))
-    return Error{Code::Invalid, "a URI holds no control characters"};
+    return Error{Code::Invalid, "a URI must not contain control characters"};
 
   auto question = std::min(text.find('?'), text.size());
   std::string_view place = text.substr(0, question);
@@ -78,7 +78,8 @@ Result<Uri> parse_uri(std::string_view text) {
   } else {
     uri.scheme = place.substr(0, colon);
     uri.rest = place.substr(colon + 1);
-    if (!is_scheme(uri.scheme)) return usage("a URI's scheme is a word in small letters", text);
+    if (!is_scheme(uri.scheme))
+      return usage("a URI's scheme has lower-case letters, digits, + and -", text);
   }
   if (question < text.size()) HC_TRY(parse_options(text.substr(question + 1), uri));
   return uri;

@@ -10,7 +10,7 @@
 namespace hc {
 namespace {
 
-/// Whether a character of UTF-8 steers a terminal. Source: The Unicode Standard, 23.1 and 23.2.
+/// Whether a UTF-8 character controls a terminal. Source: The Unicode Standard, 23.1 and 23.2.
 bool is_control(std::string_view character) {
   const char first = character.front();
   if (character.size() == 1)
@@ -22,7 +22,7 @@ bool is_control(std::string_view character) {
     return static_cast<unsigned char>(character[i]) & mask;
   };
   const unsigned point = bits(0, 0x0f) << 12 | bits(1, 0x3f) << 6 | bits(2, 0x3f);
-  // Line ends, and marks of direction.
+  // Line separators and marks of writing direction.
   constexpr std::array<std::array<unsigned, 2>, 3> kRanges = {
       {{0x200e, 0x200f}, {0x2028, 0x202e}, {0x2066, 0x2069}}};
   return std::ranges::any_of(

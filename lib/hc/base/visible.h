@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Text of others, made harmless for a terminal. Pure.
+// Makes foreign text safe to print on a terminal. Pure.
 
 #include <string>
 #include <string_view>
 
 namespace hc {
 
-/// A line with everything that would steer a terminal, or that is not UTF-8, in a visible form:
-/// `\x1b` for an escape. Control characters (but tabs), marks of writing direction, and bytes that
-/// are not UTF-8 become \xNN for each byte. Of a visible line it makes the same line.
+/// A line with control characters (except tabs), marks of writing direction, and bytes that are not
+/// UTF-8 written as \xNN per byte: `\x1b` for an escape. Idempotent.
 std::string visible(std::string_view line);
 
 }  // namespace hc

@@ -20,13 +20,13 @@ TEST(Visible, ShowsWhatWouldSteerATerminal) {
   EXPECT_EQ(visible("a\0b\n"s), "a\\x00b\\x0a");
   EXPECT_EQ(visible("\xc2\x9b"
                     "31m \xc2\xa0"),
-            "\\xc2\\x9b31m \xc2\xa0");                                     // CSI of one character
-  EXPECT_EQ(visible("\xe2\x80"s + "\xae" + "txt"), "\\xe2\\x80\\xaetxt");  // right to left
+            "\\xc2\\x9b31m \xc2\xa0");                                     // one-character CSI
+  EXPECT_EQ(visible("\xe2\x80"s + "\xae" + "txt"), "\\xe2\\x80\\xaetxt");  // right-to-left override
 }
 
 TEST(Visible, ShowsBytesThatAreNoText) {
   EXPECT_EQ(visible("\xff\xfe"), "\\xff\\xfe");
-  EXPECT_EQ(visible("\xe2\x82"), "\\xe2\\x82");  // cut
+  EXPECT_EQ(visible("\xe2\x82"), "\\xe2\\x82");  // truncated
   EXPECT_EQ(visible("\xc0\x9b"), "\\xc0\\x9b");  // overlong
 }
 

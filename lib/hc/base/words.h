@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The words of a text. Pure.
+// Splits a text into words. Pure.
 
 #include <algorithm>
 #include <string_view>
@@ -8,7 +8,7 @@
 
 namespace hc {
 
-/// The parts of `text` between marks, of which several may stand together; none is empty.
+/// The non-empty parts of `text` between separators.
 inline std::vector<std::string_view> words_of(std::string_view text,
                                               std::string_view marks = " \t\n") {
   std::vector<std::string_view> words;

@@ -15,15 +15,15 @@ Error damaged(int rule, std::string_view what, const Message& message) {
 
 Error too_few_bytes(int rule, const Message& message) {
   return damaged(rule,
-                 std::to_string(message.elements.size()) + " compressed bytes cannot hold the " +
-                     std::to_string(message.header.element_bytes()) +
-                     " bytes that the header promises",
+                 std::to_string(message.elements.size()) +
+                     " compressed bytes cannot expand to the header's " +
+                     std::to_string(message.header.element_bytes()) + " bytes",
                  message);
 }
 
 Error no_codec(std::string_view encoding, std::string_view package) {
-  return {Code::Unsupported, "this build has no encoding " + std::string(encoding) + "; install " +
-                                 std::string(package) + " and build again"};
+  return {Code::Unsupported, "this build does not support " + std::string(encoding) + "; install " +
+                                 std::string(package) + " and rebuild"};
 }
 
 Message plain_message(const Message& message, const SharedBytes& bytes) {

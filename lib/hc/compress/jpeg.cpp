@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/compress/codecs.h>
 
-// jpeglib.h needs these two before it.
+// jpeglib.h requires these two.
 #include <cstddef>
 #include <cstdio>
 
@@ -17,16 +17,16 @@
 namespace hc::internal {
 namespace {
 
-constexpr int kMaxScans = 100;  // of a progressive image; each costs the decoder a whole pass
+constexpr int kMaxScans = 100;  // of a progressive image; the decoder makes a pass for each
 constexpr int kFullColourQuality = 90;
-/// Most bytes that one compressed byte can stand for: a component of a JPEG image has all pixels,
-/// in blocks of 64 that take a bit each at least (ITU-T T.81, A.1.1 and F.1.2).
+/// Maximum expansion ratio: each component of a JPEG image has all pixels, in blocks of 64 that
+/// take at least one bit each (ITU-T T.81, A.1.1 and F.1.2).
 constexpr std::uint64_t kMaxImageExpansion = std::uint64_t{64} * 8;
 
-/// libjpeg reports errors by a call that must not come back; these go back to where we began.
+/// libjpeg's error handler must not return; it jumps back to the start of the call.
 /// No object with a destructor lives between setjmp and longjmp.
 struct ErrorHandler {
-  jpeg_error_mgr manager;  // first, so that libjpeg's pointer to it is ours
+  jpeg_error_mgr manager;  // first, so that a pointer to it points to the ErrorHandler
   std::jmp_buf start;
   char text[JMSG_LENGTH_MAX] = {};
 };
@@ -37,19 +37,19 @@ void fail(j_common_ptr info) {
   std::longjmp(handler->start, 1);
 }
 
-/// Warnings (level -1) mean damaged data; the rest is chatter.
-void judge_message(j_common_ptr info, int level) {
+/// Warnings (level -1) mean damaged data; other messages are ignored.
+void fail_on_warning(j_common_ptr info, int level) {
   if (level < 0) fail(info);
 }
 
 jpeg_error_mgr* install(ErrorHandler& handler) {
   jpeg_std_error(&handler.manager);
   handler.manager.error_exit = fail;
-  handler.manager.emit_message = judge_message;
+  handler.manager.emit_message = fail_on_warning;
   return &handler.manager;
 }
 
-/// Refuses what would keep the decoder busy for longer than an image is worth.
+/// Refuses progressive images with too many scans, which would take the decoder too long.
 void count_scans(j_common_ptr info) {
   auto* image = reinterpret_cast<j_decompress_ptr>(info);
   if (image->input_scan_number <= kMaxScans) return;
@@ -58,20 +58,20 @@ void count_scans(j_common_ptr info) {
   std::longjmp(handler->start, 1);
 }
 
-/// How an image differs from what the header promises; null when it does not.
+/// The difference between an image and its header; null if there is none.
 const char* find_mismatch(const jpeg_decompress_struct& image, const Header& header) {
   if (image.image_width != static_cast<JDIMENSION>(header.width) ||
       image.image_height != static_cast<JDIMENSION>(header.height))
-    return "the JPEG image has another width or height than the header says";
+    return "the JPEG image's width or height differs from the header";
   if (image.num_components != header.info.components)
-    return "the JPEG image has another number of components than the header says";
+    return "the JPEG image's number of components differs from the header";
   if (image.data_precision != 8) return "the JPEG image does not have 8 bits";
   if (image.arith_code != FALSE) return "the JPEG image is arithmetic-coded";
   return nullptr;
 }
 
-/// Reads an image of the header's width, height and components into `pixels`, (height, width,
-/// components) u8; gives what is wrong with the bytes, or nothing.
+/// Decodes an image of the header's width, height and components into `pixels`, (height, width,
+/// components) u8; returns the error, if any.
 std::optional<std::string> read(std::span<const std::byte> bytes, const Header& header,
                                 std::byte* pixels) {
   ErrorHandler handler;
@@ -92,7 +92,7 @@ std::optional<std::string> read(std::span<const std::byte> bytes, const Header& 
     return mismatch;
   }
   image.out_color_space = header.info.components == 1 ? JCS_GRAYSCALE : JCS_RGB;
-  image.do_block_smoothing = FALSE;  // what was sent, not a guess at what was not
+  image.do_block_smoothing = FALSE;  // no guesses at coefficients that were not sent
   jpeg_start_decompress(&image);
   std::size_t row_bytes = header.row_numbers();
   while (image.output_scanline < image.output_height) {
@@ -102,7 +102,7 @@ std::optional<std::string> read(std::span<const std::byte> bytes, const Header& 
   jpeg_finish_decompress(&image);
   bool left_over = image.src->bytes_in_buffer > 0;
   jpeg_destroy_decompress(&image);
-  if (left_over) return "bytes follow the JPEG image";
+  if (left_over) return "trailing bytes after the JPEG image";
   return std::nullopt;
 }
 
@@ -125,7 +125,7 @@ Result<Message> compress_jpeg(const Message& message, int quality) {
   unsigned char* buffer = nullptr;
   unsigned long size = 0;
   image.err = install(handler);
-  if (setjmp(handler.start) != 0) HC_CHECK(false, handler.text);  // memory alone can fail
+  if (setjmp(handler.start) != 0) HC_CHECK(false, handler.text);  // only out of memory
   jpeg_create_compress(&image);
   jpeg_mem_dest(&image, &buffer, &size);
   image.image_width = static_cast<JDIMENSION>(header.width);

@@ -11,10 +11,10 @@
 namespace hc {
 namespace {
 
-/// The places of a row, or the rows of an image, that one of a smaller one covers.
+/// The source pixels of a row, or source rows, that one pixel or row of the result covers.
 struct Cover {
-  std::size_t first = 0;       ///< the others follow
-  std::vector<float> weights;  ///< how much of each; they add up to 1
+  std::size_t first = 0;       ///< followed by the others
+  std::vector<float> weights;  ///< sum to 1
 };
 
 std::vector<Cover> covers(std::size_t from, std::size_t to) {
@@ -49,7 +49,7 @@ class Shrinking {
       std::fill(sum_.begin(), sum_.end(), 0.0F);
       for (std::size_t i = 0; i < rows_[y].weights.size(); ++i)
         add(rows_[y].first + i, rows_[y].weights[i]);
-      // Weights are rounded: what is white stays so.
+      // Weights are rounded; clamp, so that white stays white.
       static constexpr auto kWhite = static_cast<float>(std::numeric_limits<T>::max());
       std::transform(sum_.begin(), sum_.end(), to_.row(y).begin(),
                      [](float value) { return static_cast<T>(std::min(value + 0.5F, kWhite)); });
@@ -58,7 +58,7 @@ class Shrinking {
 
  private:
   void add(std::size_t y, float weight) {
-    // Two rows may need the same row of the source: it is narrowed once.
+    // Two rows of the result may cover the same source row: shrink it once.
     if (y != narrowed_) narrow(from_.row(y));
     narrowed_ = y;
     for (std::size_t i = 0; i < sum_.size(); ++i) sum_[i] += weight * narrow_[i];
@@ -82,8 +82,8 @@ class Shrinking {
   MatrixView<const T> from_;
   MatrixView<T> to_;
   std::vector<Cover> columns_, rows_;
-  std::vector<float> narrow_, sum_;                      // a row of the width of `to_`
-  std::size_t narrowed_ = static_cast<std::size_t>(-1);  // which one of `from_` that is
+  std::vector<float> narrow_, sum_;                      // rows as wide as to_
+  std::size_t narrowed_ = static_cast<std::size_t>(-1);  // the row of from_ in narrow_
 };
 
 template <typename T>

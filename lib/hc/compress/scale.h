@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Smaller images, before they go onto a link. No state between calls, any thread.
+// Downscaling of images. Stateless, any thread.
 
 #include <cstdint>
 
@@ -9,13 +9,14 @@
 
 namespace hc {
 
-/// The image with another size: each pixel is the mean of what it covers, its edges in proportion.
-/// All of the header but width and height stays.
+/// The image scaled down; each pixel is the area-weighted mean of those that it covers. The header
+/// is unchanged except for width and height.
 ///
 /// @param image  an image of u8 or u16; compressed elements are expanded first.
-/// @param width, height  [px], from 1 to those of the image.
+/// @param width, height  [px], at most those of the image.
 ///
-/// Errors: as expand(). Another kind or size of image is a bug. Cost: linear in the image's pixels.
+/// Errors: as expand(). Images of other scalars or larger sizes are bugs. Cost: linear in the
+/// pixels of the image.
 Result<Message> shrink(const Message& image, std::int32_t width, std::int32_t height);
 
 }  // namespace hc

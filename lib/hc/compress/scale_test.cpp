@@ -63,7 +63,7 @@ TEST(Shrink, LeavesWhiteWhiteAndTheMeanWhereItIs) {
   auto mean = [](const auto& all) {
     return std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
   };
-  EXPECT_NEAR(mean(small), mean(pixels), 0.5);  // grey levels: each is rounded
+  EXPECT_NEAR(mean(small), mean(pixels), 0.5);  // [grey level], for rounding
 }
 
 TEST(Shrink, ExpandsWhatIsCompressed) {

@@ -10,12 +10,11 @@
 namespace hc::internal {
 namespace {
 
-/// Most bytes that one compressed byte can stand for, so that no memory is reserved for a promise
-/// that the bytes cannot keep. A block of zstd takes 4 bytes at least, 3 of them its header, and
-/// holds 128 KiB at most (RFC 8878, 3.1.1.2).
+/// Maximum expansion ratio, to refuse impossible headers before memory is allocated: a zstd block
+/// takes at least 4 bytes, 3 of them its header, and holds at most 128 KiB (RFC 8878, 3.1.1.2).
 constexpr std::uint64_t kMaxExpansion = (std::uint64_t{128} << 10) / 4;
-/// What is larger than this must not become more than so many times what came, so that memory
-/// follows what has arrived: flat images do, and a few thousand bytes cannot take all there is.
+/// Messages larger than kLarge are limited to this ratio, which flat images do not exceed: a few
+/// thousand bytes must not make a reader allocate hundreds of megabytes.
 constexpr std::uint64_t kLarge = std::uint64_t{64} << 20, kMaxLargeExpansion = 256;
 
 }  // namespace
@@ -27,23 +26,22 @@ Result<Message> expand_zstd(const Message& message) {
   if (promised > kLarge && promised / kMaxLargeExpansion > message.elements.size())
     return Error{Code::TooLarge, "R36 elements: " + std::to_string(message.elements.size()) +
                                      " compressed bytes for " + std::to_string(promised) +
-                                     " are fewer than one in " +
+                                     " exceed the ratio of 1 to " +
                                      std::to_string(kMaxLargeExpansion) + ", at byte " +
                                      std::to_string(message.byte)};
-  // All in one call: it writes into our bytes alone, needs no window, and stops at their end.
+  // The one-shot call needs no window and stops at the end of our buffer.
   SharedBytes bytes = allocate_bytes(promised);
   std::size_t size =
       ZSTD_decompress(bytes.get(), promised, message.elements.data(), message.elements.size());
   if (ZSTD_getErrorCode(size) == ZSTD_error_dstSize_tooSmall)
-    return damaged(36,
-                   "the zstd frames hold more than the " + std::to_string(promised) +
-                       " bytes that the header promises",
-                   message);
+    return damaged(
+        36, "the zstd frames contain more than the header's " + std::to_string(promised) + " bytes",
+        message);
   if (ZSTD_isError(size) != 0)
     return damaged(36, std::string("zstd: ") + ZSTD_getErrorName(size), message);
   if (size != promised)
     return damaged(36,
-                   "the zstd frames hold " + std::to_string(size) + " bytes, the header promises " +
+                   "the zstd frames contain " + std::to_string(size) + " bytes, not the header's " +
                        std::to_string(promised),
                    message);
   return plain_message(message, bytes);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What `hc run` says to a module over its --control link: rows of text, written and read here alone
-// (spec/module.md). Pure.
+// Commands of `hc run` to a module over its --control link: rows of text, formatted and parsed only
+// here (spec/module.md). Pure.
 
 #include <string>
 #include <string_view>
@@ -10,21 +10,20 @@
 
 namespace hc {
 
-/// One row.
 struct ModuleCommand {
   enum class Verb { Set, Link, Unlink, Finish, Route, WallOffset };
 
   Verb verb = Verb::Set;
-  bool is_input = true;  ///< of link and unlink: an input's
-  /// Of set the parameter's name; of wall_offset a number; else PORT=URI, as the link was given.
+  bool is_input = true;  ///< of link and unlink: the end of an input
+  /// The parameter's name (set), a number (wall_offset), else PORT=URI as given for the link.
   std::string target;
-  std::string value;  ///< of set the value; of route its words, see --route
+  std::string value;  ///< the parameter's value (set), or the words of a --route (route)
 };
 
-/// "set NAME=VALUE", "link in PORT=URI", "route PORT=URI WORDS" …
+/// "set NAME=VALUE", "link in PORT=URI", "route PORT=URI WORDS", …
 std::string text(const ModuleCommand& command);
 
-/// Errors: Invalid; the detail says what commands there are.
+/// Errors: Invalid; the detail lists the commands.
 Result<ModuleCommand> parse_module_command(std::string_view row);
 
 }  // namespace hc

@@ -12,7 +12,7 @@ namespace {
 constexpr double kSmallest = 0.01;
 constexpr int kBestQuality = 100;
 
-/// Reads an option if it is given; whether it is a number of that range.
+/// Parses an option if it is given; false if it is not a number in the range.
 template <typename Number>
 bool read(const Uri& uri, std::string_view key, Number min, Number max, Number& number) {
   const auto text = uri.option(key, "");
@@ -36,7 +36,7 @@ Result<Conversion> take_conversion(Uri& uri) {
     return invalid("option quality is a whole number from 1 to 100");
   if (quality != 0) conversion.quality = quality;
   if (quality != 0 && conversion.as != Encoding::Jpeg)
-    return invalid("option quality wants as=jpeg beside it");
+    return invalid("option quality needs as=jpeg");
   if (!read(uri, "scale", kSmallest, 1.0, conversion.scale))
     return invalid("option scale is a number from 0.01 to 1");
   std::erase_if(uri.options, [](const auto& option) {

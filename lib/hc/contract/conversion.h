@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a sender makes of each message before it goes onto a link: smaller images, another encoding.
-// Options of a link's URI, which the transports do not know. Pure.
+// Conversion of messages before they are sent over a link: downscaling of images, re-encoding.
+// Options of a link's URI that transports do not see. Pure.
 
 #include <array>
 #include <optional>
@@ -16,31 +16,31 @@
 namespace hc {
 
 struct Conversion {
-  std::optional<Encoding> as;  ///< nothing: as the output sends it
+  std::optional<Encoding> as;  ///< nullopt: the encoding of the output
   std::optional<int> quality;  ///< of JPEG, 1 … 100
   double scale = 1;            ///< of width and height, 0.01 … 1
 
   [[nodiscard]] bool is_none() const { return !as && scale == 1; }
 };
 
-/// The options that say so, in the order in which they are read.
+/// The options of a conversion, in the order in which they are parsed.
 inline constexpr std::array<std::string_view, 3> kConversionOptions = {"as", "quality", "scale"};
 
-/// Takes `as=`, `quality=` and `scale=` out of a URI's options.
+/// Removes `as=`, `quality=` and `scale=` from a URI's options.
 ///
 /// Errors: Invalid; also for a quality without as=jpeg.
 Result<Conversion> take_conversion(Uri& uri);
 
-/// Whether images of that kind can be made smaller: pixels of u8 or u16, whose mean is a
-/// brightness. (What f32 holds may be a depth, 0 where it is unknown.)
+/// Whether images of this type can be downscaled: pixels of u8 or u16, for which a mean makes
+/// sense. (Images of f32 may be depth, with 0 where it is unknown.)
 bool can_scale(const Info& info);
 
-/// Why the messages of an output cannot be converted, or come to an input with another size than it
-/// takes; empty where nothing hinders it, or nobody knows since a port takes anything.
+/// Why an output's messages cannot be converted, or will not have the size that an input takes;
+/// empty if they can, or if it is unknown because a port takes anything.
 std::string hindrance(const Conversion& conversion, const std::vector<PortType>& given,
                       const std::vector<PortType>& taken);
 
-/// Width or height of what is left of so many pixels, 1 at least.
+/// A width or height after scaling, at least 1. [px]
 std::int32_t scaled(std::int32_t pixels, double scale);
 
 }  // namespace hc

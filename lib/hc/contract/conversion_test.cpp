@@ -34,7 +34,7 @@ TEST(Conversion, IsRefused) {
   for (const char* quality : {"0", "101", "1.5", "-1"})
     EXPECT_EQ(taken("as=jpeg&quality=" + std::string(quality)).error().detail,
               "option quality is a whole number from 1 to 100");
-  EXPECT_EQ(taken("as=zstd&quality=50").error().detail, "option quality wants as=jpeg beside it");
+  EXPECT_EQ(taken("as=zstd&quality=50").error().detail, "option quality needs as=jpeg");
 }
 
 TEST(Conversion, IsHindered) {

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A number as a person would write it: 5, not 5.0.
+/// Writes integral numbers without a fraction: 5, not 5.0.
 Json number(double value) {
   constexpr double kExact = 9007199254740992;  // 2^53
   if (!std::isfinite(value)) return nullptr;
@@ -64,7 +64,7 @@ Json to_json(const ParameterState& parameter) {
   return json;
 }
 
-/// Reads an object key by key; what is missing or of another type is noted, and the rest read on.
+/// Reads an object key by key; remembers whether one was missing or of the wrong type.
 class Reader {
  public:
   explicit Reader(const Json& json) : json_(json), good_(json.is_object()) {}
@@ -74,7 +74,7 @@ class Reader {
     good_ = good_ && json_.contains(key);
     return read(key, value);
   }
-  /// Leaves the value as it is where there is no such key.
+  /// Leaves the value unchanged if the key is absent.
   template <typename T>
   Reader& read(const char* key, T& value) {
     if (good_ && json_.contains(key)) good_ = get(json_.at(key), value);
@@ -174,7 +174,7 @@ class Reader {
   bool good_;
 };
 
-/// A port that every module with `control` has, where that is the one.
+/// `own` if the module has it, as all with `control` do, and the name matches.
 const PortDescription* implicit(const Description& description, const PortDescription& own,
                                 std::string_view port) {
   return description.control && port == own.name ? &own : nullptr;

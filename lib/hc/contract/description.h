@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a program says of itself with --describe: one struct, written and read here alone
+// The interface of a module, as its --describe prints it; formatted and parsed only here
 // (spec/module.md). Pure.
 
 #include <cstdint>
@@ -16,21 +16,20 @@ namespace hc {
 
 struct PortDescription {
   std::string name, doc;
-  std::vector<PortType> types;  ///< an output has one; empty: anything
-  bool actor = false;           ///< an input that moves something: one writer at a time
-  /// Of an input: how many of the newest messages its links keep unless they say otherwise; 0: it
-  /// does not matter to it.
+  std::vector<PortType> types;  ///< an output has one; empty: any
+  bool actor = false;           ///< an input that moves something: it takes one writer at a time
+  /// Of an input: default of `keep` for its links; 0: no preference.
   std::uint32_t keep = 0;
 };
 
 struct Description {
   std::string name, summary;
   std::vector<PortDescription> inputs, outputs;
-  std::vector<std::vector<std::string>> together;      ///< inputs whose messages are taken together
-  std::vector<ParameterState> parameters;              ///< at their defaults
-  std::optional<std::vector<std::string>> transports;  ///< nothing: streams
-  bool control = false;  ///< knows --control, and the options of modes and addresses
-  bool routes = false;   ///< each link gets what its address leads to (--route)
+  std::vector<std::vector<std::string>> together;      ///< groups of synchronised inputs
+  std::vector<ParameterState> parameters;              ///< with default values
+  std::optional<std::vector<std::string>> transports;  ///< nullopt: all except shm and inproc
+  bool control = false;  ///< supports --control, and the options for modes and addresses
+  bool routes = false;   ///< sends each message along the links that its address leads to (--route)
 
   /// Whether --in and --out take URIs of this scheme.
   [[nodiscard]] bool knows(std::string_view transport) const;
@@ -39,19 +38,20 @@ struct Description {
 /// One line of JSON.
 std::string to_json(const Description& description);
 
-/// Takes what `program --describe` prints apart; nothing where it is no description of a module.
-/// Whatever the text, memory is in proportion to it.
+/// Parses the output of `program --describe`; nullopt if it is not a module's description.
+/// Uses memory proportional to the text.
 std::optional<Description> parse_description(std::string_view text);
 
-/// Whether a text is snake_case: a small letter, then small letters, digits and _, 64 at most.
+/// Whether a text is snake_case: a lower-case letter, then lower-case letters, digits and _, at
+/// most 64 in all.
 bool is_name(std::string_view text);
 /// Whether a text is MODULE.PORT.
 bool is_port_name(std::string_view text);
 
-/// Whether the names of all ports are. Errors: Invalid.
+/// Checks that all ports have names in snake_case. Errors: Invalid.
 Status check_names(const Description& description);
 
-/// The port or parameter of that name; null where there is none.
+/// The port or parameter with a name; null if there is none.
 template <typename Named>
 const Named* find_named(const std::vector<Named>& list, std::string_view name) {
   for (const auto& each : list)
@@ -67,16 +67,16 @@ std::vector<std::string> names_of(const std::vector<Named>& list) {
   return names;
 }
 
-/// The input of every module that knows --control, which it does not list: the mode in focus.
+/// The implicit input of every module with `control`: the mode in focus.
 const PortDescription& focus_input();
 
-/// The output of every module that knows --control, which it does not list: its trace.
+/// The implicit output of every module with `control`: its trace.
 const PortDescription& trace_output();
 
-/// An output; the implicit `trace` too. Null where there is none.
+/// An output, including the implicit `trace`; null if there is none.
 const PortDescription* find_output(const Description& description, std::string_view port);
 
-/// An input; the implicit `focus` too. Null where there is none.
+/// An input, including the implicit `focus`; null if there is none.
 const PortDescription* find_input(const Description& description, std::string_view port);
 
 }  // namespace hc

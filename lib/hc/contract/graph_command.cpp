@@ -19,7 +19,7 @@ constexpr std::string_view kReply = "reply ", kOk = "ok";
 struct Form {
   std::string_view name;
   Verb verb;
-  std::size_t words;  // behind it, at least
+  std::size_t words;  // after it; the minimum
   bool takes_more;
   std::string_view text;
 };
@@ -67,8 +67,8 @@ Result<GraphCommand> parse_graph_command(std::string_view line) {
   GraphCommand command{form->verb, {words.begin() + 1, words.end()}};
   const std::size_t count = command.words.size();
   if (count < form->words || (count > form->words && !form->takes_more))
-    return Error{Code::Invalid, "the command is: " + std::string(form->text)};
-  if (form->verb == Verb::Set) {  // its value may hold anything
+    return Error{Code::Invalid, "usage: " + std::string(form->text)};
+  if (form->verb == Verb::Set) {  // the value may contain spaces
     auto assignment =
         HC_TRY(parse_assignment(line.substr(line.find(command.words[0], form->name.size()))));
     command.words = {std::move(assignment.module), std::move(assignment.parameter),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Commands to a running graph and its answers, as messages: a row for each command, all of
-// which it does or none (spec/graph.md, G47). Pure.
+// Commands to a running graph and its answers, as messages. The commands of a message, one per row,
+// are executed all or not at all (spec/graph.md, G47). Pure.
 
 #include <string>
 #include <string_view>
@@ -12,7 +12,7 @@
 
 namespace hc {
 
-/// "MODULE.PARAMETER=VALUE"; the value is all that follows the first `=`.
+/// "MODULE.PARAMETER=VALUE"; the value is everything after the first `=`.
 struct Assignment {
   std::string module, parameter, value;
 };
@@ -23,31 +23,29 @@ struct GraphCommand {
   enum class Verb { Set, Add, Remove, Restart, Link, Unlink, Stop, Describe, Observe };
 
   Verb verb = Verb::Stop;
-  std::vector<std::string> words;  ///< behind the verb; of `set` module, parameter and value
+  std::vector<std::string> words;  ///< after the verb; for `set`: module, parameter, value
 
-  /// Whether it changes the graph, and not only what runs of it.
+  /// Whether it changes the graph itself, not only what is running.
   [[nodiscard]] bool is_edit() const {
     return verb != Verb::Restart && verb != Verb::Stop && !is_question();
   }
-  /// Whether it changes nothing: `describe` and `observe`, which stand alone in a message.
+  /// Whether it changes nothing: `describe` and `observe`, which must be alone in a message.
   [[nodiscard]] bool is_question() const { return verb == Verb::Describe || verb == Verb::Observe; }
 };
 
 /// Errors: Invalid.
 Result<GraphCommand> parse_graph_command(std::string_view line);
 
-/// A message of commands.
 struct GraphRequest {
-  std::string reply;               ///< `unix:` URI for the answer; empty: none is wanted
-  std::vector<std::string> lines;  ///< a command each
+  std::string reply;               ///< `unix:` URI for the answer; empty: no answer
+  std::vector<std::string> lines;  ///< one command each
 };
 Message make_request(const GraphRequest& request);
 GraphRequest read_request(const Message& message);
 
-/// What a graph answers.
 struct GraphAnswer {
   bool is_ok = false;
-  /// Of ok what was asked for, or remarks; else what is wrong, at least one row.
+  /// If ok, the data requested, or remarks; otherwise at least one error.
   std::vector<std::string> rows;
 };
 Message make_answer(const GraphAnswer& answer);

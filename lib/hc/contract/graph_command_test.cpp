@@ -29,11 +29,11 @@ TEST(GraphCommand, what_is_wrong_is_named) {
            {"", "there is no command"},
            {"   ", "there is no command"},
            {"ad x y", "no command \"ad\", did you mean \"add\"?"},
-           {"add x", "the command is: add MODULE[@HOST] PROGRAM [PARAMETER=VALUE ...]"},
-           {"stop now", "the command is: stop"},
-           {"describe", "the command is: describe MODULE"},
-           {"observe a.b c.d", "the command is: observe MODULE.PORT"},
-           {"set", "the command is: set MODULE.PARAMETER=VALUE"},
+           {"add x", "usage: add MODULE[@HOST] PROGRAM [PARAMETER=VALUE ...]"},
+           {"stop now", "usage: stop"},
+           {"describe", "usage: describe MODULE"},
+           {"observe a.b c.d", "usage: observe MODULE.PORT"},
+           {"set", "usage: set MODULE.PARAMETER=VALUE"},
            {"set rate=5", "\"rate=5\" is not MODULE.PARAMETER=VALUE"},
            {"set camera.rate", "\"camera.rate\" is not MODULE.PARAMETER=VALUE"}}) {
     const auto command = parse_graph_command(line);

@@ -32,8 +32,8 @@ struct FieldWriter {
   void operator()(const char* key, Level value) { json[key] = name(value); }
 };
 
-/// Reads them; throws what Json throws. A key that is absent leaves its field as it is, so that a
-/// newer tool reads an older graph.
+/// Reads the fields; throws Json's exceptions. If a key is absent, its field keeps its value, so
+/// that newer tools can read older graphs.
 struct FieldReader {
   const Json& json;
 
@@ -181,7 +181,7 @@ std::string to_json(const GraphState& state) {
     visit_module(module, FieldWriter{json["modules"].emplace_back(Json::object())});
   for (const auto& link : state.links)
     visit_link(link, FieldWriter{json["links"].emplace_back(Json::object())});
-  // Texts of modules and files may be no UTF-8.
+  // Texts of modules and files may not be UTF-8.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

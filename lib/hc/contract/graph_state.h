@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a running graph does, at one moment, as a struct and as JSON.
+// A snapshot of a running graph, as a struct and as JSON.
 
 #include <sys/types.h>
 
@@ -21,12 +21,12 @@
 namespace hc {
 
 enum class ModuleStatus {
-  Starting,  ///< has a process that has not reported yet
+  Starting,  ///< its process has not reported yet
   Running,
-  Stalled,   ///< does not report any more
-  Waiting,   ///< for its restart
+  Stalled,   ///< has stopped reporting
+  Waiting,   ///< to be restarted
   Stopping,  ///< has been asked to end
-  Ended,     ///< for good: its work is done, or it was asked to
+  Ended,     ///< for good: finished, or as asked
   GivenUp,   ///< failed too often
 };
 /// "running", "given up" and so on.
@@ -35,51 +35,51 @@ std::string_view name(ModuleStatus status);
 struct ModuleState {
   std::string name, program;
   std::string host;   ///< empty: that of `hc run`
-  std::string group;  ///< the included graph that it is of; empty: none
+  std::string group;  ///< the included graph that it belongs to; empty: none
   pid_t process = 0;  ///< 0: none
   ModuleStatus status = ModuleStatus::Starting;
-  std::string detail;  ///< the reason, where the status alone does not say it
+  std::string detail;  ///< explains the status, where necessary
   int restarts = 0;
   std::optional<int> exit;         ///< exit status of its last process
-  double processor = 0;            ///< share of one processor, in the last period
+  double processor = 0;            ///< load in the last period, 1: one processor
   std::uint64_t memory = 0;        ///< PSS [byte]
   std::string mode;                ///< of a task; empty: none
   std::vector<std::string> modes;  ///< in which it is active; empty: all
-  std::string workspace;           ///< whose focus it obeys; empty: none
+  std::string workspace;           ///< that it belongs to; empty: none
   std::string last_line;           ///< of its log
   Level last_level = Level::Info;
   double last_line_age = 0;  ///< [s]
   bool in_focus = true;
   bool in_workspace = false;
-  std::string waits_for;        ///< the input whose reader it waits for; empty: unknown
-  std::optional<double> waits;  ///< since when [s]; nothing: it does not wait
+  std::string waits_for;        ///< the input whose reader blocks it; empty: unknown
+  std::optional<double> waits;  ///< blocked for [s]; nullopt: not blocked
   std::map<std::string, std::string> parameters;
 };
 
 struct LinkState {
   std::string from, to;   ///< "MODULE.PORT", or a URI
   std::string transport;  ///< "shm", "unix", …
-  std::string status;     ///< why nothing can go over it: "camera: waiting"; else empty
-  std::string keep;       ///< as the graph says
+  std::string status;     ///< why it is down: "camera: waiting"; empty: it is up
+  std::string keep;       ///< as in the graph file
   double rate = 0;        ///< limit [message/s]; 0: none
-  Traffic traffic;        ///< of its sender, and what was dropped at its reader
-  /// At its reader, or at its sender where the reader reports nothing.
+  Traffic traffic;        ///< of the sender, plus the reader's drops
+  /// As measured by the reader, or by the sender if the reader reports nothing.
   double per_second = 0, bytes_per_second = 0;
-  std::uint64_t ignored = 0;                 ///< ignored by its reader: out of focus
+  std::uint64_t ignored = 0;                 ///< by the reader, because it was out of focus
   std::optional<std::array<double, 3>> age;  ///< latency: median, p99, maximum [s]
-  std::optional<std::array<double, 3>> gap;  ///< inter-arrival time, the same [s]
+  std::optional<std::array<double, 3>> gap;  ///< inter-arrival time: median, p99, maximum [s]
   bool in_workspace = false;
 };
 
-/// Another host that modules run on. Clocks are compared twice a second.
+/// Another host with modules of the graph. Clocks are compared twice a second.
 struct HostState {
   std::string name;
   bool is_connected = false;
-  std::string detail;             ///< why not
-  std::optional<double> offset;   ///< its wall clock less that of the host of `hc run` [s]
-  std::optional<double> error;    ///< of that and of times that it sends, at most [s]
-  std::optional<double> drift;    ///< of its monotonic clock against the other
-  std::optional<double> latency;  ///< there and back [s]
+  std::string detail;             ///< why it is not connected
+  std::optional<double> offset;   ///< its wall clock minus that of the host of `hc run` [s]
+  std::optional<double> error;    ///< bound on the error of the offset and of its times [s]
+  std::optional<double> drift;    ///< rate of its monotonic clock relative to the runner's host
+  std::optional<double> latency;  ///< round-trip time [s]
 };
 
 struct GraphState {
@@ -87,26 +87,26 @@ struct GraphState {
   pid_t process = 0;  ///< of the runner
   double uptime = 0;  ///< [s]
   bool is_stopping = false;
-  std::map<std::string, std::int64_t> focus;  ///< of each workspace, the mode in focus; 0: none
-  std::set<std::string> stopped;              ///< the workspaces that have been stopped
+  std::map<std::string, std::int64_t> focus;  ///< mode in focus of each workspace; 0: none
+  std::set<std::string> stopped;              ///< workspaces that have been stopped
   std::vector<HostState> hosts;
   std::vector<ModuleState> modules;
   std::vector<LinkState> links;
-  std::map<std::string, std::int64_t> modes;      ///< their numbers
+  std::map<std::string, std::int64_t> modes;      ///< numbers by name
   std::map<std::string, std::int64_t> addresses;  ///< of inputs, "MODULE.PORT"
 
-  /// Name of a mode, its number where it has none; empty for 0.
+  /// The name of a mode, or its number if it has none; empty for 0.
   [[nodiscard]] std::string mode_name(std::int64_t number) const;
-  /// Name of the mode that a module's workspace has in focus; empty: none.
+  /// The name of the mode in focus in a module's workspace; empty: none.
   [[nodiscard]] std::string focus_of(const ModuleState& module) const;
-  /// The modes in focus: "track", and of several workspaces "left: track, right: none"; empty: no
+  /// The modes in focus: "track", or for several workspaces "left: track, right: none"; empty: no
   /// workspace has one.
   [[nodiscard]] std::string focus_in_words() const;
-  /// "stopped", and of several workspaces which, "stopped: left, right"; empty: none is.
+  /// "stopped", or with several workspaces "stopped: left, right"; empty: none is stopped.
   [[nodiscard]] std::string stopped_in_words() const;
 };
 
-/// The state as one line of JSON, as spec/graph.md describes it.
+/// The state as one line of JSON (spec/graph.md).
 std::string to_json(const GraphState& state);
 
 /// Errors: Malformed.

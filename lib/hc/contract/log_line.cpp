@@ -36,7 +36,7 @@ Result<LogLine> read_log(const Message& message) {
   const std::string row = rows.empty() ? "" : rows.front();
   std::string_view said = row;
   const auto level = level_named(take_until(said, ' '));
-  if (!level) return Error{Code::Malformed, "a log report is LEVEL TEXT, and not \"" + row + "\""};
+  if (!level) return Error{Code::Malformed, "not a log report, LEVEL TEXT: \"" + row + "\""};
   return LogLine{{}, *level, std::string(said)};
 }
 

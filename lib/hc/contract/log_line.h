@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A line of a log with its level: as a module reports it to `hc run`, and as a running graph
-// publishes it (spec/module.md, spec/graph.md). Pure.
+// A log line with its level, as a module reports it to `hc run` and as a running graph publishes it
+// (spec/module.md, spec/graph.md). Pure.
 
 #include <optional>
 #include <string>
@@ -18,20 +18,20 @@ std::string_view name(Level level);
 std::optional<Level> level_named(std::string_view name);
 
 struct LogLine {
-  std::string module;  ///< "graph": of the graph itself
+  std::string module;  ///< or "graph" for the graph itself
   Level level = Level::Info;
   std::string text;
 
-  /// "camera: error: no such device"; other levels are not shown.
+  /// "camera: error: no such device"; levels other than error are not shown.
   [[nodiscard]] std::string line() const;
 };
 
-/// What a module reports: a string with a row "LEVEL TEXT".
+/// A module's report: a string with a row "LEVEL TEXT".
 Message make_log(Level level, std::string_view text);
 /// Errors: Malformed.
 Result<LogLine> read_log(const Message& message);
 
-/// What a graph publishes: one line of JSON.
+/// As a graph publishes it: one line of JSON.
 std::string to_json(const LogLine& line);
 /// Errors: Malformed.
 Result<LogLine> parse_log_line(std::string_view json);

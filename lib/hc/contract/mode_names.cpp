@@ -24,7 +24,7 @@ Result<std::map<std::int32_t, std::string>> parse_mode_names(std::string_view te
     if (name.empty() || !read_number(value, number) || number < 1 ||
         !names.emplace(number, name).second)
       return Error{Code::Invalid, std::string(parameter) + ": \"" + std::string(word) +
-                                      "\" is not NAME=NUMBER with a number of its own, as in "
+                                      "\" is not NAME=NUMBER with a unique number, as in "
                                       "read=5,track=4"};
   }
   return names;

@@ -18,9 +18,8 @@ TEST(ModeNames, what_is_no_name_with_a_number_is_refused) {
   for (const char* wrong : {"track", "=4", "track=", "track=0", "track=-1", "track=4x", ",",
                             "track=4 read=5", "track=99999999999", "read=5,", "read=5,track=5"})
     EXPECT_EQ(parse_mode_names(wrong).error().code, Code::Invalid) << wrong;
-  EXPECT_EQ(
-      parse_mode_names("read=5,track").error().detail,
-      "mode_names: \"track\" is not NAME=NUMBER with a number of its own, as in read=5,track=4");
+  EXPECT_EQ(parse_mode_names("read=5,track").error().detail,
+            "mode_names: \"track\" is not NAME=NUMBER with a unique number, as in read=5,track=4");
 }
 
 }  // namespace

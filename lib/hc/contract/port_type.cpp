@@ -2,6 +2,7 @@
 #include <hc/contract/port_type.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include <hc/mtp/coords.h>
@@ -17,6 +18,20 @@ Error misfit_of(int rule, std::string_view field, const std::string& has,
 }
 
 }  // namespace
+
+std::optional<Shape> shape_of(const PortType& type, std::size_t numbers) {
+  const auto elements = static_cast<std::int32_t>(numbers / type.info.components);
+  std::int32_t height = type.height, width = type.width;
+  if (type.info.type == MatrixType::DenseGraph && height == 0 && width == 0)
+    height = width = static_cast<std::int32_t>(std::lround(std::sqrt(elements)));
+  else if (type.info.type == MatrixType::SparseGraph && width == 0)
+    width = 1;
+  if (height == 0) height = width == 0 ? 1 : elements / width;
+  if (width == 0) width = elements / height;
+  const auto all = static_cast<std::size_t>(height) * static_cast<std::size_t>(width);
+  if (all * type.info.components != numbers) return std::nullopt;
+  return Shape{height, width};
+}
 
 Error misfit(const Header& header, const PortType& type) {
   const Info& info = header.info;

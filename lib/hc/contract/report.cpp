@@ -13,7 +13,7 @@ using Row = std::array<std::int64_t, kCounterColumns.size()>;
 using StateRow = std::array<std::int64_t, 4>;
 constexpr std::size_t kIgnored = 7, kAge = kIgnored + 1, kGap = kAge + 3, kMore = kGap + 3;
 
-/// Where a member of the traffic is: the last ones were added behind all others.
+/// The column of a traffic member: the last members were added after all other columns.
 constexpr std::size_t column_of(std::size_t member) {
   return member < kIgnored ? member : kMore + member - kIgnored;
 }
@@ -22,8 +22,7 @@ static_assert(kPeers + 1 == kCounterColumns.size());
 
 template <std::size_t kColumns>
 Message make_table(std::span<const std::array<std::int64_t, kColumns>> rows) {
-  Draft draft = Draft::make({MatrixType::Table, kColumns, Scalar::I64, Encoding::Text}, 1,
-                            static_cast<std::int32_t>(rows.size()));
+  Draft draft = Draft::make({MatrixType::Table, kColumns, Scalar::I64, Encoding::Text}, static_cast<std::int32_t>(rows.size()), 1);
   auto table = draft.view<std::int64_t>();
   for (std::size_t i = 0; i < rows.size(); ++i)
     std::copy(rows[i].begin(), rows[i].end(), table.row(i).begin());

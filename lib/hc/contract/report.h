@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a module reports to `hc run` over its --manage link: messages, written and read here alone
+// Reports of a module to `hc run` over its --manage link: messages, written and read only here
 // (spec/module.md). Pure.
 
 #include <array>
@@ -18,23 +18,22 @@
 
 namespace hc {
 
-/// What a message reports, by its src.
-/// Log: log_line.h.
+/// The kind of a report, its src. Log: see log_line.h.
 enum class Report : std::int32_t { Counters = 1, Links, Parameters, State, Log };
 
-/// Durations since the report before: median, 99th percentile, greatest [ns]; -1: none.
+/// Durations since the previous report: median, 99th percentile, maximum [ns]; -1: none.
 using Durations = std::array<std::int64_t, 3>;
 
-/// What went over one link: a row of Report::Counters.
+/// The counters of a link: a row of Report::Counters.
 struct LinkCounters {
   Traffic traffic;
-  std::uint64_t ignored = 0;  ///< messages that came and were not handled: not in focus
-  Durations age{-1, -1, -1};  ///< of messages, from when they were sensed (R11)
-  Durations gap{-1, -1, -1};  ///< from one message to the next
-  std::int64_t peers = -1;    ///< that are connected; -1: unknown, or none ever is
+  std::uint64_t ignored = 0;  ///< received messages that were not handled: not in focus
+  Durations age{-1, -1, -1};  ///< of messages, since the measurement (R11)
+  Durations gap{-1, -1, -1};  ///< inter-arrival time
+  std::int64_t peers = -1;    ///< connected peers; -1: unknown, or not applicable
 };
 
-/// The columns of Report::Counters, in this order.
+/// The columns of Report::Counters, in order.
 struct CounterColumn {
   std::string_view name, meaning;
 };
@@ -59,13 +58,13 @@ constexpr std::array<CounterColumn, 17> kCounterColumns = {{
     {"peers", "peers that are connected; -1: unknown, or of a file"},
 }};
 
-/// A table of i64, a row for each link.
+/// A table of i64, one row per link.
 Message make_counters(std::span<const LinkCounters> links);
-/// The rows of a table of i64 of at least two columns; those that are missing are 0, or -1 for
-/// durations. Nothing of any other message.
+/// The rows of a table of i64 with at least two columns; missing columns are 0, or -1 for
+/// durations. Empty for other messages.
 std::vector<LinkCounters> read_counters(const Message& message);
 
-/// One end of a link: a row of Report::Links, in the order of the counters.
+/// One end of a link: a row of Report::Links, in the same order as the counters.
 struct LinkEnd {
   bool is_input = true;
   std::string port, uri;
@@ -74,18 +73,18 @@ Message make_links(std::span<const LinkEnd> links);
 /// Malformed rows are ignored.
 std::vector<LinkEnd> read_links(const Message& message);
 
-/// Report::Parameters: their values as text, by name. At most `max` are read.
+/// Report::Parameters: values as text, by name. Reads at most `max`.
 Message make_parameters(const std::map<std::string, std::string>& values);
 std::map<std::string, std::string> read_parameters(const Message& message, std::size_t max);
 
 /// Report::State.
 struct StateReport {
-  std::int64_t mode = 0;   ///< of its messages; 0: none of its own
+  std::int64_t mode = 0;   ///< of its messages; 0: none
   std::int64_t focus = 0;  ///< the mode in focus, as last received or decided; 0: none
-  bool in_focus = true;    ///< whether it works in that mode
-  /// Row, from 1 on, of the link for whose reader it waits; 0: it does not.
+  bool in_focus = true;    ///< whether it is active in that mode
+  /// Row, from 1, of the link whose reader blocks it; 0: not blocked.
   std::int64_t blocked_row = 0;
-  Stops stops;  ///< of who decides on the focus
+  Stops stops;  ///< of the module that decides on the focus
   bool operator==(const StateReport&) const = default;
 };
 Message make_state(const StateReport& state);

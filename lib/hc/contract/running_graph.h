@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A running graph as others name it, and the two sockets that it listens at: one sends its state
-// and its log, the other takes commands (spec/graph.md, G45 … G47). Pure.
+// Names of a running graph and of its two sockets: one publishes its state and log, the other takes
+// commands (spec/graph.md, G45 … G47). Pure.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace hc {
 
-/// The characters of a graph's name, and its greatest length. [byte]
+/// The characters of a graph's name, and its maximum length. [byte]
 bool is_of_graph_name(char c);
 inline constexpr std::size_t kMaxGraphName = 40;
 
-/// A graph that runs: one `hc run`.
+/// A running graph: one `hc run`.
 struct RunningGraph {
-  /// What its sockets' names begin with, in the abstract namespace.
+  /// Prefix of its sockets' names in the abstract namespace.
   static constexpr std::string_view kPrefix = "hypercolumn.";
 
   std::string name;
@@ -26,19 +26,19 @@ struct RunningGraph {
   /// "NAME.PROCESS"
   [[nodiscard]] std::string text() const { return name + "." + std::to_string(process); }
   [[nodiscard]] std::string socket_name() const { return std::string(kPrefix) + text(); }
-  /// Where its states and its log are read.
+  /// Publishes states and log.
   [[nodiscard]] std::string state_uri() const { return "unix:@" + socket_name(); }
-  /// Where it takes commands.
+  /// Takes commands.
   [[nodiscard]] std::string command_uri() const { return state_uri() + ".ask"; }
 };
 
-/// The src of what a graph sends: its state, one line of JSON, and a line of its log.
+/// The src of a graph's messages: its state, one line of JSON, or a line of its log.
 enum class GraphReport : std::int32_t { State = 1, Log };
-/// The longest of these that is read, and the longest message of commands. [byte]
+/// The longest of these messages that is read, and the longest message of commands. [byte]
 inline constexpr std::uint64_t kMaxStateBytes = std::uint64_t{16} << 20;
 inline constexpr std::uint64_t kMaxCommandBytes = std::uint64_t{1} << 20;
 
-/// "NAME.PROCESS"; nothing of any other text, such as the names of other programs' sockets.
+/// Parses "NAME.PROCESS"; nullopt for other texts, such as names of unrelated sockets.
 std::optional<RunningGraph> parse_running_graph(std::string_view text);
 
 }  // namespace hc

@@ -16,7 +16,7 @@ TEST(RunningGraph, a_name_and_a_process_are_a_graph) {
 }
 
 TEST(RunningGraph, any_other_name_is_none) {
-  // Any program may bind a name, with bytes that a terminal obeys.
+  // Any program may bind a name, also with terminal control characters.
   for (const std::string& name :
        {std::string(""), std::string("head"), std::string("a.b.7"), std::string("\x1b[2J.7"),
         std::string("å.7"), std::string(".7"), std::string("a.-7"), std::string("a.0"),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a traced module reports of its messages over its output `trace` (spec/module.md): rows
-// of text, written and read here alone. Pure.
+// Trace of a module's messages, sent over its output `trace` (spec/module.md): rows of text,
+// formatted and parsed only here. Pure.
 
 #include <cstdint>
 #include <span>
@@ -12,33 +12,33 @@
 
 namespace hc {
 
-/// The output that every module with `control` has and does not list.
+/// The implicit output of every module with `control`.
 inline constexpr const char* kTracePort = "trace";
 
-/// A moment in the way of a message.
+/// An event in the life of a message.
 struct TraceEvent {
   enum class What {
-    Took,   ///< an input has taken it from its link
-    Began,  ///< its handler begins, or with an empty port a timer's or the generator
-    Ended,  ///< that has returned
-    Sent,   ///< an output hands it to its links
-    Lost,   ///< events were not noted since there were too many: `seq` says how many
+    Took,   ///< an input took the message from its link
+    Began,  ///< a handler began; with an empty port, that of a timer or the generator
+    Ended,  ///< the handler returned
+    Sent,   ///< an output passed the message to its links
+    Lost,   ///< too many events: `seq` of them were not recorded
   };
   What what = What::Took;
   std::string port;
-  std::int32_t src = 0;     ///< with seq and time that of the message
-  std::int64_t seq = 0;     ///< as in its header
-  std::int64_t time = 0;    ///< as in its header [ns]
+  std::int32_t src = 0;  ///< of the message's header, as seq and time
+  std::int64_t seq = 0;
+  std::int64_t time = 0;    ///< [ns]
   std::int64_t moment = 0;  ///< wall clock, advanced by the monotonic one [ns]
-  /// Which of the port's links; with an empty port, which timer (those of after() last), or
+  /// Index of the port's link; with an empty port, of the timer (those of after() last), or
   /// kGenerator.
   std::int32_t number = 0;
   static constexpr std::int32_t kGenerator = -1;
   bool operator==(const TraceEvent&) const = default;
 };
 
-/// A string with a row "took PORT SRC SEQ TIME MOMENT" for each, and the number where it is not 0;
-/// for an empty port "-".
+/// A string with a row "took PORT SRC SEQ TIME MOMENT" per event, followed by the number unless it
+/// is 0; an empty port is "-".
 Message make_trace(std::span<const TraceEvent> events);
 /// Malformed rows are ignored.
 std::vector<TraceEvent> read_trace(const Message& message);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Which readers a sink with several waits for: the options `readers`, `stay`, `wait`, and `timeout`
-// for those that have left. One rule for all transports. Internal. Of the thread that sends.
+// Which readers a sink waits for: the options `readers`, `stay`, `wait` and `timeout`, for all
+// transports alike. Internal. Used on the sending thread.
 
 #include <cstdint>
 #include <functional>
@@ -11,49 +11,49 @@
 
 namespace hc::internal {
 
-/// Waits until `descriptor` is readable or `until` has passed, and makes the call of
-/// LinkOptions::interrupt when that is due, which is a reason to return too.
+/// Waits until `descriptor` is readable or `until` has passed. Also returns after a call of
+/// LinkOptions::interrupt, which it makes when that is due.
 ///
 /// Errors: Stopped, System.
 Status wait_for_event(int descriptor, LinkOptions& options, TimePoint until = TimePoint::max());
 
 class Audience {
  public:
-  /// @param most  of `readers`. @param policy  of the same URI. Errors: Invalid.
+  /// @param most  maximum of `readers`. @param policy  of the same URI. Errors: Invalid.
   static Result<Audience> make(const Uri& uri, std::int64_t most, const Policy& policy,
                                const LinkOptions& options);
 
-  /// What becomes of a message.
+  /// What to do with a message.
   enum class Fate {
-    Sent,  ///< to the readers that are present
-    Kept,  ///< until await() has found a reader
-    Lost,  ///< without a reader; count_lost() counts it
-    End,   ///< all readers that were counted have left, and the link ends
+    Sent,  ///< send it to the readers present
+    Kept,  ///< keep it until await() has found a reader
+    Lost,  ///< drop it, since there is no reader, and call count_lost()
+    End,   ///< end the link: all readers have left
   };
-  /// Decides on the next message, with so many readers present.
+  /// Decides on the next message, given the number of readers present.
   Fate decide(std::size_t present);
   void count_lost(Traffic& traffic) const;
 
-  /// Whether the link ends when no reader is present.
+  /// Whether the link ends when the last reader leaves.
   [[nodiscard]] bool ends_with_readers() const {
     return has_begun_ && readers_ > 0 && !stays_ && !arrival_.is_over();
   }
-  /// Whether the link's end has to wait for its readers: nothing has been sent to them yet.
+  /// Whether closing the link must wait for readers, since nothing has been sent yet.
   [[nodiscard]] bool is_awaited() const { return !has_begun_ && readers_ > 0; }
 
-  /// Waits for the readers of the next message, or the end: at first for `wait`, then for
-  /// `timeout`.
-  /// @param descriptor  readable when `present` may give another number
+  /// Waits for the readers of the next message, or the end: `wait` for the first message, `timeout`
+  /// afterwards.
+  /// @param descriptor  readable when the result of `present` may have changed
   /// @param present  the number of readers. Errors: those of `present`; Stopped, System.
   Status await(int descriptor, LinkOptions& options,
                const std::function<Result<std::size_t>()>& present);
 
  private:
-  std::int64_t readers_ = 0;  // for the first message; 0: none, ever; below 0: one, not counted
+  std::int64_t readers_ = 0;  // for the first message; 0: none; -1: one, which may leave
   bool stays_ = false, writer_waits_ = false;
-  bool has_begun_ = false;  // the first message has been sent, or lost
-  Patience arrival_;        // with readers that have not connected yet
-  Patience absence_;        // with all readers that have left
+  bool has_begun_ = false;  // the first message has been sent or lost
+  Patience arrival_;        // for readers that have not connected yet
+  Patience absence_;        // after all readers have left
 };
 
 }  // namespace hc::internal

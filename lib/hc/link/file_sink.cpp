@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// `file:PATH` as a sink, which writes over nothing that is there (os/new_file.h). Its options:
-// - `append=1`: continues behind the last whole message of the file. Without, a file that has
-//   contents stays as it is, and another begins beside it: x_2.mtp.
-// - `optional=1`: that the file cannot be written is logged once as an error, and what is sent is
-//   lost (Traffic::dropped_disconnect): a recording ends on a full disk, and not the work of its
-//   writer.
+// `file:PATH` as a sink. It overwrites nothing (os/new_file.h). Options:
+// - `append=1`: appends after the last complete message. Otherwise, if the file has contents,
+// writes
+//   a new file beside it: x_2.mtp.
+// - `optional=1`: if the file cannot be written, logs an error once and drops the messages
+//   (Traffic::dropped_disconnect), so that a full disk does not stop the writing module.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -18,9 +18,9 @@
 namespace hc::internal {
 namespace {
 
-/// Goes behind the last whole message of a file, and cuts off what a writer that was killed has
-/// begun there. False: the file is damaged, or has no messages but something else.
-Result<bool> go_behind_messages(int file) {
+/// Seeks to the end of the last complete message and truncates a message that a killed writer left
+/// incomplete. False: the file is damaged or is not a recording.
+Result<bool> seek_messages_end(int file) {
   StreamReader reader({~std::uint64_t{0}});
   Message message;
   off_t at = 0;
@@ -32,7 +32,7 @@ Result<bool> go_behind_messages(int file) {
     const auto space = reader.space();
     auto size = static_cast<ssize_t>(
         std::min<std::uint64_t>(space.size(), static_cast<std::uint64_t>(end - at)));
-    // Elements need not be looked at.
+    // Skip the elements of large messages.
     if (reader.missing() == 0) size = ::pread(file, space.data(), space.size(), at);
     if (size < 0) return system_error("read", "");
     if (size == 0) break;
@@ -45,13 +45,13 @@ Result<bool> go_behind_messages(int file) {
   return true;
 }
 
-/// Opens a file to be written: nothing that is in it is overwritten.
+/// Opens a file for writing without overwriting its contents.
 Result<Descriptor> open_for_writing(const Uri& uri, bool appends, const LinkOptions& options) {
   if (is_written_in_place(uri.rest))
     return open_path(uri, O_WRONLY | O_CREAT | O_APPEND, options.stop);
   if (appends) {
     auto file = HC_TRY(continue_file(uri.rest));
-    auto is_whole = HC_TRY(go_behind_messages(file.descriptor.get()));
+    auto is_whole = HC_TRY(seek_messages_end(file.descriptor.get()));
     if (is_whole) return std::move(file.descriptor);
   }
   auto file = HC_TRY(begin_file(uri.rest));
@@ -60,8 +60,7 @@ Result<Descriptor> open_for_writing(const Uri& uri, bool appends, const LinkOpti
   return std::move(file.descriptor);
 }
 
-/// Loses what it is sent once the file cannot be written: a recording that ends, and not the work
-/// of its writer.
+/// Drops messages once the file cannot be written.
 class OptionalFile final : public Sink {
  public:
   OptionalFile(std::string path, Result<std::unique_ptr<Sink>> sink, LogSink log)
@@ -109,7 +108,7 @@ class OptionalFile final : public Sink {
 
   const std::string path_;
   const LogSink log_;
-  std::unique_ptr<Sink> sink_;  // null: it could not be opened
+  std::unique_ptr<Sink> sink_;  // null: the file could not be opened
   bool has_ended_ = false;
   std::uint64_t lost_ = 0;
 };
@@ -118,7 +117,7 @@ class OptionalFile final : public Sink {
 
 Result<std::unique_ptr<Sink>> open_file_sink(const Uri& uri, const LinkOptions& options) {
   if (uri.rest.ends_with(".mcap"))
-    return Error{Code::Invalid, "a link writes no MCAP; hc record " + uri.rest + " does"};
+    return Error{Code::Invalid, "links do not write MCAP; use hc record " + uri.rest};
   auto is_set = [&](const char* key) {
     const auto number = number_option(uri, key, 0);
     return number && *number != 0;

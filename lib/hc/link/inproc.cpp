@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `inproc:NAME`: between threads of one process, without bytes: the elements are shared.
+// `inproc:NAME`: links between threads of a process; the elements are shared, not serialised.
 
 #include <map>
 #include <mutex>
@@ -14,26 +14,25 @@
 namespace hc::internal {
 namespace {
 
-constexpr std::size_t kCapacity = 64;  // messages in flight before a sender waits that loses none
+constexpr std::size_t kCapacity = 64;  // queued messages before a sender with `keep=all` blocks
 
-/// What the two ends share. Each end holds it; the last one frees it.
 struct Channel {
   std::mutex mutex;
   SendQueue<Message> messages{Policy{}};
   Traffic losses;
-  std::uint64_t taken = 0;  // messages, by the source
+  std::uint64_t taken = 0;  // messages that the source has taken
   bool has_source = false, has_sink = false;
   bool source_left = false, sink_left = false;
-  Event readable;         // messages wait, or the sink has left
-  Event writable;         // there is room again, or the source has left
-  bool is_paced = false;  // not each message may go at once
-  Watch timer;            // raises the first when one may
+  Event readable;         // messages are queued, or the sink has left
+  Event writable;         // the queue has room again, or the source has left
+  bool is_paced = false;  // `rate` delays messages
+  Watch timer;            // raises `readable` when the next message is due
 };
 
-/// Takes an end of the channel of that name: two threads that agree on a name meet here.
+/// Joins the channel with this name as one of its ends; creates it for the first.
 Result<std::shared_ptr<Channel>> join(const std::string& name, bool Channel::*end) {
   static std::mutex mutex;
-  static std::map<std::string, std::weak_ptr<Channel>> channels;  // as long as somebody holds them
+  static std::map<std::string, std::weak_ptr<Channel>> channels;
   std::lock_guard lock(mutex);
   std::erase_if(channels, [](const auto& entry) { return entry.second.expired(); });
   auto channel = channels[name].lock();
@@ -142,7 +141,7 @@ class InprocSink final : public Sink {
   }
 
  private:
-  /// Whether to wait for the source. With the mutex.
+  /// Whether to wait for the source. Call it with the mutex locked.
   bool has_patience() {
     const auto taken = channel_->taken;
     return !patience_.is_over(taken) && patience_.waits(taken, std::chrono::steady_clock::now());

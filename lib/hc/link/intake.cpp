@@ -11,11 +11,11 @@ Result<std::unique_ptr<Intake>> Intake::make(Loop& loop, const std::string& uri,
   intake->watch_ = HC_TRY(loop.watch(intake->source_->descriptor(), EPOLLIN,
                                      [self = intake.get()](auto) { self->take_unless_paused(); }));
   if (const int wakes = intake->source_->wake_descriptor(); wakes >= 0) {
-    intake->woken_ = HC_TRY(loop.watch(
-        wakes, EPOLLIN | EPOLLET, [self = intake.get()](auto) { self->take_unless_paused(); }));
+    intake->wake_ = HC_TRY(loop.watch(wakes, EPOLLIN | EPOLLET,
+                                      [self = intake.get()](auto) { self->take_unless_paused(); }));
   }
-  // A source may have something before its descriptor has ever been asked to tell.
-  intake->again_ = loop.call_at({}, [self = intake.get()] { self->take(); });
+  // A source may have messages before its descriptor has become readable for the first time.
+  intake->retry_ = loop.call_at({}, [self = intake.get()] { self->take(); });
   return intake;
 }
 
@@ -28,17 +28,17 @@ void Intake::take_rest() {
     const auto ready = wait_for(source_->descriptor(), POLLIN, -1, Deadline::clock::now());
     return ready && *ready;
   };
-  for (int i = 0; i < kMostRests && watch_ && is_readable(); ++i) take();
+  for (int i = 0; i < kMaxRestTurns && watch_ && is_readable(); ++i) take();
 }
 
 void Intake::take() {
   Message message;
-  for (int i = 0; i < kMostInATurn; ++i) {
+  for (int i = 0; i < kMaxPerTurn; ++i) {
     auto got = source_->take(message);
     if (!got || *got == Got::End) {
       watch_.reset();
-      woken_.reset();
-      again_.reset();
+      wake_.reset();
+      retry_.reset();
       if (const auto end = end_) end();
       return;
     }
@@ -49,7 +49,7 @@ void Intake::take() {
   }
   is_paused_ = true;
   static_cast<void>(watch_.want(0));
-  again_ = loop_.call_at(std::chrono::steady_clock::now() + pause_, [this] {
+  retry_ = loop_.call_at(std::chrono::steady_clock::now() + pause_, [this] {
     is_paused_ = false;
     static_cast<void>(watch_.want(EPOLLIN));
     take();

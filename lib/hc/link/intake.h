@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Takes messages from a link as they come, on the thread of a loop. Internal.
+// Receives messages of a link on a loop's thread. Internal.
 
 #include <functional>
 #include <memory>
@@ -11,25 +11,25 @@
 
 namespace hc::internal {
 
-/// Hands on all messages of a link until it ends; a busy link leaves turns to others.
+/// Calls back for each message of a link until it ends; a busy link does not starve the loop.
 class Intake {
  public:
   using Take = std::function<void(const Message& message)>;
 
-  /// @param is_limited  a writer that sends more than kMostInATurn messages in kPause waits.
-  /// Errors: as open_source(), System.
+  /// @param is_limited  delays a writer that sends more than kMaxPerTurn messages within kPause.
+  /// Errors: those of open_source(), System.
   static Result<std::unique_ptr<Intake>> make(Loop& loop, const std::string& uri, Take take,
                                               const LinkOptions& options = {},
                                               bool is_limited = true);
 
-  /// Takes all that has been sent, also by a peer that has just connected.
+  /// Takes all messages sent so far, also by a peer that has just connected.
   void take_rest();
-  /// Has `end` called when the link has ended or failed, as the last act of this object, which it
-  /// may destroy.
+  /// Sets a function to call when the link has ended or failed. It is the object's last action;
+  /// `end` may destroy it.
   void on_end(std::function<void()> end) { end_ = std::move(end); }
 
  private:
-  static constexpr int kMostInATurn = 32, kMostRests = 32;
+  static constexpr int kMaxPerTurn = 32, kMaxRestTurns = 32;
   static constexpr std::chrono::milliseconds kPause{10};
 
   Intake(Loop& loop, std::unique_ptr<Source> source, Take take, bool is_limited)
@@ -46,7 +46,7 @@ class Intake {
   std::function<void()> end_;
   const std::chrono::milliseconds pause_;
   bool is_paused_ = false;
-  Loop::Handle watch_, woken_, again_;
+  Loop::Handle watch_, wake_, retry_;
 };
 
 }  // namespace hc::internal

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Links that outlive the programs at their ends: `stay` of who listens, and finish() of who
-// reconnects.
+// Links that outlive the programs at their ends: `stay` of listening sinks, and finish() of
+// reconnecting sources.
 #include <unistd.h>
 
 #include <atomic>
@@ -12,7 +12,7 @@
 namespace hc::testing {
 namespace {
 
-/// A scheme whose sinks listen: the two ends of a link.
+/// The ends of a link whose sink listens.
 struct Ends {
   std::string name, sink, source;
 };
@@ -30,7 +30,7 @@ Ends ends_of(const std::string& scheme) {
 
 class LastingLink : public ::testing::TestWithParam<std::string> {
  protected:
-  /// Opens both ends, and gets a message through.
+  /// Opens both ends and transfers a message.
   void begin(const std::string& sink_options, const std::string& source_options = "") {
     sink_ = sink_of(ends_.sink + "?readers=1" + sink_options);
     source_ = source_of(ends_.source + source_options, warnings_.options());
@@ -62,7 +62,7 @@ TEST_P(LastingLink, WhoDropsGoesOnWithoutReadersAndCounts) {
   EXPECT_EQ(message_.header.seq, 2);
 }
 
-/// Of a sink with a queue.
+/// For sinks with a queue.
 class QueuedLink : public LastingLink {};
 INSTANTIATE_TEST_SUITE_P(Schemes, QueuedLink, ::testing::Values("tcp", "unix"),
                          [](const auto& test) { return test.param; });
@@ -86,8 +86,8 @@ TEST_P(QueuedLink, WhatWaitsWhenItIsAbandonedIsLost) {
   EXPECT_FALSE(*receive(*source, message));
 }
 
-/// Sends messages with this `seq` until a reader that connects meanwhile has one; what it got
-/// first.
+/// Sends messages with this `seq` until a reader that connects meanwhile has received one; returns
+/// the first `seq` it received.
 /// @param source  becomes the reader, and stays connected.
 std::int64_t first_of_next_reader(Sink& sink, const std::string& uri, std::int64_t seq,
                                   std::unique_ptr<Source>& source) {
@@ -109,9 +109,9 @@ std::int64_t first_of_next_reader(Sink& sink, const std::string& uri, std::int64
 TEST_P(LastingLink, WhoLosesNothingWaitsForTheNextReader) {
   begin("&stay=1");
   source_.reset();
-  // A message that is sent before the lost reader is noticed reaches no reader.
+  // A message sent before the loss of the reader is detected reaches no reader.
   EXPECT_EQ(first_of_next_reader(*sink_, ends_.source, 1, source_), 1);
-  EXPECT_LE(sink_->traffic().dropped_disconnect, 1U);  // the one in flight to the reader that left
+  EXPECT_LE(sink_->traffic().dropped_disconnect, 1U);  // in transit to the reader that left
 }
 
 TEST_P(LastingLink, WhoHasLeftIsGivenUpUntilAnotherComes) {
@@ -132,10 +132,10 @@ TEST_P(LastingLink, WhoDoesNotComeInTimeIsNotWaitedFor) {
   for (const char* options : {"?readers=2&stay=1&wait=1", "?readers=2&wait=1"}) {
     SCOPED_TRACE(options);
     const auto sink = sink_of(ends.sink + options);
-    ASSERT_TRUE(sink->send(numbered(0, 10)));  // after a second, without a reader
+    ASSERT_TRUE(sink->send(numbered(0, 10)));  // returns after a second, without a reader
     EXPECT_EQ(sink->traffic().dropped_disconnect, 1U);
     std::unique_ptr<Source> source;
-    EXPECT_EQ(first_of_next_reader(*sink, ends.source, 1, source), 1);  // without the other one
+    EXPECT_EQ(first_of_next_reader(*sink, ends.source, 1, source), 1);  // without a second reader
   }
   const auto sink = sink_of(ends.sink + "?readers=1&wait=1");
   EXPECT_TRUE(sink->close());

@@ -17,7 +17,7 @@ TEST(Open, ASchemeThatThereIsNotIsRefusedByName) {
   ASSERT_FALSE(source);
   EXPECT_EQ(source.error().code, Code::Invalid);
   EXPECT_EQ(source.error().detail,
-            "no transport \"pigeon\"; there are -, file, tcp, tcp-listen, unix, unix-listen, "
+            "no transport \"pigeon\"; available: -, file, tcp, tcp-listen, unix, unix-listen, "
             "inproc, shm");
   EXPECT_FALSE(open_sink(*parse_uri("pigeon:home")));
 }
@@ -72,7 +72,7 @@ TEST(Open, AnOptionThatIsMisspeltIsGuessed) {
                     .error()
                     .detail.ends_with(", did you mean \"keep\"?"))
         << end;
-  // One that another end has is spelled well.
+  // An option of the other end is not a spelling mistake.
   EXPECT_TRUE(open_sink(*parse_uri("shm:x?spin=1")).error().detail.ends_with("\"timeout\""));
 }
 
@@ -93,7 +93,7 @@ TEST(Open, NumbersHaveARange) {
             "Invalid: option readers is a whole number from 0 to 256, not \"257\"");
   EXPECT_EQ(sink_error("shm:x?readers=65"),
             "Invalid: option readers is a whole number from 0 to 64, not \"65\"");
-  EXPECT_EQ(sink_error("-?burst=2"), "Invalid: option burst wants rate beside it");
+  EXPECT_EQ(sink_error("-?burst=2"), "Invalid: option burst needs rate");
 }
 
 TEST(Open, SharedMemoryHasAName) {

@@ -14,7 +14,7 @@ class PacedSource final : public Source {
       : source_(std::move(source)), pace_(policy.rate, policy.burst), loop_(std::move(loop)) {}
 
   Result<Got> take(Message& message) override {
-    // Its callbacks do nothing; but the descriptor announces again what comes from now on.
+    // The callbacks do nothing; this re-arms the descriptor for events from now on.
     HC_TRY(loop_->turn(std::chrono::milliseconds(0)));
     const auto now = std::chrono::steady_clock::now();
     if (auto ready = pace_.ready_at(now); ready > now) {
@@ -29,7 +29,7 @@ class PacedSource final : public Source {
     if (was_held) overtaken_ += source_->traffic().dropped_newer - overtaken;
     if (!got || *got != Got::Message) return got;
     pace_.take(now);
-    if (was_held) ++kept_back_;
+    if (was_held) ++delayed_;
     return got;
   }
 
@@ -41,12 +41,12 @@ class PacedSource final : public Source {
     Traffic traffic = source_->traffic();
     traffic.dropped_newer -= overtaken_;
     traffic.throttled += overtaken_;
-    traffic.delayed += kept_back_;
+    traffic.delayed += delayed_;
     return traffic;
   }
 
  private:
-  /// Waits for the next turn alone.
+  /// Waits for the time only, not for messages.
   void hold(TimePoint ready) {
     socket_.reset();
     wake_.reset();
@@ -66,10 +66,10 @@ class PacedSource final : public Source {
 
   std::unique_ptr<Source> source_;
   TokenBucket pace_;
-  std::uint64_t overtaken_ = 0, kept_back_ = 0;  // messages, because of the rate
-  std::unique_ptr<Loop> loop_;                   // of what follows
-  Loop::Handle socket_, wake_;                   // of the source, while it may be asked
-  Loop::Handle timer_;                           // while it may not
+  std::uint64_t overtaken_ = 0, delayed_ = 0;  // messages, because of the rate
+  std::unique_ptr<Loop> loop_;
+  Loop::Handle socket_, wake_;  // the source's descriptors, while a message may be taken
+  Loop::Handle timer_;          // while none may
 };
 
 }  // namespace

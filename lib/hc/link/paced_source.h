@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The rate of a link whose writer does not keep it, since it writes into memory for all readers at
-// once. Internal.
+// Limits the rate of a link at its reader, for writers that cannot because they write into memory
+// shared by all readers. Internal.
 
 #include <memory>
 
@@ -10,10 +10,10 @@
 
 namespace hc::internal {
 
-/// A source that gives what `source` gives, at the rate of `policy`. What is overtaken meanwhile is
-/// counted as Traffic::throttled, what is delayed as Traffic::delayed.
+/// A source that passes the messages of `source` on at the rate of `policy`. Messages overtaken
+/// meanwhile count as Traffic::throttled, delayed ones as Traffic::delayed.
 ///
-/// @returns  `source` itself where there is no rate. Errors: System.
+/// @returns  `source` itself if there is no rate. Errors: System.
 Result<std::unique_ptr<Source>> make_paced(std::unique_ptr<Source> source, const Policy& policy);
 
 }  // namespace hc::internal

@@ -8,14 +8,14 @@
 
 namespace hc::internal {
 
-constexpr std::int64_t kTick = 1'000'000'000;  // parts of a token, as a second has nanoseconds
+constexpr std::int64_t kTick = 1'000'000'000;  // parts of a token, and nanoseconds of a second
 
 Result<Policy> parse_policy(const Uri& uri) {
   Policy policy;
   auto kept = uri.option("keep", "all");
   if (kept != "all") {
     auto keep = kept == "latest" ? 1 : number_option(uri, "keep", 1, {1, TokenBucket::kMost});
-    if (!keep) return Error{Code::Invalid, "option keep is all, latest, or how many messages"};
+    if (!keep) return Error{Code::Invalid, "option keep is all, latest, or a number of messages"};
     policy.keep = static_cast<std::size_t>(*keep);
   }
   for (auto [key, has_units, value] : {std::tuple{"rate", false, &policy.rate},
@@ -30,11 +30,11 @@ Result<Policy> parse_policy(const Uri& uri) {
   const auto timeout = HC_TRY(number_option(uri, "timeout", 0, {0, kLongest}));
   policy.timeout = std::chrono::seconds(timeout);
   if (policy.rate == 0 && !uri.option("burst", "").empty())
-    return Error{Code::Invalid, "option burst wants rate beside it"};
+    return Error{Code::Invalid, "option burst needs rate"};
   return policy;
 }
 
-// A token is 1e9 parts, so that `rate` of them come every nanosecond, without a remainder.
+// `rate` parts of 1e-9 token are added per nanosecond, which is exact.
 TokenBucket::TokenBucket(std::uint64_t rate, std::uint64_t burst)
     : rate_(static_cast<std::int64_t>(rate)),
       capacity_(static_cast<std::int64_t>(burst) * kTick),
@@ -46,7 +46,7 @@ void TokenBucket::fill(TimePoint now) {
   if (filled_ == TimePoint::min()) filled_ = now;
   std::int64_t elapsed = std::max<std::int64_t>(0, (now - filled_).count());
   filled_ = std::max(filled_, now);
-  // The product is taken only where it cannot overflow.
+  // Written so that the product cannot overflow.
   bool fills = elapsed > (capacity_ - level_) / rate_;
   level_ = fills ? capacity_ : level_ + elapsed * rate_;
 }
@@ -71,31 +71,32 @@ bool Patience::waits(std::uint64_t taken, TimePoint now) {
     end();
     is_over_ = true;
     if (log_)
-      log_(Level::Warning, "the reader has taken nothing for " + std::to_string(timeout_.count()) +
-                               " s: messages to it are dropped until it does");
+      log_(Level::Warning, "the reader has read nothing for " + std::to_string(timeout_.count()) +
+                               " s; dropping its messages until it reads again");
     return false;
   }
-  if (tell_ && now - *began_ >= kLong && !std::exchange(is_told_, true)) tell_(true);
+  if (on_long_wait_ && now - *began_ >= kLong && !std::exchange(is_reported_, true))
+    on_long_wait_(true);
   return true;
 }
 
 void Patience::end() {
   began_.reset();
   last_taken_.reset();
-  if (std::exchange(is_told_, false)) tell_(false);
+  if (std::exchange(is_reported_, false)) on_long_wait_(false);
 }
 
 TimePoint Patience::due() const {
   auto due = TimePoint::max();
   if (last_taken_ && timeout_.count() > 0) due = *last_taken_ + timeout_;
-  if (began_ && tell_ && !is_told_) due = std::min(due, *began_ + kLong);
+  if (began_ && on_long_wait_ && !is_reported_) due = std::min(due, *began_ + kLong);
   return due;
 }
 
 bool Patience::is_over(std::uint64_t taken) {
   if (!is_over_ || taken == taken_) return is_over_;
   is_over_ = false;
-  if (log_) log_(Level::Warning, "the reader takes messages again");
+  if (log_) log_(Level::Warning, "the reader reads again");
   return false;
 }
 

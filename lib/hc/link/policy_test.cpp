@@ -89,7 +89,7 @@ TEST(Policy, WhatMakesNoSenseIsRefused) {
         "?burst=1.5", "?memory=3T", "?memory=K", "?memory=5G", "?memory=4294967297"})
     EXPECT_EQ(policy_of(options).error().code, Code::Invalid) << options;
   EXPECT_EQ(policy_of("?keep=x").error().detail,
-            "option keep is all, latest, or how many messages");
+            "option keep is all, latest, or a number of messages");
 }
 
 TEST(TokenBucket, WithoutARateThereIsNoLimit) {
@@ -107,7 +107,7 @@ TEST(TokenBucket, ABurstThenTheRateToTheNanosecond) {
     EXPECT_EQ(bucket.ready_at(now), now);
     bucket.take(now);
   }
-  // No error adds up over thirds of a second: after n seconds, 3 n tokens have come.
+  // Thirds of a second accumulate no error: after n seconds, 3 n tokens have been added.
   for (int i = 1; i <= 300; ++i) {
     now = bucket.ready_at(now);
     EXPECT_EQ(now, kBegin + nanoseconds((1'000'000'000LL * i + 2) / 3)) << i;
@@ -140,7 +140,7 @@ TEST(TokenBucket, AClockThatStandsStillGivesNothing) {
   EXPECT_EQ(bucket.ready_at(kBegin - seconds(1)), kBegin - seconds(1) + milliseconds(1));
 }
 
-/// Pushes messages 0, 1, … of `bytes` each; gives what is left.
+/// Pushes messages 0, 1, … of `bytes` each; returns those left in the queue.
 std::vector<int> left_of(SendQueue<int>& queue, int count, std::uint64_t bytes, Traffic& traffic) {
   for (int i = 0; i < count; ++i) queue.push(i, bytes, traffic);
   std::vector<int> left;
@@ -229,7 +229,7 @@ TEST(SendQueue, WhatThePaceKeepsBackIsCountedOnce) {
 TEST(SendQueue, OneThatNobodyHoldsBackIsSuperseded) {
   Traffic traffic;
   SendQueue<int> queue(*policy_of("?keep=1&rate=10"));
-  queue.push(0, 1, traffic);  // it could go, were there room
+  queue.push(0, 1, traffic);  // ready, but the link has no room
   EXPECT_EQ(queue.ready_at(kBegin, traffic), kBegin);
   queue.push(1, 1, traffic);
   EXPECT_EQ(traffic.dropped_newer, 1U);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Messages that wait to go onto a link, bounded in number and memory, at the pace of its policy.
-// Internal. Pure: time is passed in.
+// A queue of messages to be sent, bounded in number and memory, with a limited rate. Internal.
+// Pure: time is passed in.
 
 #include <algorithm>
 #include <cstdint>
@@ -14,9 +14,9 @@
 
 namespace hc::internal {
 
-/// A queue of whole messages none of which has begun to go. When there are more than the policy
-/// keeps, or they take more memory, the oldest are dropped and counted by the reason for which they
-/// had not been sent yet; the newest one always stays, however large.
+/// A queue of messages of which none has been sent partly. If it exceeds the policy's number or
+/// memory, the oldest messages are dropped and counted by the reason why they were still queued;
+/// the newest always stays, however large.
 template <typename Item>
 class SendQueue {
  public:
@@ -29,14 +29,14 @@ class SendQueue {
   [[nodiscard]] const Item& front() const { return items_.front().item; }
   [[nodiscard]] Item& back() { return items_.back().item; }
 
-  /// Whether there is memory for one more; always for the first.
+  /// Whether there is memory for another message; always true for the first.
   [[nodiscard]] bool has_memory(std::uint64_t bytes) const {
     return items_.empty() || bytes_ + bytes <= memory_;
   }
 
-  /// Adds a message, and drops what there is no room for; nothing where all are kept.
+  /// Adds a message and drops the excess, unless all are kept.
   void push(Item item, std::uint64_t bytes, Traffic& traffic) {
-    // What is behind a message that is kept back is kept back too.
+    // If the first message is delayed by the rate, so are all after it.
     bool held = !items_.empty() && items_.front().held;
     items_.push_back({std::move(item), bytes, 1, false});
     bytes_ += bytes;
@@ -48,7 +48,7 @@ class SendQueue {
       drop(traffic, items_.front().held ? traffic.throttled : traffic.dropped_newer);
   }
 
-  /// Says that another message has been made part of the last one, where none is dropped or paced.
+  /// Adds a message to the last item. Only for policies without limits.
   void grow_last(std::uint64_t bytes) {
     ++items_.back().messages;
     ++messages_;
@@ -56,7 +56,7 @@ class SendQueue {
     bytes_ += bytes;
   }
 
-  /// When the first message may go: `now` or later; for ever later where there is none.
+  /// When the first message may be sent: `now` or later; TimePoint::max() if the queue is empty.
   TimePoint ready_at(TimePoint now, Traffic& traffic) {
     if (items_.empty()) return TimePoint::max();
     auto ready = pace_.ready_at(now);
@@ -64,13 +64,13 @@ class SendQueue {
     return ready;
   }
 
-  /// Takes the first message, which is ready.
+  /// Removes the first message, which must be ready.
   Item pop(TimePoint now) {
     pace_.take(now);
     return remove_front();
   }
 
-  /// Whether a message that comes now may pass the queue by, which is empty: counts it if so.
+  /// Whether a new message may bypass the queue, which must be empty; takes its token if so.
   bool pass(TimePoint now) {
     if (!items_.empty()) return false;
     if (!pace_.limited()) return true;
@@ -79,14 +79,14 @@ class SendQueue {
     return true;
   }
 
-  /// Takes the last message back, which has not been sent.
+  /// Removes the last message, which has not been sent.
   void take_back() {
     bytes_ -= items_.back().bytes;
     messages_ -= items_.back().messages;
     items_.pop_back();
   }
 
-  /// Drops all, and takes their bytes off; gives their number.
+  /// Drops all messages and subtracts their bytes; returns their number.
   std::size_t clear(Traffic& traffic) {
     traffic.bytes -= std::exchange(bytes_, 0);
     items_.clear();
@@ -98,14 +98,15 @@ class SendQueue {
     Item item;
     std::uint64_t bytes;
     std::size_t messages;
-    bool held;  // back by the pace
+    bool held;  // delayed by the rate
   };
 
   static void hold(Entry& entry, Traffic& traffic) {
     if (!std::exchange(entry.held, true)) ++traffic.delayed;
   }
 
-  /// What is dropped was counted when it was put in, but never sent: its bytes are taken off.
+  /// Dropped messages were counted when they were queued; subtracts their bytes, which were not
+  /// sent.
   void drop(Traffic& traffic, std::uint64_t& counter) {
     ++counter;
     traffic.bytes -= items_.front().bytes;

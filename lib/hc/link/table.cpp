@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one table of transports: what the scheme of a URI opens.
+// The table of transports, by URI scheme.
 #include <algorithm>
 #include <iterator>
 #include <sstream>
@@ -16,12 +16,12 @@ namespace hc {
 namespace {
 
 Status check_name(const Uri& uri) {
-  if (uri.rest.empty() || uri.rest == "@") return Error{Code::Invalid, "there is no name"};
+  if (uri.rest.empty() || uri.rest == "@") return Error{Code::Invalid, "the URI has no name"};
   return {};
 }
 
-/// Every transport of this program; add_transport() adds more. The options of each end are listed
-/// here, so that a misspelt one is refused and not ignored.
+/// The transports of this program; add_transport() adds more. Lists the options of each end, so
+/// that misspelt ones are refused.
 std::vector<Transport>& table() {
   using namespace internal;
   static std::vector<Transport> transports = {
@@ -44,7 +44,7 @@ std::vector<std::string> split(std::string_view words) {
   return {std::istream_iterator<std::string>(text), {}};
 }
 
-/// Whether some end of some transport has an option of that name: then it is not misspelt.
+/// Whether any end of any transport has this option; if so, it is not misspelt.
 bool is_option(const std::string& key) {
   std::string all;
   for (const Transport& transport : table())
@@ -61,7 +61,7 @@ Result<const Transport*> find_transport(const Uri& uri) {
   }
   const bool is_optional = uri.scheme == "tls" || uri.scheme == "tls-listen" || uri.scheme == "dds";
   return Error{Code::Invalid,
-               "no transport \"" + uri.scheme + "\"; there are " + known +
+               "no transport \"" + uri.scheme + "\"; available: " + known +
                    (is_optional ? "; tls and dds need OpenSSL and Cyclone DDS when a program is "
                                   "built, and hc::add_all_transports() in its main()"
                                 : "")};
@@ -81,7 +81,7 @@ Status check_options(const Uri& uri, std::string_view allowed) {
   return {};
 }
 
-/// Whether an end can be where it says, and its options have values that they can have.
+/// Checks the address and the values of the options.
 Status check_end(const Transport& transport, const Uri& uri, std::string_view allowed) {
   HC_TRY(check_options(uri, allowed));
   HC_TRY(transport.check(uri));
@@ -92,8 +92,8 @@ Status check_end(const Transport& transport, const Uri& uri, std::string_view al
   return {};
 }
 
-/// The options with a log whose lines begin with the link's name.
-LinkOptions with_name(LinkOptions options, const Uri& uri) {
+/// The options with a log that prefixes lines with the URI.
+LinkOptions with_uri_prefix(LinkOptions options, const Uri& uri) {
   if (!options.log) return options;
   options.log = [log = options.log, name = uri.text() + ": "](Level severity,
                                                               std::string_view line) {
@@ -129,13 +129,13 @@ std::vector<std::string_view> transports() {
 Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& options) {
   auto transport = HC_TRY(find_transport(uri));
   HC_TRY(check_options(uri, transport->source_options));
-  return transport->open_source(uri, with_name(options, uri));
+  return transport->open_source(uri, with_uri_prefix(options, uri));
 }
 
 Result<std::unique_ptr<Sink>> open_sink(const Uri& uri, const LinkOptions& options) {
   auto transport = HC_TRY(find_transport(uri));
   HC_TRY(check_options(uri, transport->sink_options));
-  return transport->open_sink(uri, with_name(options, uri));
+  return transport->open_sink(uri, with_uri_prefix(options, uri));
 }
 
 Status check_source(const Uri& uri) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the scheme of a URI opens. table.cpp has the transports that every program has; main() adds
-// those of other libraries, all of them by add_all_transports() (transports/all.h).
+// A transport, selected by the scheme of a URI. table.cpp has those of every program; main() adds
+// those of other libraries, with add_all_transports() (transports/all.h).
 
 #include <memory>
 #include <string>
@@ -10,19 +10,19 @@
 
 namespace hc {
 
-/// How the ends of the links of one scheme are opened.
+/// How to open the ends of links with a scheme.
 struct Transport {
   std::string scheme;
-  /// The options of each end, with blanks between; a URI with any other is refused.
+  /// The options of each end, separated by spaces; URIs with others are refused.
   std::string source_options, sink_options;
   Result<std::unique_ptr<Source>> (*open_source)(const Uri& uri, const LinkOptions& options);
   Result<std::unique_ptr<Sink>> (*open_sink)(const Uri& uri, const LinkOptions& options);
-  /// What of a URI can be checked while nothing is opened, besides its options. Errors: Invalid.
+  /// Checks a URI, except its options, without opening it. Errors: Invalid.
   Status (*check)(const Uri& uri);
 };
 
-/// Adds a transport to those of this program, once: before any link is opened, and before other
-/// threads are started.
+/// Adds a transport, unless its scheme exists. Call it before links are opened and threads are
+/// started.
 void add_transport(Transport transport);
 
 }  // namespace hc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Opens the ends of links that do not use sockets; stream/ends.h has the others. Internal.
+// Opens links that do not use sockets; for the others see stream/ends.h. Internal.
 
 #include <memory>
 
@@ -9,7 +9,7 @@
 
 namespace hc::internal {
 
-/// Opens a file without waiting for the other end of a FIFO, which a signal to stop could not end.
+/// Opens a file without blocking on the other end of a FIFO, so that `stop` can end the wait.
 Result<Descriptor> open_path(const Uri& uri, int flags, int stop);
 
 Result<std::unique_ptr<Source>> open_stdin(const Uri&, const LinkOptions&);
@@ -21,7 +21,7 @@ Result<std::unique_ptr<Sink>> open_inproc_sink(const Uri&, const LinkOptions&);
 Result<std::unique_ptr<Source>> open_shm_source(const Uri&, const LinkOptions&);
 Result<std::unique_ptr<Sink>> open_shm_sink(const Uri&, const LinkOptions&);
 
-/// Whether a `memory` is enough for shm, where it is all there is. Errors: Invalid.
+/// Checks that `memory` is sufficient for shm. Errors: Invalid.
 Status check_shm_memory(const Uri& uri);
 
 }  // namespace hc::internal

@@ -16,7 +16,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-// What an event is about, if not the number of a source.
+// Values of epoll_event::data, besides the numbers of sources.
 constexpr std::uint64_t kStop = 0, kOther = ~std::uint64_t{0};
 
 std::uint64_t next_number() {
@@ -24,7 +24,7 @@ std::uint64_t next_number() {
   return ++last;
 }
 
-/// epoll_wait() with a timeout in nanoseconds; below 0: none.
+/// epoll_wait() with a timeout in nanoseconds; negative: none.
 int wait_for_events(int poll, std::span<epoll_event> events, nanoseconds timeout) {
   const timespec time{timeout.count() / std::nano::den, timeout.count() % std::nano::den};
   return static_cast<int>(::syscall(SYS_epoll_pwait2, poll, events.data(),
@@ -69,7 +69,7 @@ Status WaitSet::watch(int descriptor, std::uint32_t events, std::uint64_t what) 
   return {};
 }
 
-/// Has these sources watched, and no others.
+/// Watches exactly these sources.
 Status WaitSet::prepare(std::span<Source* const> sources) {
   auto is_watched = [](std::uint64_t number, const Source* source) {
     return number == source->number_;
@@ -77,8 +77,7 @@ Status WaitSet::prepare(std::span<Source* const> sources) {
   if (poll_ &&
       std::equal(watched_.begin(), watched_.end(), sources.begin(), sources.end(), is_watched))
     return {};
-  // A new instance: the descriptor of a source that was closed may have been opened again
-  // elsewhere.
+  // A new instance, since the descriptor of a closed source may have been reused.
   poll_.reset();
   watched_.clear();
   never_sleeps_ = false;
@@ -98,7 +97,7 @@ bool WaitSet::was_woken_by(const Source& source) const {
   return std::find(woken_by_.begin(), woken_by_.end(), source.number_) != woken_by_.end();
 }
 
-/// Waits for the descriptors.
+/// Waits for the descriptors only.
 Result<bool> WaitSet::sleep(nanoseconds timeout) {
   std::array<epoll_event, 8> events;
   const int count = HC_TRY(system_call(
@@ -121,7 +120,7 @@ Result<bool> WaitSet::wait(std::span<Source* const> sources, std::span<const int
                     timeout.count() < 0 ? Deadline::max() : Clock::now() + timeout);
   }
   HC_TRY(prepare(sources));
-  // Each time: their owner may have closed one and opened another with the same number.
+  // On each wait, since the owner may have closed a descriptor and opened another with its number.
   for (int descriptor : descriptors) HC_TRY(watch(descriptor, EPOLLIN | EPOLLONESHOT, kOther));
   auto found = spin_->run(sources, timeout, [&] { return sleep(nanoseconds(0)); });
   was_short_ = spin_->was_short();

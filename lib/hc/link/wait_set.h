@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// One wait for any number of sources: looks for a while at those whose messages come in memory,
-// then sleeps once. Of one thread.
+// Waits for any number of sources: busy-waits for those in shared memory, then sleeps. Used on one
+// thread.
 
 #include <chrono>
 #include <cstdint>
@@ -18,25 +18,24 @@ namespace internal {
 class Spin;
 }
 
-/// Waits for sources, again and again. What a wait needs is prepared once, and again only when the
-/// sources are others than the last time.
+/// Waits for sources repeatedly. Set-up is repeated only when the set of sources changes.
 ///
 ///     WaitSet waits(stop_descriptor());
 ///     while (take_all(sources) == Got::Nothing)
 ///       if (auto ready = waits.wait(sources); !ready) return ready.error();
 class WaitSet {
  public:
-  /// @param stop  descriptor that is readable when waiting is to end; -1: none.
+  /// @param stop  descriptor that ends waits when it is readable; -1: none.
   explicit WaitSet(int stop = -1);
   ~WaitSet();
   WaitSet(const WaitSet&) = delete;
   WaitSet& operator=(const WaitSet&) = delete;
 
-  /// Waits until one of `sources` may have something to take, or one of `descriptors` is readable;
-  /// false when `timeout` has passed. Every source has given Nothing since it was last waited for.
+  /// Waits until one of `sources` may have a message, or one of `descriptors` is readable; false
+  /// after `timeout`. Each source must have returned Nothing since the last wait for it.
   ///
-  /// Errors: Stopped, System. Cost: one system call, one more for each of `descriptors`, and some
-  /// for each source when they are others than the last time. Allocates only then.
+  /// Errors: Stopped, System. Cost: one system call, and one for each of `descriptors`; if the set
+  /// of sources has changed, also a few per source, and memory.
   Result<bool> wait(std::span<Source* const> sources, std::span<const int> descriptors,
                     std::chrono::nanoseconds timeout);
   Result<bool> wait(std::span<Source* const> sources,
@@ -44,14 +43,13 @@ class WaitSet {
     return wait(sources, {}, timeout);
   }
 
-  /// Whether the last wait slept, and a descriptor of this source ended it.
+  /// Whether the last wait slept and was ended by this source.
   [[nodiscard]] bool was_woken_by(const Source& source) const;
 
-  /// Whether the last wait took about a microsecond at most, since a message was in memory already.
-  /// A caller that has read the clock before it need not read it again.
+  /// Whether the last wait took at most about a microsecond, since a message was ready. A caller
+  /// that has read the clock before it need not read it again.
   [[nodiscard]] bool was_short() const { return was_short_; }
 
-  /// The descriptor that ends a wait.
   [[nodiscard]] int stop() const { return stop_; }
 
  private:
@@ -62,11 +60,11 @@ class WaitSet {
   Result<bool> sleep(std::chrono::nanoseconds timeout);
 
   int stop_;
-  Descriptor poll_;                       // an epoll instance of all that is waited for
-  std::vector<std::uint64_t> watched_;    // the sources in it, by their numbers
+  Descriptor poll_;                       // an epoll instance
+  std::vector<std::uint64_t> watched_;    // numbers of the sources in it
   bool never_sleeps_ = false;             // one is a file, which is always readable
   std::vector<std::uint64_t> woken_by_;   // the sources whose events ended the last sleep
-  std::unique_ptr<internal::Spin> spin_;  // before it sleeps
+  std::unique_ptr<internal::Spin> spin_;  // busy-waits before sleeping
   bool was_short_ = false;
 };
 

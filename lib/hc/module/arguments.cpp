@@ -74,12 +74,12 @@ class Parser {
 
   Status encoding(const std::string& value) {
     bool all = value.find('=') == std::string::npos;
-    auto split = HC_TRY(split_port(module_.outputs(), "output", value));
+    auto split = HC_TRY(split_port(ModuleAccess::outputs(module_), "output", value));
     auto encoding = encoding_of(split.second);
     if (!encoding)
       return invalid("--encoding is text, binary, zstd or jpeg, not \"" + split.second + "\"");
-    for (std::size_t i = 0; i < module_.outputs().size(); ++i)
-      if (all || i == split.first) module_.outputs()[i]->encoding = *encoding;
+    for (std::size_t i = 0; i < ModuleAccess::outputs(module_).size(); ++i)
+      if (all || i == split.first) ModuleAccess::outputs(module_)[i]->encoding = *encoding;
     return {};
   }
 
@@ -104,9 +104,9 @@ class Parser {
     return {};
   }
   Status exclusive(const std::string& value) {
-    auto input = position_of(module_.inputs(), value);
-    if (input == module_.inputs().end())
-      return invalid("no input \"" + value + "\"; there are: " + names(module_.inputs()));
+    auto input = position_of(ModuleAccess::inputs(module_), value);
+    if (input == ModuleAccess::inputs(module_).end())
+      return invalid("no input \"" + value + "\"; there are: " + names(ModuleAccess::inputs(module_)));
     (*input)->is_exclusive = true;
     return {};
   }
@@ -120,7 +120,7 @@ class Parser {
     if (value != "machine" && value != "messages" && !is_trace)
       return invalid("--clock is machine, messages or the URI of a trace, not \"" + value + "\"");
     arguments_.by_messages = value != "machine";
-    if (arguments_.by_messages && module_.inputs().empty())
+    if (arguments_.by_messages && ModuleAccess::inputs(module_).empty())
       return invalid("--clock messages needs inputs, and this module has none");
     return is_trace ? read_uri(value, arguments_.clock) : Status();
   }
@@ -149,8 +149,8 @@ class Parser {
 
   Status read_address(const std::string& value, const std::string& wrong, std::int32_t min,
                       std::int32_t OutputState::*address) {
-    auto split = HC_TRY(split_port(module_.outputs(), "output", value));
-    auto& output = *module_.outputs()[split.first];
+    auto split = HC_TRY(split_port(ModuleAccess::outputs(module_), "output", value));
+    auto& output = *ModuleAccess::outputs(module_)[split.first];
     auto read = read_number(split.second, output.*address, wrong);
     return read && output.*address < min ? invalid(wrong) : read;
   }
@@ -168,7 +168,7 @@ class Parser {
   /// Words without a name go to the positional parameters, in the order of declaration.
   Status read_positional(std::string_view word) {
     std::size_t skip = positional_++;
-    for (const auto& parameter : module_.parameters())
+    for (const auto& parameter : ModuleAccess::parameters(module_))
       if (parameter->options.positional && skip-- == 0) return parameter->set(word);
     return invalid("one argument too many: \"" + std::string(word) + "\"; see --help");
   }
@@ -242,11 +242,11 @@ constexpr std::array<Option, 18> kOptions = {{
 
 Error Parser::no_option(const std::string& key) const {
   std::vector<std::string> known;
-  for (const auto& each : module_.parameters()) known.push_back("--" + each->name);
+  for (const auto& each : ModuleAccess::parameters(module_)) known.push_back("--" + each->name);
   for (const auto& each : kOptions) known.emplace_back(each.name);
   const std::string meant = suggestion(key, known);
   return invalid("no option \"" + key + "\"" +
-                 (meant.empty() ? "; parameters are: " + names(module_.parameters()) : meant) +
+                 (meant.empty() ? "; parameters are: " + names(ModuleAccess::parameters(module_)) : meant) +
                  "; see --help");
 }
 
@@ -259,8 +259,8 @@ Status Parser::read_word() {
   std::optional<std::string> given;
   if (equals != std::string_view::npos) given = word.substr(equals + 1);
 
-  auto parameter = position_of(module_.parameters(), std::string_view(key).substr(2));
-  const bool is_parameter = key.size() > 2 && parameter != module_.parameters().end();
+  auto parameter = position_of(ModuleAccess::parameters(module_), std::string_view(key).substr(2));
+  const bool is_parameter = key.size() > 2 && parameter != ModuleAccess::parameters(module_).end();
   // A flag needs no value, but may have one after an equals sign.
   if (is_parameter && std::holds_alternative<bool>((*parameter)->value))
     return (*parameter)->set(given.value_or("true"));
@@ -280,8 +280,8 @@ Status Parser::read_word() {
 std::vector<std::pair<std::string, std::string>> options_of(const Module& module) {
   std::vector<std::pair<std::string, std::string>> options;
   for (const auto& option : kOptions) {
-    if (option.needs == Option::Inputs && module.inputs().empty()) continue;
-    if (option.needs == Option::Outputs && module.outputs().empty()) continue;
+    if (option.needs == Option::Inputs && ModuleAccess::inputs(module).empty()) continue;
+    if (option.needs == Option::Outputs && ModuleAccess::outputs(module).empty()) continue;
     std::string left(option.name);
     if (!option.argument.empty()) left.append(" ").append(option.argument);
     options.emplace_back(std::move(left), option.doc);
@@ -294,14 +294,14 @@ Result<PortLink> parse_port_link(const Module& module, bool is_input, const std:
     return position_of(own, port) == own.end() && text.starts_with(std::string(port) + "=");
   };
   PortLink link;
-  link.is_focus = is_input && is_implied(module.inputs(), "focus");
-  link.is_trace = !is_input && is_implied(module.outputs(), kTracePort);
+  link.is_focus = is_input && is_implied(ModuleAccess::inputs(module), "focus");
+  link.is_trace = !is_input && is_implied(ModuleAccess::outputs(module), kTracePort);
   std::string uri = text;
   if (link.is_focus || link.is_trace) {
     uri.erase(0, text.find('=') + 1);
   } else {
-    auto split = HC_TRY(is_input ? split_port(module.inputs(), "input", text)
-                                 : split_port(module.outputs(), "output", text));
+    auto split = HC_TRY(is_input ? split_port(ModuleAccess::inputs(module), "input", text)
+                                 : split_port(ModuleAccess::outputs(module), "output", text));
     std::tie(link.port, uri) = split;
   }
   link.uri = HC_TRY(parse_uri(uri));

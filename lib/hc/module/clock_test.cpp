@@ -22,18 +22,18 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 
 /// A message so many milliseconds behind kFirst.
 Message at(std::int64_t milliseconds, std::int32_t mode = 0) {
-  auto message = table({static_cast<double>(milliseconds)});
+  auto message = table().message({static_cast<double>(milliseconds)});
   message.header.time = kFirst + milliseconds * kMillisecond;
   message.header.mode = mode;
   return message;
 }
 Message focus(std::int64_t milliseconds, std::int32_t mode) {
-  auto message = table({mode});
+  auto message = table<std::int32_t>().message({mode});
   message.header.time = at(milliseconds).header.time;
   return message;
 }
 Message without_time() {
-  return table({-1.0});
+  return table().message({-1.0});
 }
 
 class ByMessages : public RunningModule {
@@ -73,8 +73,8 @@ class ByMessages : public RunningModule {
   }
 
   Module module{"clocked", "Notes what comes when."};
-  Input<Kind<MatrixType::Table, double>> a = module.input("a", table<double>(), "");
-  Input<Kind<MatrixType::Table, double>> b = module.input("b", table<double>(), "");
+  Input<Kind<MatrixType::Table, double>> a = module.input("a", table(), "");
+  Input<Kind<MatrixType::Table, double>> b = module.input("b", table(), "");
   std::vector<std::string> words{"--clock", "messages"};
   std::vector<std::unique_ptr<Sink>> sinks;
   Log log;
@@ -120,7 +120,6 @@ TEST_F(ByMessages, AGeneratorKeepsItsRateByThem) {
   module.generate([&] {
     module.keep_rate(100);
     log.push_back("look" + now());
-    return true;  // time ends with the messages
   });
   EXPECT_EQ(run(), Log({"a 0 at 0", "look at 0", "look at 10", "look at 20", "a 15 at 20",
                         "a 18 at 20", "look at 30", "look at 40", "a 40 at 40", "look at 50"}));
@@ -130,14 +129,13 @@ TEST_F(ByMessages, AGeneratorThatKeepsNoRateIsCalledBetweenMessages) {
   feed("a", {at(1), at(2)});
   module.generate([&] {
     log.push_back("look" + now());
-    return true;
   });
   EXPECT_EQ(run(), Log({"a 1 at 1", "look at 1", "a 2 at 2", "look at 2"}));
 }
 
 TEST_F(ByMessages, AGeneratorsEndIsTheModules) {
   feed("a", {at(1), at(2), at(3)});
-  module.generate([&] { return module.now() < at(2).header.time; });
+  module.generate([&] { if (module.now() >= at(2).header.time) module.stop(); });
   EXPECT_EQ(run(), Log({"a 1 at 1", "a 2 at 2"}));
 }
 
@@ -160,7 +158,7 @@ TEST_F(ByMessages, ATraceSaysWhenEachMessageAndTimerComes) {
   auto moment = [](std::int64_t milliseconds) { return at(milliseconds).header.time; };
   feed("a", {at(1, 4), at(2, 4)});
   feed("a again", {at(3, 4)});
-  feed("focus", {table({4})});
+  feed("focus", {table<std::int32_t>().message({4})});
   module.every(1s, [&] { log.push_back("timer" + now()); });
   module.every(1s, [&] { log.push_back("other timer" + now()); });
   auto timeout = module.after(1s, [&] { log.push_back("timeout" + now()); });
@@ -180,7 +178,7 @@ TEST_F(ByMessages, ATraceSaysWhenEachMessageAndTimerComes) {
 }
 
 TEST_F(ByMessages, ATraceSaysWhenAGeneratorIsCalledAndHasTheFocus) {
-  feed("focus", {table({4})});
+  feed("focus", {table<std::int32_t>().message({4})});
   const std::vector<TraceEvent> events = {
       {TraceEvent::What::Began, "", 0, 0, 0, at(3).header.time, TraceEvent::kGenerator},
       {TraceEvent::What::Began, "focus", 0, 0, 0, at(4).header.time},
@@ -190,7 +188,7 @@ TEST_F(ByMessages, ATraceSaysWhenAGeneratorIsCalledAndHasTheFocus) {
   module.generate([&] {
     module.keep_rate(1);
     log.push_back("look in " + std::to_string(module.focus()) + now());
-    return log.size() < 2;
+    if (log.size() >= 2) module.stop();
   });
   EXPECT_EQ(run(), Log({"look in 4 at 4", "look in 4 at 1004"}));
 }

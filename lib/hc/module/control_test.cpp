@@ -15,11 +15,11 @@ namespace {
 
 TEST_F(RunningModule, ObeysCommands) {
   Module module{"gauge", "Multiplies."};
-  auto in = module.input("in", table<double>(), "");
-  auto out = module.output("out", table<double>(), "");
+  auto in = module.input("in", table(), "", {.actor = true});
+  auto out = module.output("out", table(), "");
   auto factor = module.parameter("factor", 2.0, "", "", {.min = 0, .max = 10});
   auto title = module.parameter("title", "a", "", "", {.fixed = true});
-  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0) * *factor})); });
+  module.on(in, [&](const Doubles& m) { out.send({m.matrix().at(0, 0) * *factor}); });
   auto first = sink_of(uri("first"));
   start_managed(module, {"--in=" + uri("first"), "--out=" + uri("out")});
   next(*reports_, Report::Parameters);
@@ -27,19 +27,19 @@ TEST_F(RunningModule, ObeysCommands) {
   command("set factor=5");
   EXPECT_EQ(rows_of(next(*reports_, Report::Parameters))[0], "factor=5");
   auto from = source_of(uri("out"));
-  ASSERT_TRUE(first->send(table({2.0})));
+  ASSERT_TRUE(first->send(table().message({2.0})));
   EXPECT_EQ(number_of(next(*from)), 10);
 
   auto second = sink_of(uri("second"));
   auto other = source_of(uri("other"));
   relink("link in in=" + uri("second"));
   EXPECT_EQ(relink("link out out=" + uri("other")).size(), 4U);
-  ASSERT_TRUE(second->send(table({3.0})));
+  ASSERT_TRUE(second->send(table().message({3.0})));
   for (auto* each : {from.get(), other.get()}) EXPECT_EQ(number_of(next(*each)), 15);
   relink("unlink in in=" + uri("first"));
   EXPECT_EQ(relink("unlink out out=" + uri("out")),
             (std::vector<std::string>{"in in " + uri("second"), "out out " + uri("other")}));
-  ASSERT_TRUE(second->send(table({1.0})));
+  ASSERT_TRUE(second->send(table().message({1.0})));
   Message message = next(*other);
   EXPECT_FALSE(*receive(*from, message));
 
@@ -85,11 +85,11 @@ TEST_F(RunningModule, WhoReportsToNobodyLogsOnStandardErrorWhatIsWrong) {
 
 TEST_F(RunningModule, InAGraphAReaderThatTakesNothingIsGivenUp) {
   Module module{"source", "Makes numbers."};
-  auto out = module.output("out", table<double>(), "");
+  auto out = module.output("out", table(), "");
   std::atomic<bool> is_enough{false};
   module.generate([&] {
-    out.send(table({1.0}));
-    return !is_enough;
+    out.send({1.0});
+    if (is_enough) module.stop();
   });
   const auto reader = source_of(uri("out"));  // and never reads
   start_managed(module, {"--out=" + uri("out")});
@@ -103,34 +103,33 @@ TEST_F(RunningModule, InAGraphAReaderThatTakesNothingIsGivenUp) {
 
 TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {
   ManualClock clock;  // stands still
-  Module module{"actor", "Acts.", clock};
-  auto in = module.input("command", table<double>(), "");
-  auto out = module.output("done", table<double>(), "");
-  module.actor(in);
-  module.on(in, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+  Module module{"actor", "Acts.", {.clock = &clock}};
+  auto in = module.input("command", table(), "");
+  auto out = module.output("done", table(), "");
+  module.on(in, [&](const Doubles& m) { out.send({m.matrix().at(0, 0)}); });
   auto commands = sink_of(uri("in")), focus = sink_of(uri("focus"));
   auto done = source_of(uri("out"));
   auto reports = source_of(uri("reports"));
   start(module, {"--in=" + uri("in"), "--in", "focus=" + uri("focus"), "--out=" + uri("out"),
                  "--exclusive=command", "--manage=" + uri("reports")});
   auto set_focus = [&](std::int32_t mode) {
-    ASSERT_TRUE(focus->send(table<std::int32_t>({mode})));
+    ASSERT_TRUE(focus->send(table<std::int32_t>().message({mode})));
     while (next(*reports, Report::State).view<std::int64_t>()->at(0, 0, 1) != mode) {
     }
   };
   set_focus(2);
-  ASSERT_TRUE(commands->send(in_mode(table({1.0}), 1)));
-  ASSERT_TRUE(commands->send(in_mode(table({2.0}), 2)));
+  ASSERT_TRUE(commands->send(in_mode(table().message({1.0}), 1)));
+  ASSERT_TRUE(commands->send(in_mode(table().message({2.0}), 2)));
   Message message = next(*done);
   EXPECT_EQ(number_of(message), 2);
   EXPECT_EQ(message.header.mode, 2);
   set_focus(1);
-  ASSERT_TRUE(commands->send(in_mode(table({3.0}), 2)));
-  ASSERT_TRUE(commands->send(in_mode(table({4.0}), 1)));
+  ASSERT_TRUE(commands->send(in_mode(table().message({3.0}), 2)));
+  ASSERT_TRUE(commands->send(in_mode(table().message({4.0}), 1)));
   EXPECT_EQ(number_of(next(*done)), 4);
   set_focus(0);  // nobody
-  ASSERT_TRUE(commands->send(in_mode(table({5.0}), 0)));
-  ASSERT_TRUE(commands->send(in_mode(table({6.0}), 1)));
+  ASSERT_TRUE(commands->send(in_mode(table().message({5.0}), 0)));
+  ASSERT_TRUE(commands->send(in_mode(table().message({6.0}), 1)));
   ASSERT_TRUE(commands->close());
   EXPECT_EQ(join(), 0);
   EXPECT_FALSE(*receive(*done, message));
@@ -139,12 +138,12 @@ TEST_F(RunningModule, AnExclusiveInputTakesTheModeInFocus) {
 
 TEST_F(RunningModule, AFocusThatIsNotRepeatedExpires) {
   ManualClock clock;
-  Module module{"actor", "Takes commands.", clock};
-  auto command = module.input("command", table<double>(), "");
-  auto direct = module.input("direct", table<double>(), "");
-  auto out = module.output("done", table<double>(), "");
+  Module module{"actor", "Takes commands.", {.clock = &clock}};
+  auto command = module.input("command", table(), "");
+  auto direct = module.input("direct", table(), "");
+  auto out = module.output("done", table(), "");
   for (const auto& input : {command, direct})
-    module.on(input, [&](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+    module.on(input, [&](const Doubles& m) { out.send({m.matrix().at(0, 0)}); });
   auto commands = sink_of(uri("in")), person = sink_of(uri("direct")),
        focus = sink_of(uri("focus"));
   auto done = source_of(uri("out")), reports = source_of(uri("reports"));
@@ -155,19 +154,19 @@ TEST_F(RunningModule, AFocusThatIsNotRepeatedExpires) {
     while (read_state(next(*reports, Report::State))->focus != mode) {
     }
   };
-  ASSERT_TRUE(focus->send(table<std::int32_t>({1})));
+  ASSERT_TRUE(focus->send(table<std::int32_t>().message({1})));
   await_focus(1);
   clock.advance(internal::kFocusExpiry);
-  ASSERT_TRUE(commands->send(in_mode(table({1.0}), 1)));
+  ASSERT_TRUE(commands->send(in_mode(table().message({1.0}), 1)));
   EXPECT_EQ(number_of(next(*done)), 1);
   clock.advance(std::chrono::milliseconds(1));
-  ASSERT_TRUE(commands->send(in_mode(table({2.0}), 1)));
+  ASSERT_TRUE(commands->send(in_mode(table().message({2.0}), 1)));
   await_focus(0);
-  ASSERT_TRUE(person->send(in_mode(table({3.0}), 1)));
+  ASSERT_TRUE(person->send(in_mode(table().message({3.0}), 1)));
   EXPECT_EQ(number_of(next(*done)), 3);
-  ASSERT_TRUE(focus->send(table<std::int32_t>({1})));
+  ASSERT_TRUE(focus->send(table<std::int32_t>().message({1})));
   await_focus(1);
-  ASSERT_TRUE(commands->send(in_mode(table({4.0}), 1)));
+  ASSERT_TRUE(commands->send(in_mode(table().message({4.0}), 1)));
   EXPECT_EQ(number_of(next(*done)), 4);
   ASSERT_TRUE(commands->close());
   ASSERT_TRUE(person->close());
@@ -177,13 +176,13 @@ TEST_F(RunningModule, AFocusThatIsNotRepeatedExpires) {
 TEST_F(RunningModule, KnowsWhetherItsModeHasTheFocus) {
   auto has_focus = [&](std::vector<std::string> words, std::int32_t mode) {
     Module module{"task", "Knows."};
-    auto in = module.input("in", table<double>(), "");
+    auto in = module.input("in", table(), "");
     bool has = false;
     module.on(in, [&](const auto&) { has = module.has_focus(); });
     const std::string name = uri("in") + std::to_string(mode) + std::to_string(words.size());
     auto sink = sink_of(name), focus = sink_of(name + "focus");
-    EXPECT_TRUE(focus->send(table<std::int32_t>({mode})));
-    EXPECT_TRUE(sink->send(table({1.0})));
+    EXPECT_TRUE(focus->send(table<std::int32_t>().message({mode})));
+    EXPECT_TRUE(sink->send(table().message({1.0})));
     EXPECT_TRUE(sink->close());
     words.push_back("--in=" + name);
     if (mode >= 0) words.insert(words.end(), {"--in", "focus=" + name + "focus"});
@@ -200,7 +199,7 @@ TEST_F(RunningModule, KnowsWhetherItsModeHasTheFocus) {
 
 TEST_F(RunningModule, ARateMayBeAsLowAsOneLikes) {
   Module module{"busy", "Works."};
-  auto in = module.input("in", table<double>(), "");
+  auto in = module.input("in", table(), "");
   auto never = module.parameter("never", 0.0, "Hz", "");
   auto hardly = module.parameter("hardly", 1e-10, "Hz", "");
   int ticks = 0;
@@ -209,7 +208,7 @@ TEST_F(RunningModule, ARateMayBeAsLowAsOneLikes) {
   module.every(hardly, [&] { ++ticks; });
   module.every(std::chrono::nanoseconds::max(), [&] { ++ticks; });
   auto sink = sink_of(uri("in"));
-  for (int i = 0; i < 20; ++i) ASSERT_TRUE(sink->send(table({1.0})));
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(sink->send(table().message({1.0})));
   ASSERT_TRUE(sink->close());
   EXPECT_EQ(run(module, {"--in=" + uri("in")}), 0);
   EXPECT_EQ(ticks, 0);
@@ -227,12 +226,12 @@ TEST_F(RunningModule, ATimerFollowsItsRateAtOnce) {
 
 TEST_F(RunningModule, ATasksMessagesAreOfItsModeAndGoToAnAddress) {
   Module module{"task", "Commands."};
-  auto in = module.input("in", table<double>(), "");
-  auto out = module.output("command", table<double>(), "");
-  module.on(in, [&](const auto&) { out.send(table({1.0})); });
+  auto in = module.input("in", table(), "");
+  auto out = module.output("command", table(), "");
+  module.on(in, [&](const auto&) { out.send({1.0}); });
   auto sink = sink_of(uri("in"));
   auto source = source_of(uri("out"));
-  ASSERT_TRUE(sink->send(in_mode(table({1.0}), 9)));
+  ASSERT_TRUE(sink->send(in_mode(table().message({1.0}), 9)));
   ASSERT_TRUE(sink->close());
   EXPECT_EQ(
       run(module, {"--in=" + uri("in"), "--out=" + uri("out"), "--mode=4", "--to=command=-5"}), 0);
@@ -242,10 +241,9 @@ TEST_F(RunningModule, ATasksMessagesAreOfItsModeAndGoToAnAddress) {
 }
 
 TEST_F(RunningModule, ForwardsByAddressButNeverBack) {
-  Module module{"router", "Passes on."};
+  Module module{"router", "Passes on.", {.routes = true}};
   auto in = module.input("in", anything(), "");
   auto out = module.output("out", anything(), "");
-  module.route_outputs();
   std::vector<std::size_t> taken;
   module.on_raw(in, [&](const Message& message) { taken.push_back(out.forward(message)); });
   auto from_a = sink_of(uri("from-a"));
@@ -256,9 +254,9 @@ TEST_F(RunningModule, ForwardsByAddressButNeverBack) {
   image.header.src = 77;
   image.header.seq = 5;
   ASSERT_TRUE(from_a->send(to(image, 21)));
-  ASSERT_TRUE(from_a->send(to(table({2.0}), -1)));
-  ASSERT_TRUE(from_a->send(to(table({3.0}), 11)));
-  ASSERT_TRUE(from_a->send(table({4.0})));
+  ASSERT_TRUE(from_a->send(to(table().message({2.0}), -1)));
+  ASSERT_TRUE(from_a->send(to(table().message({3.0}), 11)));
+  ASSERT_TRUE(from_a->send(table().message({4.0})));
   ASSERT_TRUE(from_a->close());
   EXPECT_EQ(run(module, {"--in", "in=" + uri("from-a"), "--out", "out=" + uri("to-a"), "--out",
                          "out=" + uri("to-b"), "--route", "in=" + uri("from-a") + " peer=a",
@@ -293,7 +291,7 @@ TEST_F(RunningModule, TimersGoOnBetweenMessages) {
 
 TEST_F(RunningModule, IsWokenByADescriptorOfItsOwn) {
   Module module{"device", "Reads."};
-  auto in = module.input("in", table<double>(), "");
+  auto in = module.input("in", table(), "");
   auto sink = sink_of(uri("in"));
   std::array<int, 2> pipe = {};
   ASSERT_EQ(::pipe2(pipe.data(), O_NONBLOCK | O_CLOEXEC), 0);
@@ -311,7 +309,7 @@ TEST_F(RunningModule, IsWokenByADescriptorOfItsOwn) {
                          ASSERT_TRUE(sink->close());
                        }
                      });
-  ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(sink->send(table().message({1.0})));
   start(module, {"--in=" + uri("in")});
   while (!is_first_read) std::this_thread::yield();
   ASSERT_EQ(::write(pipe[1], "b", 1), 1);  // nothing but this wakes it

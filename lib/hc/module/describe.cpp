@@ -36,26 +36,26 @@ std::string parameter_line(const ParameterState& parameter) {
 Description description_of(const Module& module) {
   Description description;
   description.name = module.name();
-  description.summary = module.summary();
-  for (const auto& port : module.inputs())
-    description.inputs.push_back({port->name, port->doc, port->types, port->is_actor, port->keep});
-  for (const auto& port : module.outputs())
+  description.summary = ModuleAccess::summary(module);
+  for (const auto& port : ModuleAccess::inputs(module))
+    description.inputs.push_back({port->name, port->doc, port->types, port->options.actor, port->options.keep});
+  for (const auto& port : ModuleAccess::outputs(module))
     description.outputs.push_back({port->name, port->doc, port->types});
-  for (const auto& together : module.together()) {
+  for (const auto& together : ModuleAccess::together(module)) {
     auto& names = description.together.emplace_back();
     for (const auto& port : together->inputs) names.push_back(port->name);
   }
-  for (const auto& parameter : module.parameters()) description.parameters.push_back(*parameter);
+  for (const auto& parameter : ModuleAccess::parameters(module)) description.parameters.push_back(*parameter);
   const auto schemes = transports();
   description.transports.emplace(schemes.begin(), schemes.end());
   description.control = true;
-  description.routes = module.routes();
+  description.routes = ModuleAccess::routes(module);
   return description;
 }
 
 std::string help(const Module& module) {
   const Description description = description_of(module);
-  std::string text = module.summary() + "\n\nUsage: hc " + module.name() + " [OPTION …]\n";
+  std::string text = ModuleAccess::summary(module) + "\n\nUsage: hc " + module.name() + " [OPTION …]\n";
   text += lines("Inputs", description.inputs);
   for (const auto& together : description.together) {
     std::string names;

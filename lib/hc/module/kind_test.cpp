@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <stdexcept>
 
 namespace hc {
 namespace {
@@ -11,12 +12,12 @@ namespace {
 TEST(Kind, SmallThingsAreTextLargeOnesBinary) {
   EXPECT_EQ(position<double>().type.info.code(), 10390);
   EXPECT_EQ(rotation<float>(6).type.info.code(), 20680);
-  EXPECT_EQ(rgb_image<std::uint8_t>().type.info.code(), 30301);
+  EXPECT_EQ(rgb_image().type.info.code(), 30301);
   EXPECT_EQ(intensity_image<float>().type.info.code(), 40181);
   EXPECT_EQ(vector_field<float>(2).type.info.code(), 50281);
   EXPECT_EQ(string().type.info.code(), 60100);
   EXPECT_EQ(transformation<double>(4, 3).type.info.code(), 70190);
-  EXPECT_EQ(sound<std::int16_t>(2).type.info.code(), 100231);
+  EXPECT_EQ(sound(2).type.info.code(), 100231);
   EXPECT_EQ(table<double>().type.info.code(), 120190);
 }
 
@@ -35,53 +36,74 @@ TEST(Kind, HasAFixedShapeWhereOneIsGiven) {
   EXPECT_TRUE(fits(header, type));
 }
 
-TEST(Kind, MessagesOfEachAreMadeInOneLine) {
+TEST(Kind, MakesMessagesInTheShapeOfTheirNumbers) {
   const std::uint8_t pixels[] = {1, 2, 3, 4, 5, 6};
   const double numbers[] = {1, 2, 3, 4, 5, 6};
-  EXPECT_EQ(position(1.0, 2.0, 3.0).matrix().at(0, 0, 2), 3.0);
-  EXPECT_EQ(rotation(1.0F, 2.0F, 3.0F).matrix().at(0, 0, 2), 3.0F);
-  EXPECT_EQ(rgb_image<std::uint8_t>(1, 2, pixels).matrix().at(1, 0, 2), 6);
-  EXPECT_EQ(intensity_image<std::uint8_t>(3, 2, pixels).matrix().at(1, 0), 4);
-  EXPECT_EQ(vector_field<double>(1, 3, 2, numbers).matrix().at(2, 0, 1), 6.0);
-  EXPECT_EQ(string("hello").characters(), "hello");
-  EXPECT_EQ(transformation<double>(3, 2, numbers).matrix().at(1, 2), 6.0);
-  EXPECT_EQ(dense_graph<double>(2, std::span(numbers).first(4)).matrix().at(1, 0), 3.0);
-  const auto edges = sparse_graph<double>(numbers);
+  EXPECT_EQ(position().message({1, 2, 3}).matrix().at(0, 0, 2), 3.0);
+  EXPECT_EQ(position().message(numbers).matrix().at(0, 1, 2), 6.0);
+  EXPECT_EQ(rgb_image().message(2, 1, pixels).matrix().at(1, 0, 2), 6);
+  EXPECT_EQ(intensity_image().message(2, 3, pixels).matrix().at(1, 0), 4);
+  EXPECT_EQ(vector_field<double>(2).message(3, 1, numbers).matrix().at(2, 0, 1), 6.0);
+  EXPECT_EQ(string().message("hello").text(), "hello");
+  EXPECT_EQ(transformation(2, 3).message(numbers).matrix().at(1, 2), 6.0);
+  EXPECT_EQ(dense_graph().message({1, 2, 3, 4}).matrix().at(1, 0), 3.0);
+  const auto edges = sparse_graph().message(numbers);
   EXPECT_EQ(edges.header.width, 1);
   EXPECT_EQ(edges.matrix().at(1, 0, 2), 6.0);
-  EXPECT_EQ(sound<double>(2, numbers).matrix().at(0, 2, 1), 6.0);
-  EXPECT_EQ(map<double>(2, 3, numbers).matrix().at(2, 1), 6.0);
-  const auto scores = table({1, 2});
+  EXPECT_EQ(sound<double>(2).message(numbers).matrix().at(0, 2, 1), 6.0);
+  EXPECT_EQ(map().message(3, 2, numbers).matrix().at(2, 1), 6.0);
+  const auto scores = table<int>().in(40).message({1, 2});
   EXPECT_EQ(scores.matrix().at(0, 1), 2);
   EXPECT_EQ(scores.header.width, 2);
-  EXPECT_EQ(table<double>(numbers).at(12).in(40).header.time, 12);
-  for (const auto& each : {Message(edges), Message(sound<double>(2, numbers))})
+  EXPECT_EQ(scores.header.coord, 40);
+  EXPECT_EQ(table().of(0, 3).message(numbers).header.height, 2);
+  EXPECT_EQ(table().of(3, 0).message(numbers).header.width, 2);
+  EXPECT_EQ(table().message({}).header.width, 0);
+  for (const auto& each : {Message(edges), Message(sound<double>(2).message(numbers))})
     EXPECT_TRUE(check(each.header, {}));
 }
 
-TEST(Kind, AnotherCountOfNumbersThanTheShapesIsABug) {
-  const double numbers[] = {1, 2, 3};
-  EXPECT_DEATH(static_cast<void>(dense_graph<double>(2, numbers)), "check failed");
+TEST(Kind, NumbersThatDoNotFillTheShapeAreABug) {
+  EXPECT_DEATH(static_cast<void>(table().of(1, 2).message({1, 2, 3})), "check failed");
+  EXPECT_DEATH(static_cast<void>(position().message({1, 2})), "check failed");
+  EXPECT_DEATH(static_cast<void>(dense_graph().message({1, 2, 3})), "check failed");
+}
+
+TEST(Kind, AnElementThatIsNotThereIsNotRead) {
+  const auto none = position().message({});
+  EXPECT_THROW(static_cast<void>(none.numbers()[0]), std::out_of_range);
+  EXPECT_THROW(static_cast<void>(none.numbers().front()), std::out_of_range);
+  EXPECT_THROW(static_cast<void>(none.numbers().back()), std::out_of_range);
+  EXPECT_THROW(static_cast<void>(none.matrix().at(0, 0)), std::out_of_range);
+  EXPECT_THROW(static_cast<void>(none.matrix().row(0)), std::out_of_range);
+  const auto one = position().message({1, 2, 3});
+  EXPECT_THROW(static_cast<void>(one.numbers()[3]), std::out_of_range);
+  EXPECT_THROW(static_cast<void>(one.matrix().at(0, 0, 3)), std::out_of_range);
+  EXPECT_THROW(static_cast<void>(one.matrix().at(0, 1)), std::out_of_range);
+  EXPECT_THROW(static_cast<void>(one.numbers().first(4)), std::out_of_range);
+  EXPECT_THROW(static_cast<void>(one.numbers().subspan(4)), std::out_of_range);
+  EXPECT_TRUE(one.numbers().subspan(3).empty());
+  EXPECT_EQ(one.numbers().subspan(1).front(), 2);
 }
 
 TEST(Kind, AnyImageIsInColourOrGrey) {
-  const AnyKind kind = any_image(7);
+  const AnyKind kind = image(7);
   ASSERT_EQ(kind.types.size(), 2U);
-  EXPECT_EQ(in_words(kind.types), in_words({rgb_image<std::uint8_t>().in(7).type,
-                                            intensity_image<std::uint8_t>().in(7).type}));
-  EXPECT_EQ(any_image().types[0].coord, 0);
+  EXPECT_EQ(in_words(kind.types), in_words({rgb_image().in(7).type,
+                                            intensity_image().in(7).type}));
+  EXPECT_EQ(image().types[0].coord, 0);
 }
 
 TEST(Finite, NeitherNaNNorInfinity) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(finite(position(1.0, 2.0, 3.0).numbers()));
-  EXPECT_FALSE(finite(position(1.0, kNan, 3.0).numbers()));
-  EXPECT_FALSE(finite(Message(position(1.0F, 2.0F, std::numeric_limits<float>::infinity()))));
-  EXPECT_TRUE(finite(Message(string("nan"))));
+  EXPECT_TRUE(finite(position().message({1, 2, 3}).numbers()));
+  EXPECT_FALSE(finite(position().message({1, kNan, 3}).numbers()));
+  EXPECT_FALSE(finite(position<float>().message({1, 2, std::numeric_limits<float>::infinity()})));
+  EXPECT_TRUE(finite(Message(string().message("nan"))));
 }
 
 TEST(Fits, NamesTheRuleOfTheFieldThatDoesNot) {
-  auto type = transformation<double>(4, 3).in(7004).type;
+  auto type = transformation(3, 4).in(7004).type;
   Header header;
   header.info = type.info;
   header.width = 4;

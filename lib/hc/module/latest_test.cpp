@@ -10,7 +10,7 @@ namespace hc {
 namespace {
 
 Message numbered(std::int64_t time) {
-  Message message = table({static_cast<double>(time)});
+  Message message = table().message({static_cast<double>(time)});
   message.header.time = time;
   return message;
 }
@@ -23,8 +23,8 @@ class SlowPairs : public RunningModule {
     const std::string name = "shm:pairs-" + keep + "-" + std::to_string(::getpid());
     auto left_sink = sink_of(name + "-left"), right_sink = sink_of(name + "-right");
     Module module{"pair", "Pairs."};
-    auto left = module.input("left", table<double>(), "");
-    auto right = module.input("right", table<double>(), "");
+    auto left = module.input("left", table(), "");
+    auto right = module.input("right", table(), "");
     std::vector<std::int64_t> times;
     std::promise<void> sent;
     module.on(together(left, right), [&](const auto& l, const auto& r) {

@@ -18,8 +18,8 @@ namespace {
 
 TEST_F(RunningModule, SaysWhatItIsLinkedToAndHowItIsSet) {
   Module module{"gauge", "Multiplies."};
-  auto in = module.input("in", table<double>(), "");
-  auto out = module.output("out", table<double>(), "");
+  auto in = module.input("in", table(), "");
+  auto out = module.output("out", table(), "");
   module.parameter("factor", 2.0, "", "");
   module.parameter("title", "a b", "", "", {.fixed = true});
   module.on(in, [](const auto&) {});
@@ -42,10 +42,10 @@ TEST_F(RunningModule, ReportsThatItWaitsForAReader) {
   for (const auto& [listens, comes] :
        {std::pair("shm:" + name, "shm:" + name), {"unix-listen:@" + name, "unix:@" + name}}) {
     Module module{"early", "Sends at once."};
-    auto out = module.output("out", table<double>(), "");
+    auto out = module.output("out", table(), "");
     module.generate([&] {
-      out.send(table({1.0}));
-      return false;
+      out.send({1.0});
+      module.stop();
     });
     auto reports = source_of(uri("reports"));
     auto awaits_reader = [&] {
@@ -64,12 +64,12 @@ TEST_F(RunningModule, ReportsThatItWaitsForAReader) {
 TEST_F(RunningModule, ObeysWhileItWaitsForAReader) {
   const std::string link = "shm:unread." + std::to_string(::getpid());
   Module module{"unread", "Sends at once."};
-  auto out = module.output("out", table<double>(), "");
+  auto out = module.output("out", table(), "");
   auto factor = module.parameter("factor", 2.0, "", "");
   module.generate([&] {
-    out.send(table({*factor}));
-    out.send(table({*factor}));
-    return false;
+    out.send({*factor});
+    out.send({*factor});
+    module.stop();
   });
   start_managed(module, {"--out=" + link});
   while (next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 3) == 0) {
@@ -84,12 +84,12 @@ TEST_F(RunningModule, ObeysWhileItWaitsForRoom) {
   const std::string name = "slow." + std::to_string(::getpid());
   const std::string link = "shm:" + name + "?readers=1", other = uri("other");
   Module module{"fast", "Sends much."};
-  auto out = module.output("out", table<double>(), "");
+  auto out = module.output("out", table(), "");
   constexpr int kCount = 5000;  // more than wait for a reader
   int sent = 0;
   module.generate([&] {
-    out.send(table({static_cast<double>(sent)}));
-    return ++sent < kCount;
+    out.send({static_cast<double>(sent)});
+    if (++sent >= kCount) module.stop();
   });
   start_managed(module, {"--out=" + link, "--out=" + other});
   auto slow = source_of("shm:" + name + "?wait=10");  // and is not read
@@ -108,7 +108,7 @@ TEST_F(RunningModule, ReportsAgesAndGaps) {
   auto reports = source_of(uri("reports"));
   const std::int64_t hour = 3'600'000'000'000;
   for (int i = 0; i < 3; ++i) {
-    Message message = table({1.0});
+    Message message = table().message({1.0});
     message.header.time = SystemClock().wall() - hour;
     ASSERT_TRUE(sink->send(message));
   }
@@ -134,7 +134,7 @@ TEST_F(RunningModule, HasOnlyTheLinksOfItsCommands) {
   auto from = source_of(uri("out"));
   command("link out out=" + uri("out"));
   command("link in in=" + uri("first"));
-  ASSERT_TRUE(first->send(table({2.0})));
+  ASSERT_TRUE(first->send(table().message({2.0})));
   EXPECT_EQ(number_of(next(*from)), 2);
   ASSERT_TRUE(first->close());
   EXPECT_EQ(join(), 0);
@@ -156,7 +156,7 @@ TEST_F(RunningModule, ALinkThatIsMadeAnewIsOneLinkAndCountsOn) {
     auto sink = open_sink(*parse_uri(uri("in")));
     while (!sink) sink = open_sink(*parse_uri(uri("in")));  // until the end before has closed
     command("link in in=" + uri("in"));
-    ASSERT_TRUE((*sink)->send(table({i})));
+    ASSERT_TRUE((*sink)->send(table().message({i})));
     next(*handled);
     ASSERT_TRUE((*sink)->close());
   }
@@ -178,7 +178,7 @@ TEST_F(RunningModule, ALinkThatIsTakenAwayHasItsLastNumbersReported) {
   auto from = source_of(uri("out"));
   start_managed(module, {"--in=" + uri("in"), "--out=" + uri("out")});
   EXPECT_EQ(next_counters(*reports_).size(), 2U);
-  ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(sink->send(table().message({1.0})));
   next(*from);
   for (const auto& end : {"in in=" + uri("in"), "out out=" + uri("out")}) {
     command("unlink " + end);
@@ -195,7 +195,7 @@ TEST_F(RunningModule, WhatWaitsAtALinkThatIsTakenAwayIsAmongTheLost) {
   ::testing::internal::CaptureStderr();
   start_managed(module, {"--in=" + uri("in"), "--out=" + place + "?keep=100&rate=1"});
   auto from = source_of("unix:" + name + "?wait=60");
-  for (int i = 0; i < 100; ++i) ASSERT_TRUE(sink->send(table({static_cast<double>(i)})));
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(sink->send(table().message({static_cast<double>(i)})));
   while (next_counters(*reports_).back()[0] < 100) {
   }
   command("unlink out out=" + place + "?keep=100&rate=1");
@@ -211,13 +211,12 @@ TEST_F(RunningModule, WhatWaitsAtALinkThatIsTakenAwayIsAmongTheLost) {
 
 TEST_F(RunningModule, AnOutputThatNeverWaitsIsHeldUpByNoReader) {
   Module module{"relay", "Sends on."};
-  auto in = module.input("in", table<double>(), "");
-  auto hung = module.output("hung", table<double>(), "");
-  auto out = module.output("out", table<double>(), "");
-  module.never_waits(hung);
+  auto in = module.input("in", table(), "");
+  auto hung = module.output("hung", table(), "", {.keep = 1});
+  auto out = module.output("out", table(), "");
   module.on(in, [&](const Doubles& m) {
-    hung.send(table({m.matrix().at(0, 0)}));
-    out.send(table({m.matrix().at(0, 0)}));
+    hung.send({m.matrix().at(0, 0)});
+    out.send({m.matrix().at(0, 0)});
   });
   const std::string name = "hung-" + std::to_string(::getpid()), graph = "?readers=1&stay=1";
   auto sink = sink_of(uri("in"));
@@ -230,7 +229,7 @@ TEST_F(RunningModule, AnOutputThatNeverWaitsIsHeldUpByNoReader) {
   auto socket = source_of("unix:" + ("@" + name) + "?wait=60");
   constexpr int kMany = 20'000;  // of which no link has room for
   std::thread sender([&] {
-    for (int i = 0; i < kMany; ++i) EXPECT_TRUE(sink->send(table({static_cast<double>(i)})));
+    for (int i = 0; i < kMany; ++i) EXPECT_TRUE(sink->send(table().message({static_cast<double>(i)})));
   });
   for (int i = 0; i < kMany; ++i) next(*from);
   sender.join();
@@ -241,11 +240,11 @@ TEST_F(RunningModule, AnOutputThatNeverWaitsIsHeldUpByNoReader) {
 
 TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
   Module module{"pair", "Adds."};
-  auto left = module.input("left", table<double>(), "");
-  auto right = module.input("right", table<double>(), "");
-  auto out = module.output("out", table<double>(), "");
+  auto left = module.input("left", table(), "");
+  auto right = module.input("right", table(), "");
+  auto out = module.output("out", table(), "");
   module.on(together(left, right), [&](const Doubles& l, const Doubles& r) {
-    out.send(table({l.matrix().at(0, 0) + r.matrix().at(0, 0)}));
+    out.send({l.matrix().at(0, 0) + r.matrix().at(0, 0)});
   });
   auto sums = source_of(uri("out"));
   start_managed(module, {"--out=" + uri("out")});
@@ -255,8 +254,8 @@ TEST_F(RunningModule, InputsThatAreTakenTogetherCanBeLinkedAnew) {
   relink("link in right=" + uri("right"));
   relink("link in left=" + place);
   for (double i : {1, 2}) {
-    ASSERT_TRUE(l->send(table({i})));
-    ASSERT_TRUE(r->send(table({i})));
+    ASSERT_TRUE(l->send(table().message({i})));
+    ASSERT_TRUE(r->send(table().message({i})));
     EXPECT_EQ(number_of(next(*sums)), 2 * i);
     relink("unlink in left=" + place);
     place += "_anew";
@@ -276,7 +275,7 @@ TEST_F(RunningModule, AFocusLinkIsTakenAwayAlone) {
   relink("unlink in focus=" + uri("one"));
   EXPECT_EQ(read_log(next(*reports_, Report::Log))->text,
             "command \"unlink in focus=" + uri("one") + "\": there is no such link");
-  ASSERT_TRUE(other->send(table<std::int32_t>({7})));
+  ASSERT_TRUE(other->send(table<std::int32_t>().message({7})));
   EXPECT_EQ(next(*reports_, Report::State).view<std::int64_t>()->at(0, 0, 1), 7);
   end();
 }
@@ -287,7 +286,7 @@ TEST_F(RunningModule, AWriterThatHasEndedForGoodIsNoNews) {
   ::testing::internal::CaptureStderr();
   auto writer = sink_of(name);
   start_managed(module, {"--in=" + name + "?reconnect=60"});
-  ASSERT_TRUE(writer->send(table({1.0})));
+  ASSERT_TRUE(writer->send(table().message({1.0})));
   ASSERT_TRUE(writer->close());
   writer.reset();
   command("finish in=" + name + "?reconnect=60");
@@ -301,7 +300,7 @@ constexpr const char* kWritten = "HC_TEST_WRITTEN";
 /// A program, which is to be killed.
 TEST(Writer, DISABLED_SendsOnce) {
   const auto sink = sink_of(std::getenv(kWritten));
-  ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(sink->send(table().message({1.0})));
   while (true) ::pause();
 }
 
@@ -323,19 +322,19 @@ TEST_F(RunningModule, WhoNeverWaitsReadsTheWriterThatFollowsOneThatWasKilled) {
     Module module{"busy", "Has always something to do."};
     std::atomic<int> come = 0;
     auto feed = sink_of(uri("feed"));
-    module.on(module.input("feed", table<double>(), ""), [&](const auto&) {
-      ASSERT_TRUE(come < 2 && !generates ? feed->send(table({1.0})) : feed->close());
+    module.on(module.input("feed", table(), ""), [&](const auto&) {
+      ASSERT_TRUE(come < 2 && !generates ? feed->send(table().message({1.0})) : feed->close());
     });
-    module.on(module.input("in", table<double>(), ""), [&](const auto&) { ++come; });
-    if (generates) module.generate([&] { return come < 2; });
-    module.on_start([&] { ASSERT_TRUE(feed->send(table({1.0}))); });
+    module.on(module.input("in", table(), ""), [&](const auto&) { ++come; });
+    if (generates) module.generate([&] { if (come >= 2) module.stop(); });
+    module.on_start([&] { ASSERT_TRUE(feed->send(table().message({1.0}))); });
     start_managed(module, {"--in=feed=" + uri("feed"), "--in=in=" + name + "?reconnect=60"});
     const pid_t killed = start_writer(name);
     while (come < 1) std::this_thread::yield();
     ASSERT_EQ(::kill(killed, SIGKILL), 0);
     ASSERT_EQ(::waitpid(killed, nullptr, 0), killed);
     auto writer = sink_of(name);
-    ASSERT_TRUE(writer->send(table({1.0})));
+    ASSERT_TRUE(writer->send(table().message({1.0})));
     while (come < 2) std::this_thread::yield();
     if (!generates) {
       ASSERT_TRUE(send_command(*control_, "finish in=" + name + "?reconnect=60"));

@@ -59,9 +59,8 @@ void Module::Loop::run() {
   schedule_->begin();
   timers.start();
   if (module.start_) module.start_();
-  do {
+  while (!module.is_done_ && schedule_->turn())
     if (stop_requested()) throw internal::Stopped();
-  } while (schedule_->turn());
   inlets.sets().end_all();
   end();
 }
@@ -109,11 +108,10 @@ void Module::Loop::work_between_messages() {
   read_watched();
 }
 
-bool Module::Loop::generate() {
+void Module::Loop::generate() {
   trace.note(TraceEvent::What::Began, TraceEvent::kGenerator);
-  const bool goes_on = module.generate_();
+  module.generate_();
   trace.note(TraceEvent::What::Ended, TraceEvent::kGenerator);
-  return goes_on;
 }
 
 /// Calls the handlers of the module's own descriptors that are readable.

@@ -26,7 +26,7 @@ struct Module::Loop {
   Loop(const Loop&) = delete;
   Loop& operator=(const Loop&) = delete;
 
-  /// Runs until the inputs or the generator end.
+  /// Runs until all inputs have ended, or Module::stop().
   void run();
   /// See Module::finish_when_stopped().
   void take_rest();
@@ -45,8 +45,7 @@ struct Module::Loop {
   void serve();
   /// Everything except messages: ends links, serves, fires timers, reads own descriptors.
   void work_between_messages();
-  /// Calls the generator; false at its end.
-  bool generate();
+  void generate();
   /// Waits until a time, for commands and the focus; with `for_messages` also for messages and own
   /// descriptors. Returns whether it was so short that the clock need not be read again.
   bool wait(bool for_messages, MonotonicTime until);

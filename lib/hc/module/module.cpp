@@ -36,11 +36,12 @@ std::string internal::thrown_in_words(const std::exception& error) {
   return text;
 }
 
-Module::Module(std::string name, std::string summary)
-    : Module(std::move(name), std::move(summary), kSystemClock) {}
-
-Module::Module(std::string name, std::string summary, const Clock& clock)
-    : name_(std::move(name)), summary_(std::move(summary)), instance_(name_), clock_(clock) {
+Module::Module(std::string name, std::string summary, const ModuleOptions& options)
+    : name_(std::move(name)),
+      summary_(std::move(summary)),
+      instance_(name_),
+      options_(options),
+      clock_(options.clock != nullptr ? *options.clock : kSystemClock) {
   open_standard_descriptors();
 }
 
@@ -48,8 +49,10 @@ Module::~Module() = default;
 
 std::shared_ptr<internal::InputState> Module::add_input(std::string name,
                                                         std::vector<PortType> types,
-                                                        std::string doc) {
+                                                        std::string doc,
+                                                        const InputOptions& options) {
   auto state = std::make_shared<internal::InputState>();
+  state->options = options;
   state->name = std::move(name);
   state->types = std::move(types);
   state->doc = std::move(doc);
@@ -61,11 +64,13 @@ std::shared_ptr<internal::InputState> Module::add_input(std::string name,
 
 std::shared_ptr<internal::OutputState> Module::add_output(std::string name,
                                                           std::vector<PortType> types,
-                                                          std::string doc) {
+                                                          std::string doc,
+                                                          const OutputOptions& options) {
   auto state = std::make_shared<internal::OutputState>();
+  state->options = options;
   state->name = std::move(name);
   state->types = std::move(types);
-  state->doc = std::move(doc);
+  state->doc = std::move(doc) + (options.on_demand ? "; only by a link of its own" : "");
   state->module = this;
   outputs_.push_back(state);
   state->address = static_cast<std::int32_t>(outputs_.size());
@@ -180,11 +185,12 @@ void Timeout::restart(std::chrono::nanoseconds duration) {
   state_->due = now + std::clamp(duration, MonotonicTime(0), internal::kLongestPeriod);
 }
 
-void Module::report_focus(std::int32_t mode, const Stops& stops) {
-  const bool is_new = focus_.decided != mode || focus_.stops != stops;
-  focus_.decided = mode;
-  focus_.stops = stops;
-  if (is_new && loop_ != nullptr) loop_->report_state();
+void ModuleAccess::report_focus(Module& module, std::int32_t mode, const Stops& stops) {
+  auto& focus = module.focus_;
+  const bool is_new = focus.decided != mode || focus.stops != stops;
+  focus.decided = mode;
+  focus.stops = stops;
+  if (is_new && module.loop_ != nullptr) module.loop_->report_state();
 }
 
 void Module::keep_rate(double rate) {
@@ -220,7 +226,7 @@ int Module::run(int argc, char** argv) {
   if (!arguments->instance.empty()) instance_ = arguments->instance;
   message_time_.reset();
   if (arguments->by_messages) message_time_ = 0;
-  if (is_background_) {  // what is refused changes nothing but the speed
+  if (options_.background) {  // what is refused changes nothing but the speed
     static_cast<void>(::setpriority(PRIO_PROCESS, 0, kBackgroundNice));
     const sched_param none{};
     static_cast<void>(::sched_setscheduler(0, SCHED_BATCH, &none));
@@ -237,7 +243,7 @@ int Module::run_loop(const internal::Arguments& arguments) {
       loop.run();
     } catch (const internal::Stopped&) {
       // No reader is left, or it was stopped: a clean end.
-      if (finishes_) loop.take_rest();
+      if (options_.finish_when_stopped) loop.take_rest();
     }
     loop.close();
     if (loop.has_failed_input()) return kFailure;  // as has been logged

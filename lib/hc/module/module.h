@@ -4,9 +4,9 @@
 //
 //     int main(int argc, char** argv) {
 //       hc::Module module{"brightness", "Measures how bright images are."};
-//       auto image = module.input("image", hc::intensity_image<std::uint8_t>(), "any image");
-//       auto mean = module.output("mean", hc::table<double>(), "mean intensity, 0 … 255");
-//       module.on(image, [&](const auto& pixels) { mean.send(hc::table({average(pixels)})); });
+//       auto image = module.input("image", hc::image(), "any image");
+//       auto mean = module.output("mean", hc::table(), "mean intensity, 0 … 255");
+//       module.on(image, [&](const hc::Image& image) { mean.send({average(image.pixels())}); });
 //       return module.run(argc, argv);
 //     }
 //
@@ -83,10 +83,9 @@ class Module;
 /// A timer that fires once each time it is started: Module::after(). Copies are the same timer.
 class Timeout {
  public:
-  /// Has it fire when its duration, or another one, has passed from now on.
+  /// Restarts the timer with its duration, or another one.
   void restart();
   void restart(std::chrono::nanoseconds duration);
-  /// Has it not fire.
   void stop() { state_->due.reset(); }
 
  private:
@@ -101,70 +100,53 @@ class Timeout {
   std::shared_ptr<State> state_;
 };
 
+/// How a module runs.
+struct ModuleOptions {
+  /// The process yields the processor to closed loops: nice 10, batch scheduling. For a module that
+  /// takes a core and is in no hurry.
+  bool background = false;
+  /// The module runs until it is stopped, or its last reader has disconnected, though its inputs
+  /// have ended: for a device that sends unasked. Not with `--clock messages`.
+  bool keep_running = false;
+  /// A module that is asked to stop first takes the messages that still come from modules that end
+  /// beside it, until there are none for 0.2 s, at most 2 s; then on_end() is called.
+  bool finish_when_stopped = false;
+  /// Outputs route by address: a link gets only the messages of its `--route`.
+  bool routes = false;
+  /// Another clock than the machine's, for tests; it outlives the module. Advancing it does not
+  /// wake the module: send a message.
+  const Clock* clock = nullptr;
+};
+
 class Module {
  public:
   /// @param name  as in the graph and on the command line: snake_case.
   /// @param summary  one sentence.
-  Module(std::string name, std::string summary);
-  /// The same by another clock than the machine's, which outlives the module: a test's. Who turns
-  /// it wakes the module by a message, since waiting is by the machine's clock.
-  Module(std::string name, std::string summary, const Clock& clock);
+  Module(std::string name, std::string summary, const ModuleOptions& options = {});
   Module(const Module&) = delete;
   Module& operator=(const Module&) = delete;
   ~Module();
 
   /// Declares an input. The first one is standard input unless the command line links any.
   template <typename K>
-  Input<K> input(const std::string& name, const K& kind, const std::string& doc) {
-    if constexpr (std::is_same_v<K, AnyKind>)
-      return Input<K>(add_input(name, kind.types, doc));
+  Input<K> input(const std::string& name, const K& kind, const std::string& doc,
+                 const InputOptions& options = {}) {
+    if constexpr (std::is_base_of_v<AnyKind, K>)
+      return Input<K>(add_input(name, kind.types, doc, options));
     else
-      return Input<K>(add_input(name, {kind.type}, doc));
+      return Input<K>(add_input(name, {kind.type}, doc, options));
   }
 
   /// Declares an output. All outputs go to standard output unless the command line links any; their
   /// addresses (src), 1, 2, … in the order of declaration, tell them apart.
   template <typename K>
-  Output<K> output(const std::string& name, const K& kind, const std::string& doc) {
+  Output<K> output(const std::string& name, const K& kind, const std::string& doc,
+                   const OutputOptions& options = {}) {
     if constexpr (std::is_same_v<K, AnyKind>)
-      return Output<K>(add_output(name, kind.types, doc));
+      return Output<K>(add_output(name, kind.types, doc, options));
     else
-      return Output<K>(add_output(name, {kind.type}, doc));
+      return Output<K>(add_output(name, {kind.type}, doc, options));
   }
-
-  /// Declares that an output is sent only by a link of its own: it has no part in the standard
-  /// output that outputs share. For what few readers want, and costs time.
-  template <typename K>
-  void on_demand(const Output<K>& output) {
-    output.state_->is_on_demand = true;
-    output.state_->doc += "; only by a link of its own";
-  }
-
-  /// Declares that sending to an output waits for nobody, whatever its links say: without a reader
-  /// a message is lost, and for a reader that is slow or hangs the newest ones wait. For what must
-  /// not hold up what else the module does.
-  /// @param keep  how many of the newest wait where the link does not say; 1 or more.
-  template <typename K>
-  void never_waits(const Output<K>& output, std::uint32_t keep = 1) {
-    output.state_->keep = keep;
-  }
-
-  /// Declares that an input moves something: a graph with several writers to it needs an arbiter
-  /// (`exclusive`, a router).
-  template <typename K>
-  void actor(const Input<K>& input) {
-    input.state_->is_actor = true;
-  }
-  /// Declares that of an input only the newest messages count, so that no link to it in a graph
-  /// makes its writer wait, unless the link says otherwise: setpoints, bids, what a person sends.
-  /// @param count  of what waits while the module is busy; 1: the newest alone. Where several
-  ///   sources share a link, enough for one of each.
-  template <typename K>
-  void keep(const Input<K>& input, std::uint32_t count = 1) {
-    input.state_->keep = count;
-  }
-  /// Declares that the outputs route by address: a link gets the messages of its `--route` alone.
-  void route_outputs() { routes_ = true; }
 
   /// Declares a parameter.
   /// @param default_value  a bool, an integer, a number or a string, which is its type too.
@@ -222,9 +204,9 @@ class Module {
   void on_start(std::function<void()> handler) { start_ = std::move(handler); }
   /// Called once, when all inputs have ended, before the outputs do. Not after an error.
   void on_end(std::function<void()> handler) { end_ = std::move(handler); }
-  /// For a module that makes messages unasked: called again and again while no message waits,
-  /// until it gives false. The module ends then.
-  void generate(std::function<bool()> handler) { generate_ = std::move(handler); }
+  /// For a module that makes messages unasked: called again and again while no message waits, until
+  /// stop().
+  void generate(std::function<void()> handler) { generate_ = std::move(handler); }
 
   /// Calls a handler periodically, between messages: first a period after the start. Periods that
   /// were missed are skipped. Does not keep a module running whose inputs have ended.
@@ -245,14 +227,6 @@ class Module {
   /// Does not keep a module running whose inputs have ended.
   Timeout after(std::chrono::nanoseconds duration, std::function<void()> handler);
 
-  /// Has the module run until it is stopped, or has no reader left, though its inputs have ended:
-  /// for a device that sends unasked. Not with `--clock messages`.
-  void keep_running() { keeps_running_ = true; }
-
-  /// Has the module, when it is asked to stop, first take what has come and what still comes from
-  /// modules that end beside it, until none has for 0.2 s, at most 2 s; on_end() is called then.
-  void finish_when_stopped() { finishes_ = true; }
-
   /// Calls a handler when a descriptor of the module's own is readable, such as a device's, or has
   /// failed, between messages. Does not keep a module running whose inputs have ended; a generator
   /// is not woken by it.
@@ -262,13 +236,13 @@ class Module {
     watches_.push_back({std::move(descriptor), std::move(handler)});
   }
 
-  /// Calls a function before the module waits or closes its links, and every 10 ms while messages
-  /// come: for who keeps a lock from one handler to the next, to release it.
-  void before_waiting(std::function<void()> handler) { before_waiting_ = std::move(handler); }
-
   /// For generators: waits until the next period of a rate begins, counted from the first call.
   /// A module that is asked to stop ends here. @param rate [Hz]
   void keep_rate(double rate);
+
+  /// Ends the module when the handler that calls this has returned: on_end() is called, the outputs
+  /// end, and run() gives 0.
+  void stop() { is_done_ = true; }
 
   /// Writes a line to standard error, with the module's name before it.
   /// Of another level than Info it is reported where `hc run` runs the module.
@@ -282,15 +256,9 @@ class Module {
   /// @param count  how many there were.
   void log_once(const std::string& kind, std::string_view line, std::int64_t count = 1);
 
-  /// Has the whole process yield the processor to closed loops: nice 10, batch scheduling. To be
-  /// called before run(); for what takes a core and is in no hurry.
-  void background() { is_background_ = true; }
-
   /// Wall clock, for messages that begin here: the machine's, or with `--clock messages` that of
   /// the messages which come. [ns since the Unix epoch]
   [[nodiscard]] std::int64_t now() const { return message_time_ ? *message_time_ : clock_.wall(); }
-  /// Seconds from a time of a header to now(); negative where it is in the future.
-  [[nodiscard]] double seconds_since(std::int64_t time) const { return seconds(now() - time); }
   /// The same clock for periods and time-outs, which never goes back. What is done in the time of
   /// messages goes by this; what talks to a device at the machine's pace has a clock of its own.
   [[nodiscard]] MonotonicTime monotonic() const {
@@ -299,11 +267,6 @@ class Module {
 
   /// Number of the system mode in focus; 0: none, or the workspace has not repeated it for 120 ms.
   [[nodiscard]] std::int32_t focus() const { return focus_.current; }
-
-  /// For who decides on the focus, and so does not hear it: reports which mode has it, and who
-  /// holds it back, as `hc ps` shows it. Its next process gets `stops` back, in the parameter
-  /// kStops.
-  void report_focus(std::int32_t mode, const Stops& stops = {});
 
   /// Whether the module's mode has the focus, so that exclusive inputs take what it sends. Also
   /// when it has no mode of its own (`--mode`), and when it has no link from a workspace.
@@ -317,14 +280,9 @@ class Module {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Its name in the graph; its name where it runs alone.
   [[nodiscard]] const std::string& instance() const { return instance_; }
-  [[nodiscard]] const std::string& summary() const { return summary_; }
-  [[nodiscard]] const auto& inputs() const { return inputs_; }
-  [[nodiscard]] const auto& outputs() const { return outputs_; }
-  [[nodiscard]] const auto& parameters() const { return parameters_; }
-  [[nodiscard]] const auto& together() const { return together_; }
-  [[nodiscard]] bool routes() const { return routes_; }
 
  private:
+  friend struct ModuleAccess;
   friend void internal::send(internal::OutputState&, Message&&);
   friend std::size_t internal::forward(internal::OutputState&, const Message&);
   friend class Timeout;
@@ -353,9 +311,9 @@ class Module {
   [[nodiscard]] bool is_read() const;
 
   std::shared_ptr<internal::InputState> add_input(std::string name, std::vector<PortType> types,
-                                                  std::string doc);
+                                                  std::string doc, const InputOptions& options);
   std::shared_ptr<internal::OutputState> add_output(std::string name, std::vector<PortType> types,
-                                                    std::string doc);
+                                                    std::string doc, const OutputOptions& options);
   void add_timer(Period period, std::function<void()> handler) {
     timers_.push_back({std::move(period), std::move(handler)});
   }
@@ -379,13 +337,13 @@ class Module {
   std::vector<std::shared_ptr<ParameterState>> parameters_;
   std::vector<std::unique_ptr<internal::TogetherState>> together_;
   std::function<void()> start_, end_, before_waiting_;
-  std::function<bool()> generate_;
-  bool finishes_ = false;
+  std::function<void()> generate_;
   std::vector<Timer> timers_;
   std::vector<Watch> watches_;
   std::vector<std::shared_ptr<Timeout::State>> timeouts_;
   std::map<std::string, std::int64_t> logged_;  // problems of a kind
-  bool routes_ = false, is_background_ = false, keeps_running_ = false;
+  bool is_done_ = false;  // see stop()
+  ModuleOptions options_;
   const Clock& clock_;
   internal::Focus focus_;
   Loop* loop_ = nullptr;                              // while it runs
@@ -393,6 +351,26 @@ class Module {
   std::optional<std::int64_t> message_time_;          // with --clock messages [ns]
   internal::Handled handled_;                         // the message being handled
   std::optional<MonotonicTime> last_period_;          // of keep_rate()
+};
+
+/// For the runtime, the workspace and bindings to other languages.
+struct ModuleAccess {
+  static const auto& inputs(const Module& module) { return module.inputs_; }
+  static const auto& outputs(const Module& module) { return module.outputs_; }
+  static const auto& parameters(const Module& module) { return module.parameters_; }
+  static const auto& together(const Module& module) { return module.together_; }
+  static const std::string& summary(const Module& module) { return module.summary_; }
+  static bool routes(const Module& module) { return module.options_.routes; }
+
+  /// For the arbiter itself, which has no focus: reports which mode has it, and who holds it back,
+  /// as `hc ps` shows it. Its next process gets `stops` back, in the parameter kStops.
+  static void report_focus(Module& module, std::int32_t mode, const Stops& stops);
+
+  /// Calls a function before the module waits or closes its links, and every 10 ms while messages
+  /// come: to release a lock that is kept from one handler to the next.
+  static void before_waiting(Module& module, std::function<void()> handler) {
+    module.before_waiting_ = std::move(handler);
+  }
 };
 
 }  // namespace hc

@@ -52,14 +52,14 @@ std::vector<Message> run_on(Module& module,
 
 TEST(Module, AnswersEachMessageAndKeepsItsTime) {
   Module module{"double", "Doubles positions."};
-  auto in = module.input("in", position<double>(), "");
-  auto out = module.output("out", position<double>().in(3), "");
+  auto in = module.input("in", position(), "");
+  auto out = module.output("out", position().in(3), "");
   auto factor = module.parameter("factor", 2.0, "", "");
   module.on(in, [&](const auto& message) {
-    out.send(position(message.matrix().at(0, 0, 0) * *factor, 0.0, 0.0));
+    out.send({message.matrix().at(0, 0, 0) * *factor, 0.0, 0.0});
   });
   std::vector<Message> taken;
-  for (int i = 1; i <= 3; ++i) taken.push_back(stamped(position(i * 1.0, 0.0, 0.0), 1000 + i, 5));
+  for (int i = 1; i <= 3; ++i) taken.push_back(stamped(position().message({i * 1.0, 0.0, 0.0}), 1000 + i, 5));
   const auto sent = run_on(module, {{"in", taken}}, {"--factor", "10", "--address", "out=77"});
   ASSERT_EQ(sent.size(), 3U);
   for (int i = 1; i <= 3; ++i) {
@@ -76,15 +76,15 @@ TEST(Module, AnswersEachMessageAndKeepsItsTime) {
 
 TEST(Module, ConvertsForTheLinkThatSaysSoAlone) {
   Module module{"camera", "Sends an image, and a number."};
-  auto image = module.output("image", rgb_image<std::uint8_t>().in(Coord::kLeftImage), "");
-  auto number = module.output("number", table<double>(), "");
+  auto image = module.output("image", rgb_image().in(Coord::kLeftImage), "");
+  auto number = module.output("number", table(), "");
   module.generate([&] {
-    auto draft = image.loan(64, 48);
+    auto draft = image.loan(48, 64);
     std::ranges::fill(draft.numbers(), std::uint8_t{100});
     draft.header.time = 12;
     image.send(std::move(draft));
-    number.send(table({1.5}));
-    return false;
+    number.send({1.5});
+    module.stop();
   });
   auto whole = source_of("inproc:m9-whole"), small = source_of("inproc:m9-small"),
        other = source_of("inproc:m9-other");
@@ -106,7 +106,7 @@ TEST(Module, ConvertsForTheLinkThatSaysSoAlone) {
 
 TEST(Module, RefusesALinkThatCannotConvert) {
   Module module{"camera", "Sends nothing."};
-  module.output("image", rgb_image<std::uint8_t>(), "");
+  module.output("image", rgb_image(), "");
   EXPECT_NE(said(module, {"--out=image=inproc:m10?scale=2"}, 2)
                 .find("option scale is a number from 0.01 to 1"),
             std::string::npos);
@@ -115,13 +115,12 @@ TEST(Module, RefusesALinkThatCannotConvert) {
 TEST(Module, SendsWhatIsOnDemandOnlyByALinkOfItsOwn) {
   const auto linked = [](const std::vector<std::string>& arguments) {
     Module module{"numbers", "Sends numbers."};
-    auto always = module.output("always", table<double>(), "a number");
-    auto seldom = module.output("seldom", table<double>(), "another");
-    module.on_demand(seldom);
+    auto always = module.output("always", table(), "a number");
+    auto seldom = module.output("seldom", table(), "another", {.on_demand = true});
     std::pair<bool, bool> found;
     module.generate([&] {
       found = {always.linked(), seldom.linked()};
-      return false;
+      module.stop();
     });
     EXPECT_EQ(run(module, arguments), 0);
     return found;
@@ -132,14 +131,14 @@ TEST(Module, SendsWhatIsOnDemandOnlyByALinkOfItsOwn) {
 
 TEST(Module, ExpandsWhatIsCompressedAndCompressesWhenAsked) {
   Module module{"copy", "Copies images."};
-  auto in = module.input("in", intensity_image<std::uint8_t>(), "");
-  auto out = module.output("out", intensity_image<std::uint8_t>(), "");
+  auto in = module.input("in", intensity_image(), "");
+  auto out = module.output("out", intensity_image(), "");
   module.on(in, [&](const auto& message) {
-    auto draft = out.loan(message.header.width, message.header.height);
+    auto draft = out.loan(message.header.height, message.header.width);
     std::ranges::copy(message.matrix().numbers(), draft.matrix().numbers().begin());
     out.send(std::move(draft));
   });
-  Draft draft = Draft::make(intensity_image<std::uint8_t>().type.info, 32, 8);
+  Draft draft = Draft::make(intensity_image().type.info, 8, 32);
   for (auto& byte : draft.elements()) byte = std::byte{99};
   const auto sent = run_on(module, {{"in", {*compress(std::move(draft).finish(), Encoding::Zstd)}}},
                            {"--encoding=jpeg"});
@@ -151,22 +150,22 @@ TEST(Module, ExpandsWhatIsCompressedAndCompressesWhenAsked) {
 std::vector<Message> at_times(const std::vector<std::int64_t>& times) {
   std::vector<Message> messages;
   for (auto time : times)
-    messages.push_back(stamped(table({static_cast<double>(time)}), time, static_cast<int>(time)));
+    messages.push_back(stamped(table().message({static_cast<double>(time)}), time, static_cast<int>(time)));
   return messages;
 }
 
 /// A module with two inputs.
 struct Pair : Module {
   Pair() : Module("pair", "Pairs.") {}
-  Input<Kind<MatrixType::Table, double>> left = input("left", table<double>(), "");
-  Input<Kind<MatrixType::Table, double>> right = input("right", table<double>(), "");
-  Output<Kind<MatrixType::Table, double>> out = output("out", table<double>(), "");
+  Input<Kind<MatrixType::Table, double>> left = input("left", table(), "");
+  Input<Kind<MatrixType::Table, double>> right = input("right", table(), "");
+  Output<Kind<MatrixType::Table, double>> out = output("out", table(), "");
 };
 
 TEST(Module, TakesTwoInputsTogetherByTime) {
   Pair module;
   module.on(together(module.left, module.right), [&](const auto& a, const auto& b) {
-    module.out.send(table({a.matrix().at(0, 0), b.matrix().at(0, 0)}));
+    module.out.send({a.matrix().at(0, 0), b.matrix().at(0, 0)});
   });
   testing::internal::CaptureStderr();
   auto sent = run_on(module, {{"left", at_times({1, 2, 3, 5})}, {"right", at_times({2, 4, 5, 6})}});
@@ -187,19 +186,19 @@ TEST(Module, TakesTwoInputsTogetherByTime) {
 
 TEST(Module, R43_WhatIsMadeOfSeveralHasTheLatestTime) {
   Module module{"trio", "Takes three kinds."};
-  auto one = module.input("one", table<double>(), "");
+  auto one = module.input("one", table(), "");
   auto two = module.input("two", position<float>(), "");
   auto three = module.input("three", anything(), "");
-  auto out = module.output("out", table<double>(), "");
+  auto out = module.output("out", table(), "");
   module.on(together(one, two, three), [&](const auto& a, const auto& b, const Message& c) {
     EXPECT_EQ(a.header.time, 0);
     EXPECT_EQ(b.matrix().at(0, 0, 0), 0.5F);
-    EXPECT_EQ(c.characters(), "hello");
-    out.send(table({1.0}));
+    EXPECT_EQ(c.text(), "hello");
+    out.send({1.0});
   });
-  auto sent = run_on(module, {{"one", {stamped(table({1.0}), 0, 3)}},
-                              {"two", {stamped(position(0.5F, 0.0F, 0.0F), 130, 7)}},
-                              {"three", {stamped(string("hello"), 0)}}});
+  auto sent = run_on(module, {{"one", {stamped(table().message({1.0}), 0, 3)}},
+                              {"two", {stamped(position<float>().message({0.5F, 0.0F, 0.0F}), 130, 7)}},
+                              {"three", {stamped(string().message("hello"), 0)}}});
   ASSERT_EQ(sent.size(), 1U);
   EXPECT_EQ(sent[0].header.time, 130);
   EXPECT_EQ(sent[0].header.mode, 7);
@@ -208,7 +207,7 @@ TEST(Module, R43_WhatIsMadeOfSeveralHasTheLatestTime) {
 TEST(Module, AnInputThatIsFarAheadWaitsToBeRead) {
   Pair module;
   module.on(together(module.left, module.right),
-            [&](const auto&, const auto&) { module.out.send(table({1.0})); });
+            [&](const auto&, const auto&) { module.out.send({1.0}); });
   std::vector<std::int64_t> often, seldom;
   for (int i = 1; i <= 60; ++i) {
     often.push_back(i);
@@ -228,14 +227,14 @@ TEST(Module, AnInputWithoutALinkEndsWhatIsTakenTogetherWithIt) {
 
 TEST(Module, AnImageMadeOfAnotherKeepsItsCoordinateSystem) {
   Module module{"grey", "Makes images grey."};
-  auto in = module.input("in", rgb_image<std::uint8_t>(), "");
-  auto out = module.output("out", intensity_image<std::uint8_t>(), "");
+  auto in = module.input("in", rgb_image(), "");
+  auto out = module.output("out", intensity_image(), "");
   module.on(in, [&](const auto& message) {
-    out.send(intensity_image<std::uint8_t>(1, 1, message.numbers().first(1)));
+    out.send(message.numbers().first(1));
   });
   const std::uint8_t pixel[] = {1, 2, 3};
-  const auto image = rgb_image<std::uint8_t>(1, 1, pixel);
-  auto sent = run_on(module, {{"in", {image.in(Coord::kRightImage), image}}});
+  auto sent = run_on(module, {{"in", {rgb_image().in(Coord::kRightImage).message(pixel),
+                                      rgb_image().message(pixel)}}});
   ASSERT_EQ(sent.size(), 2U);
   EXPECT_EQ(sent[0].header.coord, Coord::kRightImage);
   EXPECT_EQ(sent[1].header.coord, 0);
@@ -243,26 +242,28 @@ TEST(Module, AnImageMadeOfAnotherKeepsItsCoordinateSystem) {
 
 TEST(Module, AScoreOfAnImageIsNotInItsCoordinateSystem) {
   Module module{"score", "Scores images."};
-  auto in = module.input("in", rgb_image<std::uint8_t>(), "");
-  auto out = module.output("out", table<double>(), "");
-  module.on(in, [&](const auto&) { out.send(table({1.0})); });
+  auto in = module.input("in", rgb_image(), "");
+  auto out = module.output("out", table(), "");
+  module.on(in, [&](const auto&) { out.send({1.0}); });
   const std::uint8_t pixel[] = {1, 2, 3};
   auto sent =
-      run_on(module, {{"in", {rgb_image<std::uint8_t>(1, 1, pixel).in(Coord::kRightImage)}}});
+      run_on(module, {{"in", {rgb_image().in(Coord::kRightImage).message(pixel)}}});
   ASSERT_EQ(sent.size(), 1U);
   EXPECT_EQ(sent[0].header.coord, 0);
 }
 
 TEST(Module, ASetOfOneCoordinateSystemKeepsIt) {
   Module module{"mean", "Takes the mean."};
-  auto one = module.input("one", position<double>(), "");
-  auto two = module.input("two", position<double>(), "");
-  auto out = module.output("out", position<double>(), "");
+  auto one = module.input("one", position(), "");
+  auto two = module.input("two", position(), "");
+  auto out = module.output("out", position(), "");
   module.on(together(one, two),
-            [&](const auto&, const auto&) { out.send(position(1.0, 2.0, 3.0)); });
-  const auto place = position(0.0, 0.0, 0.0);
-  auto sent = run_on(module, {{"one", {place.in(3).at(1), place.in(3).at(2)}},
-                              {"two", {place.in(3).at(1), place.in(2).at(2)}}});
+            [&](const auto&, const auto&) { out.send({1.0, 2.0, 3.0}); });
+  auto place = [](std::int32_t coord, std::int64_t time) {
+    return stamped(position().in(coord).message({0, 0, 0}), time);
+  };
+  auto sent =
+      run_on(module, {{"one", {place(3, 1), place(3, 2)}}, {"two", {place(3, 1), place(2, 2)}}});
   ASSERT_EQ(sent.size(), 2U);
   EXPECT_EQ(sent[0].header.coord, 3);
   EXPECT_EQ(sent[1].header.coord, 0);
@@ -271,13 +272,13 @@ TEST(Module, ASetOfOneCoordinateSystemKeepsIt) {
 TEST(Module, AnInputOfFiniteNumbersDropsOthersAndCountsThem) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   Module module{"sum", "Adds."};
-  auto in = module.input("in", rotation<double>().of(1, 1).finite(), "");
-  auto out = module.output("out", rotation<double>(), "");
+  auto in = module.input("in", rotation().of(1, 1).finite(), "");
+  auto out = module.output("out", rotation(), "");
   module.on(in, [&](const auto& message) { out.send(message); });
   testing::internal::CaptureStderr();
   auto sent = run_on(module, {{"in",
-                               {rotation(0.0, kNan, 0.0), rotation(1.0, 2.0, 3.0),
-                                rotation(0.0, 0.0, std::numeric_limits<double>::infinity())}}});
+                               {rotation().message({0.0, kNan, 0.0}), rotation().message({1.0, 2.0, 3.0}),
+                                rotation().message({0.0, 0.0, std::numeric_limits<double>::infinity()})}}});
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
             "sum: in: dropped: NaN or infinity (further ones are counted, not logged)\n"
             "sum: total: 2 not finite\n");
@@ -287,7 +288,7 @@ TEST(Module, AnInputOfFiniteNumbersDropsOthersAndCountsThem) {
 
 TEST(Module, ATimeoutFiresOnceEachTimeItIsStarted) {
   ManualClock clock;
-  Module module{"watchdog", "Waits.", clock};
+  Module module{"watchdog", "Waits.", {.clock = &clock}};
   std::vector<std::string> log;
   int turns = 0;
   auto first = module.after(std::chrono::seconds(2), [&] { log.emplace_back("first"); });
@@ -299,7 +300,7 @@ TEST(Module, ATimeoutFiresOnceEachTimeItIsStarted) {
     log.push_back(std::to_string(++turns));
     if (turns == 3) first.restart();
     if (turns == 4) first.restart(std::chrono::seconds(1));
-    return turns < 7;
+    if (turns >= 7) module.stop();
   });
   EXPECT_EQ(run(module, {}), 0);
   EXPECT_EQ(log, (std::vector<std::string>{"1", "2", "first", "3", "4", "5", "first", "6", "7"}));
@@ -323,7 +324,7 @@ TEST(Module, ADescriptorIsReadWhenItIsReadable) {
     if (turns == 2) {
       EXPECT_EQ(::write(pipe[1], "ab", 2), 2);
     }
-    return turns < 6;
+    if (turns >= 6) module.stop();
   });
   EXPECT_EQ(run(module, {}), 0);
   EXPECT_EQ(read_at, (std::vector<int>{2, 3}));
@@ -332,13 +333,12 @@ TEST(Module, ADescriptorIsReadWhenItIsReadable) {
 }
 
 TEST(Module, OneInTheBackgroundYieldsTheProcessor) {
-  Module module{"thinker", "Thinks."};
-  module.background();
+  Module module{"thinker", "Thinks.", {.background = true}};
   int nice = 0, policy = -1;
   module.generate([&] {
     nice = ::getpriority(PRIO_PROCESS, 0);
     policy = ::sched_getscheduler(0);
-    return false;
+    module.stop();
   });
   std::thread([&] { EXPECT_EQ(run(module, {}), 0); }).join();  // this thread's alone
   EXPECT_EQ(nice, 10);
@@ -347,7 +347,7 @@ TEST(Module, OneInTheBackgroundYieldsTheProcessor) {
 
 TEST(Module, ABadMessageIsOneBadMessage) {
   Module module{"strict", "Takes positions."};
-  auto in = module.input("in", any_of(position<double>(), rgb_image<std::uint8_t>()), "");
+  auto in = module.input("in", any_of(position(), rgb_image()), "");
   int handled = 0;
   module.on(in, [&](const Message& message) {
     if (message.header.seq == 3) throw BadMessage("it is the third");
@@ -363,13 +363,13 @@ TEST(Module, ABadMessageIsOneBadMessage) {
   image.elements = std::as_bytes(std::span(garbage));
   Message frame = image;
   frame.header.info.encoding = Encoding::Zstd;
-  Message refused = position(1.0, 2.0, 3.0);
+  Message refused = position().message({1.0, 2.0, 3.0});
   refused.header.seq = 3;
   Message unheard_of = refused;
   unheard_of.header.seq = 4;
   for (const Message& message :
-       std::initializer_list<Message>{position(1.0, 2.0, 3.0), table({1.0}), image, frame, refused,
-                                      unheard_of, position(1.0, 2.0, 3.0)})
+       std::initializer_list<Message>{position().message({1.0, 2.0, 3.0}), table().message({1.0}), image, frame, refused,
+                                      unheard_of, position().message({1.0, 2.0, 3.0})})
     ASSERT_TRUE(sink->send(message));
   ASSERT_TRUE(sink->close());
   EXPECT_EQ(
@@ -383,14 +383,14 @@ TEST(Module, ABadMessageIsOneBadMessage) {
 
 TEST(Module, WhatALibraryThrowsIsLoggedWithoutItsSources) {
   Module module{"strict", "Takes no message."};
-  auto in = module.input("in", table<double>(), "");
+  auto in = module.input("in", table(), "");
   module.on(in, [](const auto&) {
     throw std::runtime_error(
         "OpenCV(4.6.0) ./alloc.cpp:73: error: (-4:Insufficient memory) Failed to allocate 8 bytes "
         "in function 'OutOfMemoryError'\n");
   });
   auto sink = sink_of("inproc:m_library");
-  ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(sink->send(table().message({1.0})));
   ASSERT_TRUE(sink->close());
   EXPECT_TRUE(said(module, {"--in", "inproc:m_library"})
                   .starts_with("strict: in: dropped: System: OpenCV: (-4:Insufficient memory) "
@@ -414,17 +414,17 @@ TEST(Module, ABadSetIsDropped) {
 
 TEST(Module, ABadFocusIsOneBadMessage) {
   Module module{"actor", "Acts."};
-  auto in = module.input("in", table<double>(), "");
+  auto in = module.input("in", table(), "");
   std::vector<bool> had;
   module.on(in, [&](const auto&) { had.push_back(module.has_focus()); });
   auto focus = sink_of("inproc:m_focus"), sink = sink_of("inproc:m_in");
-  Message none = table<std::int32_t>({0});
+  Message none = table<std::int32_t>().message({0});
   none.header.height = 0;
   none.elements = {};
   for (const Message& message :
-       {Message(table<std::int32_t>({2})), Message(position(1.0, 2.0, 3.0)), none})
+       {Message(table<std::int32_t>().message({2})), Message(position().message({1.0, 2.0, 3.0})), none})
     ASSERT_TRUE(focus->send(message));
-  ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(sink->send(table().message({1.0})));
   ASSERT_TRUE(sink->close());
   EXPECT_EQ(said(module, {"--in=inproc:m_in", "--in=focus=inproc:m_focus", "--mode=2"}),
             "actor: focus: dropped: the elements are position of 3 x f64, text, not plain i32 "
@@ -437,13 +437,13 @@ TEST(Module, AFileWithBadMessagesIsReadToItsEndAndAFailure) {
   {
     auto sink = sink_of("file:" + file);
     for (double number : {1.0, 2.0}) {
-      ASSERT_TRUE(sink->send(position(1.0, 2.0, 3.0)));
-      ASSERT_TRUE(sink->send(table({number})));
+      ASSERT_TRUE(sink->send(position().message({1.0, 2.0, 3.0})));
+      ASSERT_TRUE(sink->send(table().message({number})));
     }
     ASSERT_TRUE(sink->close());
   }
   Module module{"adder", "Adds."};
-  auto in = module.input("in", table<double>(), "");
+  auto in = module.input("in", table(), "");
   double sum = 0;
   module.on(in, [&](const auto& message) { sum += message.matrix().at(0, 0); });
   EXPECT_EQ(said(module, {"--in", "file:" + file}, 1),
@@ -455,10 +455,9 @@ TEST(Module, AFileWithBadMessagesIsReadToItsEndAndAFailure) {
 
 TEST(Module, EndsWhenNobodyReadsItAnyMore) {
   Module module{"source", "Makes numbers."};
-  auto out = module.output("out", table<double>(), "");
+  auto out = module.output("out", table(), "");
   module.generate([&] {
-    out.send(table({1.0}));
-    return true;
+    out.send({1.0});
   });
   auto source = source_of("inproc:m5");
   std::thread reader([&] {
@@ -471,12 +470,12 @@ TEST(Module, EndsWhenNobodyReadsItAnyMore) {
 
 TEST(Module, ReportsItsCounters) {
   Module module{"counted", "Counts."};
-  auto in = module.input("in", table<double>(), "");
-  auto out = module.output("out", table<double>(), "");
-  module.on(in, [&](const auto&) { out.send(table({1.0, 2.0})); });
+  auto in = module.input("in", table(), "");
+  auto out = module.output("out", table(), "");
+  module.on(in, [&](const auto&) { out.send({1.0, 2.0}); });
   auto sink = sink_of("inproc:m6-in");
   auto source = source_of("inproc:m6-out"), manage = source_of("inproc:m6-manage");
-  for (int i = 0; i < 7; ++i) ASSERT_TRUE(sink->send(table({1.0})));
+  for (int i = 0; i < 7; ++i) ASSERT_TRUE(sink->send(table().message({1.0})));
   ASSERT_TRUE(sink->close());
   EXPECT_EQ(run(module, {"--in=inproc:m6-in", "--out=inproc:m6-out", "--manage=inproc:m6-manage"}),
             0);
@@ -503,8 +502,8 @@ TEST(Module, ABadCommandLineIsStatusTwoAndOneLine) {
   };
   for (const auto& [words, line] : cases) {
     Module module{"blob", "Finds blobs."};
-    auto in = module.input("in", position<double>(), "");
-    auto out = module.output("out", position<double>(), "");
+    auto in = module.input("in", position(), "");
+    auto out = module.output("out", position(), "");
     auto hue = module.parameter("hue", 0.3, "turn", "", {.min = 0, .max = 1, .positional = true});
     auto on = module.parameter("on", false, "", "");
     EXPECT_EQ(said(module, words, 2), "blob: Invalid: " + std::string(line) + "\n");
@@ -513,10 +512,10 @@ TEST(Module, ABadCommandLineIsStatusTwoAndOneLine) {
 
 TEST(Module, DescribesItself) {
   Module module{"blob", "Finds the \"largest\" blob."};
-  auto in = module.input("image", any_of(rgb_image<std::uint8_t>().in(7)), "image");
+  auto in = module.input("image", any_of(rgb_image().in(7)), "image");
   auto depth = module.input("depth", anything(), "its depth");
   module.on(together(in, depth), [](const auto&, const auto&) {});
-  auto out = module.output("target", position<double>(), "centre");
+  auto out = module.output("target", position(), "centre");
   auto hue = module.parameter("hue", 0.5, "turn", "colour", {.min = 0, .max = 1});
   auto how = module.parameter("how", "fast", "", "way", {.choices = {"fast", "good"}});
   EXPECT_EQ(
@@ -550,10 +549,10 @@ TEST(Module, AWrongUriIsWrongUsage) {
 
 TEST(Module, HandlersFailWithOneLine) {
   Module module{"broken", "Fails."};
-  auto in = module.input("in", table<double>(), "");
+  auto in = module.input("in", table(), "");
   module.on(in, [](const auto&) { throw ModuleError("no camera"); });
   auto sink = sink_of("inproc:m7");
-  ASSERT_TRUE(sink->send(table({1.0})));
+  ASSERT_TRUE(sink->send(table().message({1.0})));
   EXPECT_EQ(said(module, {"--in", "inproc:m7"}, 1), "broken: no camera\n");
 }
 

@@ -75,13 +75,13 @@ std::shared_ptr<Outlet> Module::Outlets::open(const Uri& uri, const std::string&
 
 void Module::Outlets::open(const internal::PortLink& link) {
   auto& output = output_of(link);
-  output.links.push_back(open(link.uri, output.name, output.keep));
+  output.links.push_back(open(link.uri, output.name, output.options.keep));
 }
 
 void Module::Outlets::open(const internal::Arguments& arguments) {
   is_late_ = arguments.joins;
   for (const auto& link : arguments.outputs) open(link);
-  const auto shares = [](const auto& output) { return !output->is_on_demand; };
+  const auto shares = [](const auto& output) { return !output->options.on_demand; };
   const auto first = std::ranges::find_if(module_.outputs_, shares);
   if (first != module_.outputs_.end() && !arguments.control &&
       std::ranges::all_of(arguments.outputs, &internal::PortLink::is_trace)) {

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <hc/base/clock.h>
@@ -20,6 +23,26 @@
 namespace hc {
 
 class Module;
+
+/// What a graph is to know of an input.
+struct InputOptions {
+  /// It moves something: a graph with several writers to it needs an arbiter (`exclusive`, a
+  /// router).
+  bool actor = false;
+  /// > 0: only so many of the newest messages count while the module is busy, so that no link to it
+  /// in a graph makes its writer wait, unless the link says otherwise. For setpoints, bids,
+  /// commands of a person. Where several sources share a link, enough for one of each.
+  std::uint32_t keep = 0;
+};
+
+struct OutputOptions {
+  /// It is sent only by a link to it alone, and has no part in the standard output that outputs
+  /// share: it costs time, and few readers want it.
+  bool on_demand = false;
+  /// > 0: sending never waits, whatever its links say. Without a reader a message is lost, and for
+  /// a slow reader so many of the newest wait. For a module that has other work to do in time.
+  std::uint32_t keep = 0;
+};
 
 namespace internal {
 
@@ -48,10 +71,9 @@ struct InputState {
   std::size_t place = 0;                  ///< of this one among them
   bool is_unmatched = false;  ///< a message was dropped for want of a partner, and it is logged
   bool is_raw = false;        ///< the handler gets messages as they came, compressed ones too
-  bool is_actor = false;      ///< moves something: one writer at a time is to have it
   bool is_exclusive = false;  ///< takes messages of the mode in focus alone
   bool is_finite = false;     ///< drops messages with NaN or infinity
-  std::uint32_t keep = 0;     ///< see Module::keep(); 0: not said
+  InputOptions options;
 };
 
 /// What an output takes over from the message that is being handled.
@@ -98,8 +120,7 @@ struct OutputState {
   std::int32_t address = 0;          ///< src of its messages
   std::int32_t to = 0;               ///< dst of those that have none
   std::optional<Encoding> encoding;  ///< asked for on the command line
-  bool is_on_demand = false;         ///< see Module::on_demand()
-  std::uint32_t keep = 0;            ///< see Module::never_waits(); 0: it waits as its links say
+  OutputOptions options;
   std::int64_t seq = 0;
   std::vector<std::shared_ptr<Outlet>> links;
   Module* module = nullptr;
@@ -145,20 +166,47 @@ requires(sizeof...(Kinds) >= 2) Together<Kinds...> together(const Input<Kinds>&.
 }
 
 /// An output port of kind K.
+///
+/// What is sent gets a header: src, seq and encoding always; dst, mode, coord and time where they
+/// are 0: dst by `--to`, mode and time by those of the message being handled, since what is derived
+/// from a message keeps its time; and coord by the port's, else by that of the message being
+/// handled where both are images or of one type.
 template <typename K>
 class Output {
  public:
+  using Scalar = typename K::Scalar;
+
   explicit Output(std::shared_ptr<internal::OutputState> state) : state_(std::move(state)) {}
 
-  /// Sends a message to every link of the port. The header's src, seq and encoding are filled in;
-  /// dst, mode, coord and time where they are 0: dst by `--to`, mode and time by those of the
-  /// message being handled, since what is derived from a message keeps its time; and coord by the
-  /// port's, else by that of the message being handled where both are images or of one type.
-  void send(MessageOf<K> message) { internal::send(*state_, std::move(message)); }
+  /// Sends numbers, row by row, in the shape of the port: see Kind::message().
+  ///
+  ///     mean.send({average});
+  ///     command.send({0, tilt, pan}, module.now());
+  ///
+  /// @param time  when what they say happened [ns since the Unix epoch]; 0: see above.
+  /// @param coord  their coordinate system; 0: see above.
+  void send(std::initializer_list<Scalar> numbers, std::int64_t time = 0, std::int32_t coord = 0) {
+    send(K(state_->type()).message(numbers), time, coord);
+  }
+  void send(std::span<const Scalar> numbers, std::int64_t time = 0, std::int32_t coord = 0) {
+    send(K(state_->type()).message(numbers), time, coord);
+  }
+  /// Sends one row of text.
+  void send(std::string_view text, std::int64_t time = 0, std::int32_t coord = 0)
+      requires(std::is_same_v<K, StringKind>) {
+    send(K(state_->type()).message(text), time, coord);
+  }
+  /// Sends a message; a time and a coord of 0 leave its own.
+  void send(MessageOf<K> message, std::int64_t time = 0, std::int32_t coord = 0) {
+    if (time != 0) message.header.time = time;
+    if (coord != 0) message.header.coord = coord;
+    internal::send(*state_, std::move(message));
+  }
+  /// Sends what loan() gave.
   void send(DraftOf<K>&& draft) { internal::send(*state_, std::move(draft).finish()); }
 
   /// A message to be written in place and sent, which saves a copy of large elements.
-  [[nodiscard]] DraftOf<K> loan(std::int32_t width, std::int32_t height) const {
+  [[nodiscard]] DraftOf<K> loan(std::int32_t height, std::int32_t width) const {
     Header header;
     header.info = state_->type().info;
     header.width = width;

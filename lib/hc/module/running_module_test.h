@@ -32,16 +32,16 @@ struct Taker : Module {
   explicit Taker(const std::string& name = "sink") : Module(name, "Takes.") {
     on(in, [](const auto&) {});
   }
-  Input<Kind<MatrixType::Table, double>> in = input("in", table<double>(), "");
+  Input<Kind<MatrixType::Table, double>> in = input("in", table(), "");
 };
 
 /// A module that sends on the numbers that it takes.
 struct Relay : Module {
   explicit Relay(const std::string& name = "relay") : Module(name, "Sends on.") {
-    on(in, [this](const Doubles& m) { out.send(table({m.matrix().at(0, 0)})); });
+    on(in, [this](const Doubles& m) { out.send({m.matrix().at(0, 0)}); });
   }
-  Input<Kind<MatrixType::Table, double>> in = input("in", table<double>(), "");
-  Output<Kind<MatrixType::Table, double>> out = output("out", table<double>(), "");
+  Input<Kind<MatrixType::Table, double>> in = input("in", table(), "");
+  Output<Kind<MatrixType::Table, double>> out = output("out", table(), "");
 };
 
 inline Message in_mode(Message message, std::int32_t mode) {

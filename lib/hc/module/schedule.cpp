@@ -32,8 +32,11 @@ class Module::Schedule::Live final : public Schedule {
     const bool any = loop_.inlets.take_each();
     loop_.work_between_messages();
     if (any) return true;
-    if (loop_.module.generate_) return loop_.generate();
-    if (!loop_.module.keeps_running_ && loop_.inlets.all_ended()) return false;
+    if (loop_.module.generate_) {
+      loop_.generate();
+      return true;
+    }
+    if (!loop_.module.options_.keep_running && loop_.inlets.all_ended()) return false;
     was_wait_short_ = loop_.wait(true, loop_.timers.next());
     return true;
   }
@@ -87,7 +90,8 @@ class Module::Schedule::ByMessages : public Schedule {
     if (next == Next::Advance) return true;
     if (next == Next::Generate) {
       has_generated_ = true;
-      return loop_.generate();
+      loop_.generate();
+      return true;
     }
     if (loop_.inlets.all_ended()) return false;
     loop_.wait(true, MonotonicTime::max());
@@ -216,8 +220,8 @@ class Module::Schedule::Replay final : public ByMessages {
       handle_head_of(event);
     else if (event.number != TraceEvent::kGenerator)
       loop_.timers.fire(static_cast<std::size_t>(event.number));
-    else if (loop_.module.generate_ && !loop_.module.generate_())
-      events_.clear();
+    else if (loop_.module.generate_)
+      loop_.module.generate_();
   }
 
   void handle_head_of(const TraceEvent& event) {

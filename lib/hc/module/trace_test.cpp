@@ -45,17 +45,17 @@ std::vector<TraceEvent> events_of(Source& trace) {
 
 TEST_F(RunningModule, ReportsWhenItTookHandledAndSent) {
   ManualClock clock;
-  Module module{"slow", "Takes 3 ms.", clock};
-  auto in = module.input("in", table<double>(), "");
-  auto out = module.output("out", table<double>(), "");
+  Module module{"slow", "Takes 3 ms.", {.clock = &clock}};
+  auto in = module.input("in", table(), "");
+  auto out = module.output("out", table(), "");
   module.on(in, [&](const Doubles& m) {
     clock.advance(std::chrono::milliseconds(3));
-    out.send(table({m.matrix().at(0, 0)}));
+    out.send({m.matrix().at(0, 0)});
     clock.advance(std::chrono::milliseconds(1));
   });
   auto first = sink_of(uri("in"));
   auto trace = source_of(uri("trace")), done = source_of(uri("out"));
-  ASSERT_TRUE(first->send(at(table({1.0}), 1000, 7)));
+  ASSERT_TRUE(first->send(at(table().message({1.0}), 1000, 7)));
   ASSERT_TRUE(first->close());
   start(module, {"--in=" + uri("in"), "--out=" + uri("out"), "--out=trace=" + uri("trace")});
   const auto events = events_of(*trace);
@@ -68,13 +68,13 @@ TEST_F(RunningModule, ReportsWhenItTookHandledAndSent) {
 
 TEST_F(RunningModule, ReportsEachMessageThatIsTakenTogether) {
   Module module{"pair", "Takes two together."};
-  auto left = module.input("left", table<double>(), ""),
-       right = module.input("right", table<double>(), "");
+  auto left = module.input("left", table(), ""),
+       right = module.input("right", table(), "");
   module.on(together(left, right), [](const auto&, const auto&) {});
   auto one = sink_of(uri("left")), other = sink_of(uri("right"));
   auto trace = source_of(uri("trace"));
-  ASSERT_TRUE(one->send(at(table({1.0}), 1000, 7)));
-  ASSERT_TRUE(other->send(at(table({1.0}), 1000, 9)));
+  ASSERT_TRUE(one->send(at(table().message({1.0}), 1000, 7)));
+  ASSERT_TRUE(other->send(at(table().message({1.0}), 1000, 9)));
   ASSERT_TRUE(one->close());
   ASSERT_TRUE(other->close());
   start(module,
@@ -93,7 +93,7 @@ TEST_F(RunningModule, IsTracedFromACommandOn) {
   start_managed(module, {"--in=" + uri("in")});
   EXPECT_EQ(next_links().size(), 1U);
   EXPECT_EQ(relink("link out trace=" + uri("trace"))[1], "out trace " + uri("trace"));
-  ASSERT_TRUE(sink->send(at(table({1.0}), 1000, 7)));
+  ASSERT_TRUE(sink->send(at(table().message({1.0}), 1000, 7)));
   Message message = next(*trace);  // while it runs
   EXPECT_EQ(
       words(read_trace(message)),
@@ -109,7 +109,7 @@ TEST_F(RunningModule, IsTracedFromACommandOn) {
 
 TEST_F(RunningModule, GoesOnWhenNobodyReadsItsTrace) {
   Module module{"sink", "Takes."};
-  auto in = module.input("in", table<double>(), "");
+  auto in = module.input("in", table(), "");
   int taken = 0;
   module.on(in, [&](const auto&) { ++taken; });
   auto sink = sink_of(uri("in"));
@@ -118,7 +118,7 @@ TEST_F(RunningModule, GoesOnWhenNobodyReadsItsTrace) {
   EXPECT_EQ(next_links().size(), 2U);
   trace.reset();
   for (int i = 0; i < 2; ++i) {
-    ASSERT_TRUE(sink->send(at(table({1.0}), 1000, i)));
+    ASSERT_TRUE(sink->send(at(table().message({1.0}), 1000, i)));
     while (next_counters(*reports_)[0][0] <= i) {
     }
   }
@@ -152,16 +152,16 @@ class TracedEffort : public RunningModule {
   /// @param commands  are obeyed before the first message.
   Effort measure(const std::vector<std::string>& more, const std::vector<std::string>& commands) {
     CountingClock clock;
-    Module module{"double", "Doubles.", clock};
-    auto in = module.input("in", table<double>(), "");
-    auto out = module.output("out", table<double>(), "");
+    Module module{"double", "Doubles.", {.clock = &clock}};
+    auto in = module.input("in", table(), "");
+    auto out = module.output("out", table(), "");
     Effort begin, end;
     int handled = 0;
     module.on(in, [&](const Doubles& message) {
       ++handled;
       if (handled == kBegin) begin = {hc::allocations.count, clock.looks, 0};
       if (handled == kEnd) end = {hc::allocations.count, clock.looks, 0};
-      out.send(table({2 * message.numbers()[0]}));
+      out.send({2 * message.numbers()[0]});
     });
     std::filesystem::remove(trace_);
     std::vector<std::string> words = {"--in=file:" + in_, "--out=out=file:" + out_};
@@ -180,7 +180,7 @@ class TracedEffort : public RunningModule {
 
   void SetUp() override {
     auto sink = sink_of("file:" + in_);
-    for (int i = 0; i < kEnd + 1; ++i) ASSERT_TRUE(sink->send(at(table({1.0}), 1000, i)));
+    for (int i = 0; i < kEnd + 1; ++i) ASSERT_TRUE(sink->send(at(table().message({1.0}), 1000, i)));
     ASSERT_TRUE(sink->close());
   }
   void TearDown() override {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Messages to bytes (spec/mtp-1.md). Pure. stream_reader.h is the way back.
+// Encoding of messages (spec/mtp-1.md); stream_reader.h decodes them. Pure.
 
 #include <array>
 #include <cstddef>
@@ -12,15 +12,15 @@
 
 namespace hc {
 
-/// A message as it goes onto a wire: pieces to be written one after the other.
-/// Lives no longer than the encoder that gave it and the message's elements.
+/// An encoded message: pieces to be written in this order. They view memory of the encoder and the
+/// message's elements.
 using Pieces = std::array<std::span<const std::byte>, 3>;
 
-/// Writes messages in canonical form. Keeps its memory from one message to the next.
+/// Encodes messages in canonical form. Reuses its memory.
 class Encoder {
  public:
-  /// The pieces of `message`: header, elements (in place when they are binary or compressed), end.
-  /// A message whose elements do not match its header is a bug.
+  /// The pieces: header, elements (in place if they are binary or compressed), closing line feed.
+  /// Elements that do not match the header are a bug.
   Pieces encode(const Message& message);
 
  private:
@@ -29,7 +29,7 @@ class Encoder {
   std::array<char, kMaxHeaderBytes + 32> head_;
 };
 
-/// The bytes of a message, all in one. For files and tests; links use Encoder.
+/// The encoded message as one string. For files and tests; links use Encoder.
 std::string encode(const Message& message);
 
 }  // namespace hc

@@ -20,7 +20,7 @@ std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text));
 }
 
-/// Any message: every type, scalar and plain encoding, small.
+/// A random small message of any type, scalar and plain encoding.
 Message random_message(std::mt19937_64& random) {
   auto pick = [&](std::uint64_t count) { return random() % count; };
   Header header;
@@ -41,7 +41,7 @@ Message random_message(std::mt19937_64& random) {
   Draft draft = Draft::make(header);
   for (auto& byte : draft.elements()) byte = static_cast<std::byte>(random());
   if (header.info.encoding == Encoding::Text) {
-    // Text does not keep the sign and payload of what is not a number.
+    // Text loses the sign and payload of NaN.
     auto clean = [&](auto zero) {
       for (auto& number : draft.view<decltype(zero)>().numbers())
         if (std::isnan(number)) number = std::numeric_limits<decltype(zero)>::quiet_NaN();
@@ -61,7 +61,7 @@ TEST(Codec, AMillionRandomMessagesComeBackToTheBit) {
     auto used = must(decode(bytes_of(bytes), again));
     ASSERT_EQ(used, bytes.size());
     ASSERT_EQ(again.header, message.header);
-    ASSERT_EQ(again.characters(), message.characters()) << bytes;
+    ASSERT_EQ(again.text(), message.text()) << bytes;
     ASSERT_EQ(encode(again), bytes);
   }
 }
@@ -69,7 +69,7 @@ TEST(Codec, AMillionRandomMessagesComeBackToTheBit) {
 TEST(Codec, ElementsAreAlwaysAligned) {
   for (std::size_t shift = 0; shift < 8; ++shift) {
     std::string bytes =
-        encode(std::move(Draft::make({MatrixType::Table, 1, Scalar::F64, Encoding::Binary}, 3, 1))
+        encode(std::move(Draft::make({MatrixType::Table, 1, Scalar::F64, Encoding::Binary}, 1, 3))
                    .finish());
     bytes.insert(0, shift, ' ');  // spaces before a header are allowed
     Message message;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The coordinate systems that have a number (spec/mtp-1.md, R44). Pure.
+// The numbered coordinate systems (spec/mtp-1.md, R44). Pure.
 
 #include <cstdint>
 #include <span>
@@ -9,10 +9,10 @@
 
 namespace hc {
 
-/// A coordinate system of the specification: what a header's `coord` names.
+/// A coordinate system of the specification, as in a header's `coord`.
 ///
-///     auto gaze = module.output("gaze", hc::rotation<double>().of(1, 1).in(hc::Coord::kGaze),
-///     "…"); if (message.header.coord == hc::Coord::kLeftImage) …
+///     auto gaze = module.output("gaze", hc::rotation().of(1, 1).in(hc::Coord::kGaze), "…");
+///     if (message.header.coord == hc::Coord::kLeftImage) …
 struct Coord {
   static constexpr std::int32_t kWorld = 1, kRobot = 2, kHead = 3;
   static constexpr std::int32_t kLeftEye = 4, kRightEye = 5, kCyclopeanEye = 6;
@@ -27,24 +27,24 @@ struct Coord {
   std::int32_t number = 0;
   std::string_view name;
   std::string_view doc;   ///< unit and structure
-  bool is_frame = false;  ///< a metric frame, in which a place or a pose is
+  bool is_frame = false;  ///< a metric frame, for positions and poses
 };
 
-/// All of them, by number.
+/// All coordinate systems, ordered by number.
 std::span<const Coord> coords();
 
-/// The one of that number or name; null where there is none.
+/// The coordinate system with a number or name; null if there is none.
 const Coord* find_coord(std::int32_t number);
 const Coord* find_coord(std::string_view name);
 
-/// The coord of a transformation that takes points from a frame to another, 1000 · to + from.
+/// The coord of a transformation of points from one frame to another, 1000 · to + from.
 constexpr std::int32_t transform_coord(std::int32_t to, std::int32_t from) {
   return 1000 * to + from;
 }
 
-/// A header's coord for people: "gaze", "world from head", "123".
+/// A readable `coord`: "gaze", "world from head", "123".
 std::string coord_text(std::int32_t coord);
-/// The same with the number, where it has a name: "gaze (13)", "123".
+/// Also with the number: "gaze (13)", "123".
 std::string coord_and_number(std::int32_t coord);
 
 }  // namespace hc

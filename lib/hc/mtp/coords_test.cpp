@@ -27,7 +27,7 @@ std::map<int, std::string> table_of_specification() {
     for (std::sregex_iterator each(names.begin(), names.end(), name), end; each != end; ++each)
       table[number++] = (*each)[1];
   }
-  table.erase(0);  // none
+  table.erase(0);  // 0 is no coordinate system
   return table;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Decimal digits, eight at a time in one machine word. Internal. Pure.
+// Conversion of decimal digits, eight at a time in a 64-bit word. Internal. Pure.
 // Source: the word tricks are in H. S. Warren, Hacker's Delight, 2nd ed., chapters 6 and 10.
 
 #include <bit>
@@ -13,7 +13,7 @@
 namespace hc::internal {
 
 static_assert(std::endian::native == std::endian::little,
-              "the binary form and the word tricks want a little-endian machine");
+              "the binary form and the word tricks require a little-endian machine");
 
 inline std::uint64_t load8(const char* at) {
   std::uint64_t word;
@@ -30,7 +30,7 @@ inline std::uint64_t non_digits(std::uint64_t word) {
   return (((value & ~kHigh) + 0x7676767676767676) | value) & kHigh;
 }
 
-/// The value of eight digits, the first in the lowest byte.
+/// The value of eight digits, the first one in the lowest byte.
 inline std::uint64_t value_of_digits(std::uint64_t word) {
   word -= kZeros;
   word = word * 10 + (word >> 8);  // pairs, in every second byte
@@ -39,7 +39,7 @@ inline std::uint64_t value_of_digits(std::uint64_t word) {
          32;
 }
 
-/// Eight digits of `value` < 10⁸, the first in the lowest byte.
+/// The eight digits of `value` < 10⁸, the first one in the lowest byte.
 inline std::uint64_t digits_of_value(std::uint64_t value) {
   std::uint64_t high = value / 10000, low = value % 10000;
   std::uint64_t halves = high | (low << 32);
@@ -49,11 +49,11 @@ inline std::uint64_t digits_of_value(std::uint64_t value) {
   return (tens | ((pairs - 10 * tens) << 8)) | kZeros;
 }
 
-/// The result of reading a number: good, or the number of the rule that it breaks (R27, R28).
+/// The result of parsing a number: good, or the number of the rule that it breaks (R27, R28).
 enum class Outcome { Good, NotANumber = 27, OutOfRange = 28 };
 
-/// Reads a number at the start of [first, last); `next` is the byte behind it. NotANumber applies
-/// to the whole token, wherever its spelling breaks the rule.
+/// Parses an integer at the start of [first, last); `next` is the byte after it. A token that
+/// breaks the spelling is NotANumber even if its value is out of range, too.
 template <typename T>
 Outcome read_integer(const char* first, const char* last, T& value, const char*& next) {
   const char* at = first;
@@ -85,12 +85,12 @@ Outcome read_integer(const char* first, const char* last, T& value, const char*&
   return status == std::errc() ? Outcome::Good : Outcome::OutOfRange;
 }
 
-/// Writes an integer in decimal at `at`, which has room for 20 bytes; returns where it ended.
+/// Writes an integer in decimal at `at`, which has room for 20 bytes; returns its end.
 template <typename T>
 char* write_integer(char* at, T value) {
   constexpr std::uint64_t kTenTo8 = 100'000'000;
   auto magnitude = static_cast<std::uint64_t>(+value);  // promoted, then widened
-  if (magnitude < 10) {                                 // the most common, so inlined
+  if (magnitude < 10) {                                 // the most common case
     *at = static_cast<char>('0' + magnitude);
     return at + 1;
   }

@@ -14,12 +14,12 @@ constexpr std::uint16_t kFloats = 0x300;
 constexpr std::uint16_t kU8 = 0x001;
 constexpr std::uint16_t kU8U16Floats = 0x305;
 
-/// One row of the specification's registry of matrix types.
+/// A row of the specification's registry of matrix types.
 struct TypeRule {
   std::string_view name;
-  std::uint16_t scalars;     ///< bit S: the type has scalar S
+  std::uint16_t scalars;     ///< bit S: the type may have scalar S
   std::uint8_t least, most;  ///< components
-  bool by_threes;            ///< only every third number of components
+  bool by_threes;            ///< components must be a multiple of 3
   std::string_view components_in_words;
 };
 
@@ -100,8 +100,8 @@ std::optional<InfoError> find_error(const Info& info) {
   int rule = broken_rule(info);
   if (rule == 0) return std::nullopt;
   if (rule == 17)
-    return InfoError{17,
-                     std::to_string(static_cast<int>(info.type)) + " is no matrix type (1 to 12)"};
+    return InfoError{
+        17, std::to_string(static_cast<int>(info.type)) + " is not a matrix type (1 to 12)"};
 
   std::string type{name(info.type)};
   std::string components = std::to_string(info.components);
@@ -123,7 +123,7 @@ std::optional<InfoError> find_error(const Info& info) {
 std::optional<InfoError> parse_info(std::int64_t code, Info& info) {
   if (code < 10000 || code > 129999)
     return InfoError{17,
-                     "info " + std::to_string(code) + " names no matrix type (TTCCSE, TT 1 to 12)"};
+                     "info " + std::to_string(code) + " has no matrix type (TTCCSE, TT 1 to 12)"};
   info = {static_cast<MatrixType>(code / 10000), static_cast<std::uint8_t>(code / 100 % 100),
           static_cast<Scalar>(code / 10 % 10), static_cast<Encoding>(code % 10)};
   return find_error(info);

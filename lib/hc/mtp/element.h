@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the elements of a message are: matrix type, components, scalar, encoding, and the header's
-// `info` field that says so in six decimal digits (spec/mtp-1.md, section 3). Pure.
+// The element type of a message: matrix type, components, scalar and encoding, and the header field
+// `info` with its six decimal digits (spec/mtp-1.md, section 3). Pure.
 
 #include <array>
 #include <cstddef>
@@ -17,7 +17,7 @@
 
 namespace hc {
 
-/// What a matrix means; TT of the info field.
+/// The meaning of a matrix; TT of the info field.
 enum class MatrixType : std::uint8_t {
   Position = 1,
   Rotation,
@@ -33,10 +33,10 @@ enum class MatrixType : std::uint8_t {
   Table,
 };
 
-/// What one number is; S of the info field.
+/// The type of a number; S of the info field.
 enum class Scalar : std::uint8_t { U8, I8, U16, I16, U32, I32, U64, I64, F32, F64 };
 
-/// How the elements stand on the wire; E of the info field.
+/// The encoding of the elements on the wire; E of the info field.
 enum class Encoding : std::uint8_t { Text, Binary, Zstd, Jpeg };
 
 /// Name in the specification, such as "rgb_image", "f64", "zstd".
@@ -44,24 +44,24 @@ std::string_view name(MatrixType type);
 std::string_view name(Scalar scalar);
 std::string_view name(Encoding encoding);
 
-/// The way back: nothing where there is no such name.
+/// The inverses; nullopt if there is no such name.
 std::optional<MatrixType> matrix_type_of(std::string_view name);
 std::optional<Scalar> scalar_of(std::string_view name);
 std::optional<Encoding> encoding_of(std::string_view name);
 
-/// Bytes that a scalar takes: 1, 2, 4 or 8.
+/// Size of a scalar: 1, 2, 4 or 8 [byte].
 constexpr std::size_t size_of(Scalar scalar) {
   constexpr std::uint8_t kSizes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
   return kSizes[static_cast<std::size_t>(scalar)];
 }
 
-/// The C++ types that are scalars of the format.
+/// The C++ types that correspond to a scalar.
 template <typename T>
 concept ScalarType =
     (std::is_integral_v<T> && !std::is_same_v<std::remove_cv_t<T>, bool>) ||
     std::is_same_v<std::remove_cv_t<T>, float> || std::is_same_v<std::remove_cv_t<T>, double>;
 
-/// The scalar that a C++ type is: scalar_for<float>() is Scalar::F32.
+/// The scalar of a C++ type: scalar_for<float>() is Scalar::F32.
 template <ScalarType T>
 constexpr Scalar scalar_for() {
   if constexpr (std::is_floating_point_v<T>) {
@@ -72,7 +72,7 @@ constexpr Scalar scalar_for() {
   }
 }
 
-/// Calls `f` with a value-initialised scalar of the C++ type that `scalar` stands for.
+/// Calls `f` with a zero of the C++ type of `scalar`.
 ///
 ///     visit_scalar(info.scalar, [&](auto zero) { using T = decltype(zero); … });
 template <typename F>
@@ -85,35 +85,35 @@ decltype(auto) visit_scalar(Scalar scalar, F&& f) {
   return std::visit(std::forward<F>(f), kZeros[static_cast<std::size_t>(scalar)]);
 }
 
-/// What the elements of a message are and how they are written.
+/// The type and encoding of the elements.
 struct Info {
   MatrixType type = MatrixType::Position;
-  std::uint8_t components = 3;  ///< numbers in an element, 1 … 99
+  std::uint8_t components = 3;  ///< numbers per element, 1 … 99
   Scalar scalar = Scalar::F64;
   Encoding encoding = Encoding::Text;
 
-  /// The header's field, TTCCSE: 10390 for a position of three f64 in text.
+  /// The header's `info`, TTCCSE: 10390 for a position of three f64 in text.
   [[nodiscard]] constexpr std::int32_t code() const {
     return static_cast<std::int32_t>(type) * 10000 + components * 100 +
            static_cast<std::int32_t>(scalar) * 10 + static_cast<std::int32_t>(encoding);
   }
 
-  /// Bytes that one element takes in binary form.
+  /// Size of an element in binary form.
   [[nodiscard]] constexpr std::size_t element_bytes() const { return components * size_of(scalar); }
 
   bool operator==(const Info&) const = default;
 };
 
-/// A matrix for a person to read, "rgb_image 800 x 600 of 3 x u8"; a side that is not given may be
-/// any: "position any x 1 of 3 x f64", and "rgb_image of 3 x u8" when neither is.
+/// A readable description, "rgb_image 800 x 600 of 3 x u8"; a side not given is "any", as in
+/// "position any x 1 of 3 x f64"; without both, "rgb_image of 3 x u8".
 std::string matrix_text(const Info& info, std::optional<std::int32_t> width = std::nullopt,
                         std::optional<std::int32_t> height = std::nullopt);
 
-/// The rule of the specification that type, components, scalar and encoding break together
-/// (R17 … R21, judged in this order); 0 when they go together.
+/// The first rule that the combination of type, components, scalar and encoding breaks (R17 … R21);
+/// 0: none.
 int broken_rule(const Info& info);
 
-/// Why an info is refused: the rule of the specification that it breaks, and how.
+/// The rule that an info breaks, and how.
 struct InfoError {
   int rule = 0;  ///< 17 … 21
   std::string what;
@@ -121,10 +121,10 @@ struct InfoError {
   [[nodiscard]] Code code() const { return rule == 20 ? Code::Unsupported : Code::Malformed; }
 };
 
-/// The error that broken_rule() finds, in words; nothing when it finds none.
+/// The error that broken_rule() finds, in words, if any.
 std::optional<InfoError> find_error(const Info& info);
 
-/// Reads the header's info field, `code` ≥ 0; the error when that is no valid info.
+/// Parses the header's `info`, `code` ≥ 0; returns the error if it is invalid.
 std::optional<InfoError> parse_info(std::int64_t code, Info& info);
 
 }  // namespace hc

@@ -37,12 +37,12 @@ Result<LengthLine> read_length_line(std::string_view text, const Limits& limits,
   bool too_long = end == std::string_view::npos;
   bool spelled = !token.empty() && stop == last && (token.front() != '0' || token.size() == 1);
   if (too_long || !spelled)
-    return refusal(Code::Malformed, 34, "length", in_quotes(token) + " is no number of bytes",
+    return refusal(Code::Malformed, 34, "length", in_quotes(token) + " is not a number of bytes",
                    byte);
   if (status != std::errc() || result.length > limits.element_bytes)
     return refusal(
         Code::TooLarge, 35, "length",
-        std::string(token) + " bytes are over the limit of " + std::to_string(limits.element_bytes),
+        std::string(token) + " bytes exceed the limit of " + std::to_string(limits.element_bytes),
         byte);
   result.bytes = end + 1;
   return result;
@@ -56,7 +56,8 @@ Result<std::size_t> read_closing(const Header& header, std::string_view text, st
     if (text[1] == '\n') return std::size_t{2};
   }
   return refusal(Code::Malformed, 26, "elements",
-                 in_quotes(text.substr(0, 1)) + " is where a line feed closes the elements", byte);
+                 in_quotes(text.substr(0, 1)) + " follows the elements instead of a line feed",
+                 byte);
 }
 
 }  // namespace hc::internal

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The pieces between which a message's elements stand, for every reader. Internal. Pure.
+// The parts of a message around its elements, for all readers. Internal. Pure.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace hc::internal {
 
-/// The elements are rows of numbers in text, and there is at least one row.
+/// Whether the elements are rows of numbers in text, at least one.
 inline bool has_rows(const Header& header) {
   return header.info.encoding == Encoding::Text && header.info.type != MatrixType::String &&
          !header.empty();
@@ -24,25 +24,25 @@ inline bool is_compressed(const Header& header) {
 
 struct HeaderLine {
   Header header;
-  std::size_t bytes = 0;  ///< of the line with its end; 0: not complete yet
+  std::size_t bytes = 0;  ///< of the line including its end; 0: incomplete
 };
 
-/// Reads the header line at the start of `text` (R3 … R24).
+/// Parses the header line at the start of `text` (R3 … R24).
 /// @param memo  of the stream's headers.
 Result<HeaderLine> read_header_line(std::string_view text, const Limits& limits, std::uint64_t byte,
                                     HeaderMemo& memo);
 
 struct LengthLine {
-  std::uint64_t length = 0;  ///< of the compressed part [byte]
-  std::size_t bytes = 0;     ///< of the line with its end; 0: not complete yet
+  std::uint64_t length = 0;  ///< of the compressed elements [byte]
+  std::size_t bytes = 0;     ///< of the line including its end; 0: incomplete
 };
 
-/// Reads the line before a compressed part (R34, R35).
+/// Parses the line before compressed elements (R34, R35).
 Result<LengthLine> read_length_line(std::string_view text, const Limits& limits,
                                     std::uint64_t byte);
 
-/// Reads the line end that closes elements which are not rows (R26); gives its bytes, 0 when it is
-/// not complete yet.
+/// Reads the line end after elements that are not rows (R26); returns its size [byte], 0 if it is
+/// incomplete.
 Result<std::size_t> read_closing(const Header& header, std::string_view text, std::uint64_t byte);
 
 }  // namespace hc::internal

@@ -26,7 +26,7 @@ struct FieldRule {
 constexpr std::int64_t kMax31 = std::numeric_limits<std::int32_t>::max();
 constexpr std::int64_t kMax63 = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t kMaxTtl = 255;
-constexpr int kFirstRule = 6;  // field i is ruled by R(6 + i)
+constexpr int kFirstRule = 6;  // R(6 + i) limits field i
 constexpr std::int64_t kMaxJpegSide = 65500;
 
 constexpr std::array<FieldRule, kFields> kRules = {{
@@ -45,7 +45,7 @@ constexpr std::array<FieldRule, kFields> kRules = {{
 
 using Fields = std::array<std::int64_t, kFields>;
 
-/// Whether a header's sides have rules of their own (R21 … R23).
+/// Whether rules R21 … R23 limit the sides of the matrix.
 bool has_shape_rule(const Info& info) {
   return info.encoding == Encoding::Jpeg || info.type == MatrixType::DenseGraph ||
          info.type == MatrixType::SparseGraph;
@@ -65,9 +65,9 @@ std::optional<InfoError> find_shape_error(std::size_t field, std::int64_t width,
   return std::nullopt;
 }
 
-bool has_good_size(const Header& header, const Limits& limits) {
-  // Both sides are below 2³¹ and an element has at most 792 bytes: the product of the sides fits
-  // into 64 bits, and so does that of all three when the first is below 2⁵⁴.
+bool fits_limits(const Header& header, const Limits& limits) {
+  // Both sides are below 2³¹ and an element has at most 792 bytes, so the product of the sides fits
+  // into 64 bits, and the product of all three does if the first is below 2⁵⁴.
   std::uint64_t elements =
       static_cast<std::uint64_t>(header.width) * static_cast<std::uint64_t>(header.height);
   return elements >> 54 == 0 && elements * header.info.element_bytes() <= limits.element_bytes;
@@ -88,7 +88,7 @@ Header header_of(const Fields& values, const Info& info) {
   return header;
 }
 
-/// parse_header(), whose errors name the byte where there is one.
+/// parse_header(); errors give the byte if `byte` is set.
 Result<Header> parse(std::string_view line, const Limits& limits,
                      std::optional<std::uint64_t> byte) {
   Fields values{};
@@ -125,7 +125,7 @@ Result<Header> parse(std::string_view line, const Limits& limits,
     if (value < least || value > most) [[unlikely]] {
       const auto number = std::to_string(value);
       return refuse(code, rule, field,
-                    field == Version ? "this reader knows version 1, not " + number
+                    field == Version ? "this reader supports version 1, not " + number
                     : value < least  ? number + " is below " + std::to_string(least)
                                      : number + " is above " + std::to_string(most));
     }
@@ -143,10 +143,10 @@ Result<Header> parse(std::string_view line, const Limits& limits,
                    "more than 11 fields: " + in_quotes(line.substr(at)), byte);
   }
   Header header = header_of(values, info);
-  if (!has_good_size(header, limits)) [[unlikely]]
+  if (!fits_limits(header, limits)) [[unlikely]]
     return refuse(Code::TooLarge, 24, Width,
                   std::to_string(header.width) + " x " + std::to_string(header.height) + " x " +
-                      std::to_string(info.element_bytes()) + " bytes are over the limit of " +
+                      std::to_string(info.element_bytes()) + " bytes exceed the limit of " +
                       std::to_string(limits.element_bytes));
   return header;
 }
@@ -158,13 +158,13 @@ Result<Header> parse_header(std::string_view line, const Limits& limits, std::ui
 }
 
 Status check(const Header& header, const Limits& limits) {
-  // Nearly every header is valid, and this tells without writing and reading it.
+  // Fast path: nearly all headers are valid, and need not be formatted and parsed for this.
   bool below_0 = (header.src | header.mode | header.coord | header.width | header.height) < 0 ||
                  (header.seq | header.time) < 0;
   if (!below_0 && broken_rule(header.info) == 0 && !has_shape_rule(header.info) &&
-      has_good_size(header, limits))
+      fits_limits(header, limits))
     return {};
-  if (auto error = find_error(header.info))  // whose digits may be those of another info
+  if (auto error = find_error(header.info))  // code() could be that of another, valid info
     return refusal(error->code(), error->rule, kRules[InfoCode].name, error->what, std::nullopt);
   auto parsed = parse(text(header), limits, std::nullopt);
   return parsed ? Status() : parsed.error();

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kWord = sizeof(std::uint64_t);
 
-/// Reads a number as R5 spells it, from 0 to 2⁶³ − 1; false for anything else.
+/// Parses a number as spelled in R5, from 0 to 2⁶³ − 1; false for anything else.
 bool parse_number(const char* at, std::size_t size, std::int64_t& number) {
   if (*at == '0' && size > 1) return false;
   std::uint64_t value = 0;
@@ -31,8 +31,8 @@ bool parse_number(const char* at, std::size_t size, std::int64_t& number) {
   return value <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
 }
 
-/// Puts up to eight characters, the first in the lowest byte, where `line` has zeros. By whole
-/// words of the line, so that who reads those next finds each in one store.
+/// Writes up to eight characters, the first in the lowest byte, over zeros of `line`. Writes whole
+/// aligned words, so that a following read of words gets each from a single store.
 void put_word(std::uint64_t word, char* line, std::size_t at) {
   char* to = line + at / kWord * kWord;
   const std::size_t shift = at % kWord * 8;
@@ -44,7 +44,6 @@ void put_word(std::uint64_t word, char* line, std::size_t at) {
   if (shift > 0) put(to + kWord, word >> (64 - shift));
 }
 
-/// Puts a number of `size` digits.
 void put_number(std::uint64_t number, char* line, std::size_t begin, std::size_t size) {
   constexpr std::uint64_t kTenTo8 = 100'000'000;
   for (; size >= kWord; number /= kTenTo8)
@@ -54,7 +53,7 @@ void put_number(std::uint64_t number, char* line, std::size_t begin, std::size_t
 
 }  // namespace
 
-/// Whether all but the digits of seq and time is as it was.
+/// Whether the line differs from the remembered one only in the digits of seq and time.
 bool HeaderMemo::matches(std::string_view line) const {
   if (line.size() != size_ || size_ == 0) return false;
   std::size_t i = 0;

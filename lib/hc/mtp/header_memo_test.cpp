@@ -15,7 +15,7 @@ namespace {
 
 using internal::HeaderMemo;
 
-/// A header of a stream, in which most but seq and time is mostly as it was.
+/// Headers of a stream, in which fields other than seq and time rarely change.
 class Stream {
  public:
   Header next() {
@@ -76,7 +76,7 @@ TEST(HeaderMemo, FormatsAsAlways) {
 TEST(HeaderMemo, ParsesAsAlways) {
   Stream stream;
   HeaderMemo memo;
-  const Limits limits{30'000};  // that some of the headers break
+  const Limits limits{30'000};  // some of the headers exceed it
   for (int i = 0; i < 200'000; ++i) {
     std::string line = text(stream.next());
     if (stream.below(4) == 0)
@@ -92,7 +92,7 @@ TEST(HeaderMemo, ParsesAsAlways) {
   }
 }
 
-/// The least and the most number of so many digits, and one between them.
+/// The smallest and the largest number with this many digits, and one between them.
 std::vector<std::int64_t> numbers_of(int digits) {
   std::int64_t least = 1;
   for (int i = 1; i < digits; ++i) least *= 10;
@@ -101,21 +101,21 @@ std::vector<std::int64_t> numbers_of(int digits) {
   return {digits == 1 ? 0 : least, least + (most - least) / 7 * 3, most};
 }
 
-/// seq and time of every length, and so at every place in a word, behind one another.
+/// seq and time of all lengths, and hence at all offsets within a word.
 TEST(HeaderMemo, NumbersOfEveryLengthAreAsAlways) {
   HeaderMemo writing, reading;
   Header header = Stream().next();
   for (std::int32_t src : {0, 10, 200, 3000, 40'000, 500'000, 6'000'000, 70'000'000})
     for (int seq_digits = 1; seq_digits <= 19; ++seq_digits)
       for (int time_digits = 1; time_digits <= 19; ++time_digits)
-        for (int i = 0; i < 12; ++i) {  // is remembered after some
+        for (int i = 0; i < 12; ++i) {  // the memo takes effect after a few
           header.src = src;
           header.seq = numbers_of(seq_digits)[static_cast<std::size_t>(i) % 3];
           header.time = numbers_of(time_digits)[static_cast<std::size_t>(i) / 3 % 3];
           char line[kMaxHeaderBytes];
           std::string_view ours(line, writing.format(header, line));
           ASSERT_EQ(ours, text(header) + "\n");
-          // In memory that ends with the line, so that what is read beyond it is noticed (ASan).
+          // In a buffer of the exact size, so that ASan detects reads beyond the line.
           std::vector<char> exact(ours.begin(), ours.end() - 1);
           auto parsed = reading.parse({exact.data(), exact.size()}, {}, 0);
           ASSERT_TRUE(parsed) << parsed.error().text();
@@ -123,7 +123,7 @@ TEST(HeaderMemo, NumbersOfEveryLengthAreAsAlways) {
         }
 }
 
-/// Two headers of one length and one of another, in turn and in rows of every length.
+/// Two headers of equal length and one of another, in runs of all lengths.
 TEST(HeaderMemo, GoesBackAndForthBetweenHeaders) {
   std::array<Header, 3> headers;
   for (auto& header : headers) header = Stream().next();
@@ -143,7 +143,7 @@ TEST(HeaderMemo, GoesBackAndForthBetweenHeaders) {
   }
 }
 
-/// The longest line that there is, and the longest that is allowed, which no writer writes.
+/// The longest canonical line, and the longest line allowed.
 TEST(HeaderMemo, LongLinesAreAsAlways) {
   constexpr auto kMost = std::numeric_limits<std::int32_t>::max();
   Header header;
@@ -176,7 +176,7 @@ TEST(HeaderMemo, SpellingsThatNoWriterWritesAreNotRemembered) {
   for (int i = 0; i < 40; ++i) ASSERT_EQ(*memo.parse(line, {}, 0), *parse_header(line));
 }
 
-/// Numbers that are as long as the remembered ones, but none as R5 spells them.
+/// Tokens as long as the remembered numbers, but not spelled as in R5.
 TEST(HeaderMemo, DigitsAloneAreNumbers) {
   HeaderMemo memo;
   Header header = Stream().next();
@@ -198,14 +198,14 @@ TEST(HeaderMemo, DigitsAloneAreNumbers) {
 TEST(HeaderMemo, WhatIsBelow0IsWrittenAsAlways) {
   HeaderMemo memo;
   Header header = Stream().next();
-  for (int i = 0; i < 40; ++i) {  // readers refuse it; what comes then is as long
+  for (int i = 0; i < 40; ++i) {  // the lines are equally long
     header.seq = i < 20 ? -5 : 42;
     char line[kMaxHeaderBytes];
     ASSERT_EQ(std::string_view(line, memo.format(header, line)), text(header) + "\n");
   }
 }
 
-/// Whoever copies lines by words copies nothing that was never written.
+/// So that copying a line by words reads no uninitialised bytes.
 TEST(HeaderMemo, TheLastWordOfALineIsFilledUp) {
   HeaderMemo memo;
   Header header = Stream().next();

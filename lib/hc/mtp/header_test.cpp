@@ -28,7 +28,7 @@ TEST(Header, IsElevenIntegersInPlainText) {
 TEST(Header, ComesBackFromItsLine) {
   std::mt19937_64 random(1);
   auto up_to = [&](std::int64_t most) {
-    // All lengths of numbers alike.
+    // All lengths are equally likely.
     auto bits = static_cast<unsigned>(random() % 64);
     auto value = static_cast<std::int64_t>(random() >> bits >> 1);
     return value % most + (random() % 16 == 0 ? 1 : 0);
@@ -61,7 +61,7 @@ TEST(Header, R5_LooseSpellingsMeanTheSame) {
 }
 
 TEST(Header, EveryCanonicalLengthTakesTheSameWay) {
-  // Around 64 and 128 bytes the fast way changes its steps.
+  // The fast path branches at 64 and 128 bytes.
   for (int digits = 1; digits <= 18; ++digits) {
     std::string number(static_cast<std::size_t>(digits), '7');
     for (const char* dst : {"0", "-2147483648", "2147483647"}) {

@@ -2,6 +2,7 @@
 #include <hc/mtp/message.h>
 
 #include <cstdint>
+#include <stdexcept>
 
 namespace hc {
 namespace {
@@ -13,17 +14,21 @@ void check_own(const Header& header) {
 
 }  // namespace
 
+void internal::refuse_index(std::size_t index, std::size_t size) {
+  throw std::out_of_range("index " + std::to_string(index) + " of " + std::to_string(size));
+}
+
 SharedBytes allocate_bytes(std::size_t size) {
   constexpr std::size_t kLarge = std::size_t{64} << 10, kPage = 4096, kAlignment = 64;
-  // In the kernel a message of a stream often begins a page, and its elements follow the header
-  // line there. Processors with "fast short rep mov" copy some 15 times slower when the target's
-  // offset in its page is 1 to 15 bytes behind the source's; large elements begin where no header
-  // line ends, so that neither direction is such a copy.
+  // Streams often receive a message at the start of a page in the kernel, with the elements after
+  // the header line. Processors with "fast short rep mov" copy some 15 times slower if the target's
+  // offset in its page is 1 to 15 bytes after the source's. Large elements therefore start at an
+  // offset that no header line ends at, for both directions.
   constexpr std::size_t kOffset = 512;
   static_assert(kOffset >= kMaxHeaderBytes + 16 && kOffset % kAlignment == 0);
   const bool is_large = size >= kLarge;
   const std::size_t period = is_large ? kPage : kAlignment, offset = is_large ? kOffset : 0;
-  // The count of the owners and the bytes are allocated together, with room to align the latter.
+  // The reference count and the bytes are allocated together, with space for alignment.
   auto room = std::make_shared_for_overwrite<std::byte[]>(size + period);
   auto past = reinterpret_cast<std::uintptr_t>(room.get()) % period;
   std::byte* begin = room.get() + (period + offset - past) % period;
@@ -37,7 +42,7 @@ Message Message::keep() const {
   return {header, {bytes.get(), elements.size()}, bytes, byte};
 }
 
-Draft Draft::make(const Info& info, std::int32_t width, std::int32_t height) {
+Draft Draft::make(const Info& info, std::int32_t height, std::int32_t width) {
   Header header;
   header.info = info;
   header.width = width;
@@ -46,7 +51,7 @@ Draft Draft::make(const Info& info, std::int32_t width, std::int32_t height) {
 }
 
 Draft Draft::make(const Header& header) {
-  check_own(header);  // before its size is believed
+  check_own(header);  // before its size is used
   return {header, allocate_bytes(header.element_bytes())};
 }
 

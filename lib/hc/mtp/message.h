@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A message in memory: a header and its elements, viewed and checked without a copy. Pure.
-// A Message is a value; copies share the elements, which nobody changes any more.
+// Messages in memory: a header and elements that are viewed without a copy. Pure.
+// A Message is a value; copies share the elements, which are immutable.
 
 #include <cstddef>
 #include <cstring>
@@ -17,65 +17,97 @@
 
 namespace hc {
 
-/// A matrix in memory, row by row without padding: (height, width, components), row 0 on top.
-/// `T` is a scalar type, const for a matrix that is only read. Does not own what it shows.
+namespace internal {
+[[noreturn]] void refuse_index(std::size_t index, std::size_t size);
+
+/// The index; one outside throws std::out_of_range.
+inline std::size_t checked(std::size_t index, std::size_t size) {
+  if (index >= size) [[unlikely]]
+    refuse_index(index, size);
+  return index;
+}
+}  // namespace internal
+
+/// A std::span with checked indices, since the peer decides how many numbers a message has.
+/// Iterators and data() are not checked.
+///
+/// Throws: std::out_of_range; the message being handled is then dropped, and counted as bad.
+template <typename T>
+class Numbers : public std::span<T> {
+ public:
+  using std::span<T>::span;
+  Numbers(std::span<T> numbers) : std::span<T>(numbers) {}  // NOLINT(google-explicit-constructor)
+
+  T& operator[](std::size_t i) const { return this->data()[internal::checked(i, this->size())]; }
+  T& front() const { return (*this)[0]; }
+  T& back() const { return (*this)[this->size() - 1]; }
+  [[nodiscard]] Numbers first(std::size_t count) const {
+    return {this->data(), internal::checked(count, this->size() + 1)};
+  }
+  [[nodiscard]] Numbers subspan(std::size_t begin) const {
+    return {this->data() + internal::checked(begin, this->size() + 1), this->size() - begin};
+  }
+  Numbers last(std::size_t) const = delete;  // subspan() is checked
+};
+
+/// A view of a matrix, row by row without padding: (height, width, components), row 0 on top.
+/// `T` is a scalar type, const for a read-only matrix. Does not own the memory.
+///
+/// Throws: std::out_of_range, as Numbers.
 template <typename T>
 class MatrixView {
  public:
   MatrixView() = default;
-  MatrixView(T* data, std::size_t width, std::size_t height, std::size_t components)
-      : data_(data), width_(width), height_(height), components_(components) {}
+  MatrixView(T* data, std::size_t height, std::size_t width, std::size_t components)
+      : data_(data), height_(height), width_(width), components_(components) {}
 
-  [[nodiscard]] std::size_t width() const { return width_; }
   [[nodiscard]] std::size_t height() const { return height_; }
+  [[nodiscard]] std::size_t width() const { return width_; }
   [[nodiscard]] std::size_t components() const { return components_; }
   [[nodiscard]] bool empty() const { return width_ == 0 || height_ == 0; }
 
   /// All numbers, row by row.
-  [[nodiscard]] std::span<T> numbers() const { return {data_, width_ * height_ * components_}; }
+  [[nodiscard]] Numbers<T> numbers() const { return {data_, height_ * width_ * components_}; }
 
-  /// The numbers of a row, the components of an element next to one another.
-  [[nodiscard]] std::span<T> row(std::size_t y) const {
-    HC_CHECK(y < height_, y, height_);
-    return {data_ + y * width_ * components_, width_ * components_};
+  /// The numbers of a row; the components of an element are adjacent.
+  [[nodiscard]] Numbers<T> row(std::size_t y) const {
+    return {data_ + internal::checked(y, height_) * width_ * components_, width_ * components_};
   }
 
-  /// One number: component `k` of the element at column `x` of row `y`.
+  /// Component `k` of the element at column `x` of row `y`.
   [[nodiscard]] T& at(std::size_t y, std::size_t x, std::size_t k = 0) const {
-    HC_CHECK(y < height_ && x < width_ && k < components_, y, x, k, height_, width_, components_);
-    return data_[(y * width_ + x) * components_ + k];
+    using internal::checked;
+    return data_[(checked(y, height_) * width_ + checked(x, width_)) * components_ +
+                 checked(k, components_)];
   }
 
  private:
   T* data_ = nullptr;
-  std::size_t width_ = 0, height_ = 0, components_ = 0;
+  std::size_t height_ = 0, width_ = 0, components_ = 0;
 };
 
-/// Bytes that several messages and readers share; freed with the last of them.
 using SharedBytes = std::shared_ptr<std::byte[]>;
 
-/// Fresh bytes, not initialised, aligned to 64. Cost: one allocation, and no locked instruction
-/// until they are shared.
+/// Uninitialised bytes, aligned to 64. Cost: one allocation; no atomic operation until they are
+/// shared.
 SharedBytes allocate_bytes(std::size_t size);
 
-/// A header and its elements.
 struct Message {
   Header header;
-  /// In the binary form (R33) and aligned for the scalar, whatever the encoding on the wire was;
-  /// but the compressed bytes as they came when the encoding is zstd or jpeg (hc::expand opens
-  /// them).
+  /// In binary form (R33), aligned for the scalar, for both plain encodings; for zstd and jpeg, the
+  /// compressed bytes (see hc::expand).
   std::span<const std::byte> elements;
-  /// Keeps `elements` alive; null when they are somebody else's (see keep()).
+  /// Keeps `elements` alive; null if another object owns them (see keep()).
   std::shared_ptr<const void> owner;
-  /// Where the elements began in their stream, for error lines. [byte]
+  /// Offset of the elements in their stream, for errors. [byte]
   std::uint64_t byte = 0;
 
-  /// Elements that are not compressed.
+  /// Whether the elements are uncompressed.
   [[nodiscard]] bool plain() const {
     return header.info.encoding == Encoding::Text || header.info.encoding == Encoding::Binary;
   }
 
-  /// The elements as numbers of type T, without a copy; lives as long as the elements.
+  /// The elements as numbers of type T, without a copy; valid as long as the elements.
   ///
   /// Errors: Unsupported (compressed; another scalar than T).
   template <ScalarType T>
@@ -85,45 +117,45 @@ struct Message {
                                           std::string(name(header.info.encoding)) + ", not plain " +
                                           std::string(name(scalar_for<T>()))};
     return MatrixView<const T>(reinterpret_cast<const T*>(elements.data()),
-                               static_cast<std::size_t>(header.width),
-                               static_cast<std::size_t>(header.height), header.info.components);
+                               static_cast<std::size_t>(header.height),
+                               static_cast<std::size_t>(header.width), header.info.components);
   }
 
-  /// The bytes of a string, all rows one after the other.
-  [[nodiscard]] std::string_view characters() const {
+  /// The bytes of a string, all rows concatenated.
+  [[nodiscard]] std::string_view text() const {
     return {reinterpret_cast<const char*>(elements.data()), elements.size()};
   }
 
-  /// This message, safe to hold: itself when it has an owner, else with a copy of the elements.
+  /// A message that may be stored: itself if it has an owner, else a copy.
   [[nodiscard]] Message keep() const;
 };
 
-/// A message that is being made: its elements can be written until it is finished.
+/// A message under construction: its elements are writable until finish().
 ///
-///     auto draft = Draft::make(rgb, 800, 600);
+///     auto draft = Draft::make(rgb, 600, 800);
 ///     fill(draft.view<std::uint8_t>());
 ///     output.send(std::move(draft).finish());
 class Draft {
  public:
   Draft() = default;
-  /// Room for width × height elements, not initialised, with a header that says so.
+  /// Allocates height × width elements, uninitialised, and sets the header accordingly.
   /// A header that check() refuses is a bug. Cost: one allocation.
-  static Draft make(const Info& info, std::int32_t width, std::int32_t height);
-  /// The same with the rest of the header given too.
+  static Draft make(const Info& info, std::int32_t height, std::int32_t width);
+  /// With a complete header.
   static Draft make(const Header& header);
-  /// The same in memory that is there already, aligned for the scalar and as large as is needed.
+  /// In existing memory, aligned for the scalar and large enough.
   static Draft make(const Header& header, SharedBytes bytes);
 
-  Header header;  ///< everything but info, width and height may be changed
+  Header header;  ///< all fields may be changed except info, width and height
 
   [[nodiscard]] std::span<std::byte> elements() const { return {bytes_.get(), size_}; }
 
-  /// The elements as numbers of type T. Another scalar than the info's is a bug.
+  /// The elements as numbers of type T. A scalar other than the info's is a bug.
   template <ScalarType T>
   [[nodiscard]] MatrixView<T> view() const {
     HC_CHECK(header.info.scalar == scalar_for<T>(), matrix_text(header.info));
-    return {reinterpret_cast<T*>(bytes_.get()), static_cast<std::size_t>(header.width),
-            static_cast<std::size_t>(header.height), header.info.components};
+    return {reinterpret_cast<T*>(bytes_.get()), static_cast<std::size_t>(header.height),
+            static_cast<std::size_t>(header.width), header.info.components};
   }
 
   /// The message; the draft is empty afterwards.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The text of an error of the protocol: rule, field, what is wrong, where. Internal. Pure.
+// The text of protocol errors: rule, field, cause, position. Internal. Pure.
 
 #include <cstdint>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace hc::internal {
 
-/// "R7 src: -1 is below 0, at byte 2"; without the byte where there is none.
+/// "R7 src: -1 is below 0, at byte 2"; `byte` is optional.
 inline Error refusal(Code code, int rule, std::string_view field, std::string_view what,
                      std::optional<std::uint64_t> byte) {
   std::string detail = "R" + std::to_string(rule) + " ";
@@ -21,8 +21,7 @@ inline Error refusal(Code code, int rule, std::string_view field, std::string_vi
   return {code, std::move(detail)};
 }
 
-/// Received bytes as part of an error line: in quotes, at most 24 of them, escaped where they are
-/// not printable.
+/// Received bytes for an error message: quoted, at most 24 of them, escaped unless printable.
 inline std::string in_quotes(std::string_view bytes) {
   constexpr std::size_t kShown = 24;
   std::string result = "\"";

@@ -23,7 +23,7 @@ TEST(Rows, AreFilledUpWithSpaces) {
 
 TEST(Rows, WhatIsNoStringHasNone) {
   EXPECT_TRUE(
-      rows_of(Draft::make({MatrixType::Table, 1, Scalar::U8, Encoding::Binary}, 2, 1).finish())
+      rows_of(Draft::make({MatrixType::Table, 1, Scalar::U8, Encoding::Binary}, 1, 2).finish())
           .empty());
   EXPECT_TRUE(rows_of(make_rows(Lines{"", ""})).empty());
 }

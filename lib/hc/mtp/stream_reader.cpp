@@ -10,7 +10,7 @@ namespace hc {
 namespace {
 
 constexpr std::size_t kBlockBytes = std::size_t{64} << 10;
-constexpr std::size_t kLeastSpace = 4096;      // read at once, so that calls stay few
+constexpr std::size_t kMinSpace = 4096;        // minimum size of a read, to limit system calls
 constexpr std::size_t kMaxInBlock = 16 << 10;  // elements up to this size stay in the block
 constexpr std::size_t kMaxHead = kMaxHeaderBytes + 32;
 
@@ -33,18 +33,18 @@ std::span<std::byte> StreamReader::space() {
   bool shared = block_.use_count() > 1;
   if (begin_ == end_ && !shared) begin_ = end_ = 0;
   bool whole_fits = kBlockBytes - begin_ >= kMaxHead + kMaxInBlock + 2;
-  if (block_ == nullptr || kBlockBytes - end_ < kLeastSpace || !whole_fits) {
-    // The bytes that are not read yet move to the front, of a fresh block when messages still
-    // show parts of this one.
+  if (block_ == nullptr || kBlockBytes - end_ < kMinSpace || !whole_fits) {
+    // Moves the unread bytes to the front; to a new block if messages still refer to this one.
     SharedBytes target = block_ == nullptr || shared ? allocate_bytes(kBlockBytes) : block_;
     if (end_ > begin_) std::memmove(target.get(), block_.get() + begin_, end_ - begin_);
     end_ -= begin_;
     begin_ = 0;
     block_ = std::move(target);
   }
-  // Of a message that is as large as the one before only the head; the elements go to their place.
+  // If the last message had a separate body, read only the head, so that the elements are not
+  // copied.
   bool only_head = state_ == State::Head && begin_ == end_ && expects_body_;
-  return {block_.get() + end_, only_head ? kLeastSpace : kBlockBytes - end_};
+  return {block_.get() + end_, only_head ? kMinSpace : kBlockBytes - end_};
 }
 
 void StreamReader::commit(std::size_t size) {
@@ -60,11 +60,11 @@ void StreamReader::commit(std::size_t size) {
 
 Result<bool> StreamReader::next(Message& message) {
   message.elements = {};
-  message.owner.reset();  // so that memory which nobody else holds is used again
+  message.owner.reset();  // frees the memory for reuse, unless it is shared
   if (state_ == State::Search) search();
   Result<bool> got = false;
   if (state_ == State::Head) got = read_head(message);
-  // What read_head has found may be there already.
+  // Data that follows the head may have been received with it.
   if (got && !*got && state_ == State::Rows) got = read_rows(message);
   if (got && !*got && state_ == State::Body) got = read_body(message);
   if (state_ == State::Failed) return error_;
@@ -112,8 +112,7 @@ Result<bool> StreamReader::read_head(Message& message) {
   const auto end = head + length;
   auto closing = HC_TRY(internal::read_closing(header_, unread().substr(end), byte_ + end));
   if (closing == 0) return false;
-  // Elements are moved to the left onto the head, which nobody needs any more, until they are
-  // aligned.
+  // To align the elements, move them towards the head, which is no longer needed.
   std::byte* elements = block_.get() + begin_ + head;
   std::size_t scalar = internal::is_compressed(header_) ? 1 : size_of(header_.info.scalar);
   if (auto excess = reinterpret_cast<std::uintptr_t>(elements) % scalar; excess != 0) {
@@ -207,7 +206,7 @@ void StreamReader::search() {
       consume(text.size());
       return;
     }
-    // The line feed stays until the line behind it has been judged.
+    // The line feed is kept until the line after it has been checked.
     auto line = internal::read_header_line(text.substr(feed + 1), limits_, 0, memo_);
     if (line && line->bytes == 0) {
       consume(feed);

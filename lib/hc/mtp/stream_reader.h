@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Messages out of a stream that comes in pieces of any size (spec/mtp-1.md). Pure: whoever has a
-// descriptor reads into space() and says commit(); large elements land where they will stay.
+// Incremental reader of a stream of messages (spec/mtp-1.md). Pure: the caller reads bytes into
+// space() and calls commit(); large elements are received in place.
 
 #include <cstddef>
 #include <cstdint>
@@ -25,49 +25,50 @@ namespace hc {
 ///       reader.commit(size);
 ///     }
 ///
-/// Messages own their elements, share memory with one another, and may be held as long as one
-/// likes. Memory: one block of 64 KiB, and what the elements need as they come; a message promised
-/// but not sent costs 1 MiB at most, or as much as the largest message that did come.
+/// Messages own their elements, may share memory, and may be stored. Memory: one block of 64 KiB,
+/// and the elements as they arrive; a message that is announced but not sent costs 1 MiB at most,
+/// or the size of the largest message received.
 class StreamReader {
  public:
   explicit StreamReader(const Limits& limits = {}) : limits_(limits) {}
 
-  /// Where the next bytes of the stream go; never empty. Changes with commit() and next().
+  /// The destination of the next bytes of the stream; never empty. Invalidated by commit() and
+  /// next().
   std::span<std::byte> space();
-  /// Says that `size` bytes have been put at the start of space().
+  /// Reports `size` bytes written at the start of space().
   void commit(std::size_t size);
 
-  /// How many bytes of the stream are sure to come before next() has a message: 0 until the head of
-  /// a large one is known. [byte]
+  /// A lower bound of the bytes needed before next() returns a message: 0 until the head of a large
+  /// message has been read. [byte]
   [[nodiscard]] std::uint64_t missing() const {
     return state_ == State::Body ? body_size_ - body_filled_ : 0;
   }
 
-  /// Whether a part of a header line has come, and not its end.
+  /// Whether a header line has been received only partly.
   [[nodiscard]] bool in_header() const {
     return state_ == State::Head && begin_ != end_ && unread().find('\n') == std::string_view::npos;
   }
 
-  /// Takes the next whole message; false when more bytes are needed first.
+  /// Returns the next complete message; false if more bytes are needed.
   ///
-  /// Errors: Malformed, Unsupported, TooLarge, with rule, field and byte; the same again from then
-  /// on, until resume().
+  /// Errors: Malformed, Unsupported, TooLarge, with rule, field and byte; repeated on further calls
+  /// until resume().
   Result<bool> next(Message& message);
 
-  /// To be called at the stream's end, when next() has given false.
+  /// Call it at the end of the stream, after next() has returned false.
   ///
   /// Errors: Truncated when the stream ended inside a message (R2).
   Status finish() const;
 
-  /// Whole messages read so far.
+  /// Complete messages read so far.
   [[nodiscard]] std::uint64_t messages() const { return messages_; }
-  /// Bytes of the stream read so far, those of the messages and of what has come of the next.
+  /// Bytes of the stream read so far, including an incomplete message.
   [[nodiscard]] std::uint64_t bytes() const { return byte_; }
-  /// Where in the stream the message being read began, or the last one that was refused. [byte]
+  /// Offset of the message being read, or of the one that was refused. [byte]
   [[nodiscard]] std::uint64_t message_begin() const { return message_begin_; }
 
-  /// Looks for the next valid header after an error (R40). The bytes to come are those of the
-  /// stream from message_begin() on, once more.
+  /// After an error, searches for the next valid header (R40). The caller supplies the stream again
+  /// from message_begin() on.
   void resume();
 
  private:
@@ -85,7 +86,7 @@ class StreamReader {
 
   Limits limits_;
   State state_ = State::Head;
-  SharedBytes block_;  // the stream from byte_ on is in [begin_, end_)
+  SharedBytes block_;  // [begin_, end_) holds the stream from byte_ on
   std::size_t begin_ = 0, end_ = 0;
   std::uint64_t byte_ = 0;
   std::uint64_t messages_ = 0;
@@ -98,8 +99,8 @@ class StreamReader {
   TextRows rows_;
   SharedBytes body_;
   std::uint64_t body_capacity_ = 0, body_size_ = 0, body_filled_ = 0;
-  bool expects_body_ = false;                            // as the last message had one
-  std::uint64_t trusted_size_ = std::uint64_t{1} << 20;  // of a body that one allocates at once
+  bool expects_body_ = false;                            // the last message had a body
+  std::uint64_t trusted_size_ = std::uint64_t{1} << 20;  // bodies up to it are allocated at once
 };
 
 }  // namespace hc

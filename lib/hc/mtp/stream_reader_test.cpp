@@ -13,7 +13,7 @@
 namespace hc {
 namespace {
 
-/// Gives a reader what it has space for, but no more than `most`; the rest stays.
+/// Fills the reader's space with at most `most` bytes and removes them from the input.
 void feed(StreamReader& reader, std::string_view& bytes, std::size_t most = SIZE_MAX) {
   const auto space = reader.space();
   const std::size_t size = std::min({most, space.size(), bytes.size()});
@@ -22,7 +22,7 @@ void feed(StreamReader& reader, std::string_view& bytes, std::size_t most = SIZE
   bytes.remove_prefix(size);
 }
 
-/// Feeds a stream in pieces; takes all messages there are, and the error or end behind them.
+/// All messages of a stream that was fed in pieces, and the final error or end.
 struct Reading {
   std::vector<Message> messages;
   Status end;
@@ -49,7 +49,7 @@ Reading read_all(std::string_view bytes, std::size_t piece, StreamReader& reader
 }
 
 Message filled(const Info& info, std::int32_t width, std::int32_t height) {
-  Draft draft = Draft::make(info, width, height);
+  Draft draft = Draft::make(info, height, width);
   std::uint8_t value = 0;
   for (auto& byte : draft.elements()) byte = static_cast<std::byte>(value++ % 251);
   return std::move(draft).finish();
@@ -74,7 +74,7 @@ TEST(StreamReader, PiecesOfAnySizeGiveTheSameMessages) {
     EXPECT_EQ(reader.bytes(), bytes.size());
     for (std::size_t i = 0; i < sent.size(); ++i) {
       EXPECT_EQ(reading.messages[i].header, sent[i].header);
-      EXPECT_EQ(reading.messages[i].characters(), sent[i].characters()) << piece << " " << i;
+      EXPECT_EQ(reading.messages[i].text(), sent[i].text()) << piece << " " << i;
       EXPECT_EQ(reinterpret_cast<std::uintptr_t>(reading.messages[i].elements.data()) %
                     size_of(sent[i].header.info.scalar),
                 0U);
@@ -136,7 +136,7 @@ TEST(StreamReader, HeldMessagesKeepTheirElements) {
   auto reading = read_all(bytes, 4096, reader);
   ASSERT_EQ(reading.messages.size(), 3000U);
   for (const auto& message : reading.messages)
-    EXPECT_EQ(message.characters(), filled(kDepth, message.header.width, 1).characters());
+    EXPECT_EQ(message.text(), filled(kDepth, message.header.width, 1).text());
 }
 
 TEST(StreamReader, MemoryIsUsedAgainWhenNobodyHoldsIt) {
@@ -168,7 +168,7 @@ TEST(StreamReader, ElementsOfALargeMessageAfterAnotherAreReadWhereTheyStay) {
       }
       feed(reader, rest);
     }
-    EXPECT_EQ(message.characters(), sent.characters());
+    EXPECT_EQ(message.text(), sent.text());
     EXPECT_EQ(reader.missing(), 0U);
     EXPECT_GE(in_place, sent.elements.size() - (is_first ? 65536 : 4096));
   }
@@ -186,7 +186,7 @@ TEST(StreamReader, R24_PromisesCostNothing) {
       std::string(1 << 20, 'a'),
       std::string("1 \0 0 0 8 0 10390 1 3 1 1\n", 26),
       "1 0x7 0 0 8 0 10390 1 3 1 1\n",
-      "1 7 0 0 8 0 40101 1 7 16000 16000\nabc",  // 256 MB promised, 3 bytes sent
+      "1 7 0 0 8 0 40101 1 7 16000 16000\nabc",  // 256 MB announced, 3 bytes sent
       "1 7 0 0 8 0 40100 1 7 16000 16000\n1 2 3",
       "1 7 0 0 8 0 40102 1 7 1 1\n268435456\nabc",
   };

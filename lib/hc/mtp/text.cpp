@@ -17,18 +17,18 @@ using internal::in_quotes;
 using internal::Outcome;
 using internal::refusal;
 
-constexpr std::size_t kMaxWritten = 32;  // bytes of a number in canonical form, and room behind it
+constexpr std::size_t kMaxWritten = 32;  // of a number in canonical form [byte], with a margin
 
 bool is_end(char c) {
   return c == ' ' || c == '\n';
 }
 
-/// Whether a valid number that T cannot represent is too small for it, rather than too large.
+/// Whether a valid number out of the range of T is too small rather than too large.
 bool is_tiny(const char* first, const char* last) {
-  double value = 0;  // represents what is too small or too large for a float alone
+  double value = 0;  // has the range for what is only out of range of float
   if (std::from_chars(first, last, value).ec == std::errc()) return std::abs(value) < 1;
-  // The digits of a number, at most kMaxNumberBytes, shift the point less than such an exponent
-  // does.
+  // The digits, at most kMaxNumberBytes, move the point by less than an exponent that is out of
+  // range.
   const char* mark = std::find_if(first, last, [](char c) { return c == 'e' || c == 'E'; });
   return mark != last && mark[1] == '-';
 }
@@ -38,7 +38,7 @@ Outcome read_float(const char* first, const char* last, T& value, const char*& n
   auto [stop, status] = std::from_chars(first, last, value);
   next = stop;
   if (status == std::errc::invalid_argument) return Outcome::NotANumber;
-  if (stop[-1] == ')') return Outcome::NotANumber;  // from_chars also knows nan(…)
+  if (stop[-1] == ')') return Outcome::NotANumber;  // from_chars also accepts nan(…)
   if (status == std::errc::result_out_of_range) {
     if (!is_tiny(first, stop)) return Outcome::OutOfRange;
     value = static_cast<T>(*first == '-' ? -0.0 : 0.0);
@@ -86,7 +86,7 @@ Result<std::size_t> TextRows::read_as(std::string_view text, std::uint64_t byte,
   const char* at = begin;
   auto where = [&](const char* here) { return byte + static_cast<std::uint64_t>(here - begin); };
 
-  // Numbers and line ends in turn, up to an incomplete one.
+  // Numbers and line ends, up to an incomplete one.
   while (rows_left_ > 0) {
     while (at != end && *at == ' ') ++at;
     if (at == end) break;
@@ -120,18 +120,18 @@ Result<std::size_t> TextRows::read_as(std::string_view text, std::uint64_t byte,
         continue;
       }
     }
-    // The number is invalid or incomplete; of several broken rules the first in the order of R31 is
-    // reported.
+    // The number is invalid or incomplete; if it breaks several rules, report the first in the
+    // order of R31.
     const char* token_end = at;
     while (token_end != end && !is_end(*token_end)) ++token_end;
     if (token_end != end && *token_end == '\n' && token_end[-1] == '\r') --token_end;
     std::string_view token(at, static_cast<std::size_t>(token_end - at));
-    bool open = token_end == end;  // the rest of it may follow, or the LF after a CR at its end
+    bool open = token_end == end;  // more of it, or the LF after its CR, may follow
     if (open && token.size() <= kMaxNumberBytes) break;
     if (open && token.size() == kMaxNumberBytes + 1 && token.back() == '\r') break;
     if (token.size() > kMaxNumberBytes)
       return refusal(Code::Malformed, 31, "elements",
-                     "a number is at most 64 bytes long, not as " + in_quotes(token), where(at));
+                     "a number is longer than 64 bytes: " + in_quotes(token), where(at));
     if (column_ == row_numbers_)
       return refusal(
           Code::Malformed, 30, "elements",
@@ -160,7 +160,7 @@ void append_text(const Header& header, std::span<const std::byte> elements, std:
     using T = decltype(zero);
     const T* number = reinterpret_cast<const T*>(elements.data());
     std::uint64_t row_numbers = header.row_numbers();
-    // Numbers are written into a local buffer first: growing the string would fill it with zeros.
+    // Through a local buffer, since growing the string would fill it with zeros.
     constexpr std::size_t kPiece = 4096;
     char piece[kPiece];
     char* at = piece;
@@ -185,7 +185,7 @@ Status parse_number(std::string_view token, Scalar scalar, std::byte* number) {
     Outcome outcome = read_number(token.data(), end, value, next);
     if (next != end) outcome = Outcome::NotANumber;
     if (token.size() > kMaxNumberBytes)
-      return Error{Code::Malformed, "R31: a number is at most 64 bytes long"};
+      return Error{Code::Malformed, "R31: a number is longer than 64 bytes"};
     if (outcome != Outcome::Good)
       return Error{Code::Malformed, "R" + std::to_string(static_cast<int>(outcome)) + ": " +
                                         describe(outcome, token, scalar)};

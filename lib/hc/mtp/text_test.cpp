@@ -176,7 +176,7 @@ TEST(Text, R27_FloatsAreRoundedToTheNearest) {
 TEST(Text, R27_TheMiddleOfTwoFloatsIsDistinguishedFromItsNeighbours) {
   std::mt19937_64 random(10);
   for (int i = 0; i < 100'000; ++i) {
-    // An odd number of 54 bits is the middle of two f64, and of 25 bits that of two f32.
+    // Odd numbers of 54 bits are halfway between two f64, those of 25 bits between two f32.
     std::uint64_t middle = (random() >> 11) | (std::uint64_t{1} << 53) | 1;
     expect_correct_rounding<double>(std::to_string(middle));
     expect_correct_rounding<double>(std::to_string(middle) + ".1");

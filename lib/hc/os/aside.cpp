@@ -8,7 +8,7 @@ Result<Aside> Aside::begin(Loop& loop, std::function<void(int stop)> work,
   auto event = HC_TRY(Event::make());
   Aside aside;
   aside.state_ = std::make_shared<State>(State{std::move(event), false, std::move(done), {}});
-  // The thread ends before the state does, which it must not own.
+  // The thread must not own the state, which holds the thread.
   aside.state_->thread =
       HC_TRY(start_thread([&loop, work = std::move(work), stop = aside.state_->stop.descriptor(),
                            begun = std::weak_ptr(aside.state_)] {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Work that takes its time, on a thread beside a loop's.
+// Runs lengthy work on a thread beside an event loop.
 
 #include <functional>
 #include <memory>
@@ -16,22 +16,22 @@
 
 namespace hc {
 
-/// Work on a thread, as run_aside() begins it. To be destroyed in the loop's thread, or after the
-/// loop's last turn.
+/// Work that run_aside() has started. Destroy it on the loop's thread or after the loop's last
+/// turn.
 class Aside {
  public:
-  Aside() = default;  ///< none
+  Aside() = default;  ///< no work
   Aside(Aside&&) = default;
   Aside& operator=(Aside&& other) noexcept {
     std::swap(state_, other.state_);
     return *this;
   }
-  /// Asks the work to stop, and waits for it. Its result is dropped.
+  /// Asks the work to stop and waits for it. Its result is discarded.
   ~Aside();
 
-  /// Whether the work's result has not been handed over yet.
+  /// Whether the result has not been passed to `done` yet.
   [[nodiscard]] bool is_busy() const { return state_ && state_->thread.joinable(); }
-  /// Asks the work in progress, if any, to stop; its result is handed over all the same.
+  /// Asks the work in progress, if any, to stop; its result is still passed to `done`.
   void stop();
   [[nodiscard]] bool is_stopped() const { return state_ && state_->is_stopped; }
 
@@ -52,13 +52,12 @@ class Aside {
   std::shared_ptr<State> state_;
 };
 
-/// Calls `work(stop)` on a thread of its own, with all signals blocked, and then `done(result)` in
-/// a turn of the loop. `work` returns a value, as soon as it can once the descriptor `stop` is
-/// readable.
+/// Calls `work(stop)` on a new thread with all signals blocked, and then `done(result)` on the
+/// loop's thread. `work` returns a value, early if the descriptor `stop` becomes readable.
 ///
 ///     aside_ = run_aside(loop, [](int stop) { return load(stop); }, [this](Loaded it) { … });
 ///
-/// Errors: System (no descriptor or thread to be had).
+/// Errors: System (no descriptor or thread available).
 template <typename Work, typename Done>
 [[nodiscard]] Result<Aside> run_aside(Loop& loop, Work work, Done done) {
   auto result = std::make_shared<std::optional<std::invoke_result_t<Work&, int>>>();
@@ -67,13 +66,13 @@ template <typename Work, typename Done>
       [result, done = std::move(done)]() mutable { done(std::move(**result)); });
 }
 
-/// What `work()` returns, a Result, where the system may hold it up for ever: a look at a file, on
-/// a network disk that hangs. It is called on a thread of its own, which is left behind once `stop`
-/// is readable; so it owns all that it uses.
+/// The result of `work()`, which returns a Result and may block indefinitely in a system call, such
+/// as stat() on a network disk that hangs. It runs on a new thread, which is abandoned if `stop`
+/// becomes readable; it must therefore own everything that it uses.
 ///
 ///     auto text = unless_stopped(stop, [name] { return read_text(name); });
 ///
-/// Errors: Stopped; System (no descriptor or thread to be had); those of `work`.
+/// Errors: Stopped; System (no descriptor or thread available); those of `work`.
 template <typename Work>
 [[nodiscard]] std::invoke_result_t<Work&> unless_stopped(int stop, Work work) {
   struct Shared {

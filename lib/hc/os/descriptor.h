@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// File descriptors that close themselves, and system calls that say what failed.
+// File descriptors that close themselves, and system calls whose errors name the call.
 
 #include <poll.h>
 #include <unistd.h>
@@ -41,7 +41,7 @@ class Descriptor {
   int number_ = -1;
 };
 
-/// "open(eyes.mtp): No such file or directory", from errno as it is.
+/// "open(eyes.mtp): No such file or directory", from errno.
 inline Error system_error(std::string_view call, std::string_view argument, int number = errno) {
   bool closed = number == EPIPE || number == ECONNRESET || number == ECONNREFUSED ||
                 number == ETIMEDOUT;  // a peer that vanished
@@ -51,7 +51,7 @@ inline Error system_error(std::string_view call, std::string_view argument, int 
   return {code, std::move(detail)};
 }
 
-/// Makes a system call that gives -1 when it fails, again as long as signals interrupt it.
+/// Makes a system call that returns -1 on failure, and repeats it while signals interrupt it.
 template <typename Call>
 Result<std::invoke_result_t<Call>> system_call(std::string_view name, std::string_view argument,
                                                Call&& call) {
@@ -62,7 +62,7 @@ Result<std::invoke_result_t<Call>> system_call(std::string_view name, std::strin
   }
 }
 
-/// The same of a call that opens a descriptor.
+/// A system_call() that opens a descriptor.
 template <typename Call>
 Result<Descriptor> open_descriptor(std::string_view name, std::string_view argument, Call&& call) {
   auto number = HC_TRY(system_call(name, argument, std::forward<Call>(call)));
@@ -71,11 +71,11 @@ Result<Descriptor> open_descriptor(std::string_view name, std::string_view argum
 
 using Deadline = std::chrono::steady_clock::time_point;
 
-/// poll(), until `deadline` at most, which Deadline::max() never is; gives how many have events.
+/// poll() until `deadline`, or without a limit (Deadline::max()); the number of ready descriptors.
 /// Errors: System.
 Result<int> poll_until(std::span<pollfd> polled, Deadline deadline);
 
-/// Waits until `descriptor` has one of the poll events; false when `deadline` passes first.
+/// Waits until `descriptor` has one of the poll events; false if `deadline` passes first.
 ///
 /// Errors: Stopped when `stop` is readable and the descriptor has none of the events; System.
 Result<bool> wait_for(int descriptor, short events, int stop, Deadline deadline = Deadline::max());

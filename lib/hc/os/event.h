@@ -13,7 +13,7 @@ namespace hc {
 /// An eventfd: readable from raise() to clear(), both of which any thread may call.
 class Event {
  public:
-  Event() = default;  ///< none: its descriptor is -1, and nothing can be waited for
+  Event() = default;  ///< no event: its descriptor is -1, and waiting for it never returns
   /// Errors: System.
   static Result<Event> make() {
     auto made = HC_TRY(

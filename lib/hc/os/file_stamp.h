@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What tells one state of a file from another.
+// Identifies the state of a file, to detect changes.
 
 #include <sys/stat.h>
 #include <sys/types.h>
@@ -10,7 +10,7 @@
 
 namespace hc {
 
-/// Which file a path leads to, and when it was written; all 0: none.
+/// The file at a path and its modification time; all 0: no such file.
 struct FileStamp {
   dev_t device = 0;
   ino_t number = 0;

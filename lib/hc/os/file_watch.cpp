@@ -12,14 +12,14 @@
 
 namespace hc {
 
-/// What the thread has too, and alone once it is left behind.
+/// Shared with the thread, which may outlive the FileWatch.
 struct FileWatch::Shared {
   Event changed;
-  std::mutex mutex;  // of what follows
+  std::mutex mutex;  // guards the members below
   std::condition_variable woken;
   bool is_over = false;
-  int sets = 0;  // how often files were set
-  // At the last call; none: not looked at yet.
+  int sets = 0;  // number of set_files() calls
+  // As of the last callback; nullopt: not checked yet.
   std::map<std::string, std::optional<FileStamp>> known;
 
   void look_until_over() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Notices that files are edited.
+// Detects changes of files.
 
 #include <chrono>
 #include <functional>
@@ -13,28 +13,27 @@
 
 namespace hc {
 
-/// Calls when one of some files has been written or taken away, or another put in its place, and
-/// nothing more happens to them: what comes in quick succession is one call. It looks at them,
-/// since not every file system announces what others do, and they may be reached by links. It looks
-/// on a thread of its own, which is left behind where the system does not let a look end, as on a
-/// network disk that hangs.
+/// Calls back when files have been written, removed or replaced and no further change follows;
+/// changes in quick succession cause one call. It polls, since some file systems do not report
+/// changes made elsewhere and paths may contain symbolic links. It polls on a separate thread,
+/// which is abandoned if a system call hangs, as on a network disk.
 class FileWatch {
  public:
-  /// How often it looks, and how long nothing more is to happen before the call.
+  /// Polling period, and how long the files must be unchanged before the callback.
   static constexpr std::chrono::milliseconds kPeriod{200}, kQuiet{50};
 
-  /// Watches these; waits for a first look at them.
+  /// Starts watching; returns after a first check of the files.
   ///
-  /// Errors: System (no descriptor or thread to be had).
+  /// Errors: System (no descriptor or thread available).
   static Result<std::unique_ptr<FileWatch>> make(Loop& loop, const std::vector<std::string>& files,
                                                  std::function<void()> changed);
   ~FileWatch();
 
-  /// Watches these from now on, those that it has watched before from its last call on, and no
-  /// others any more. Others are looked at at once, on its thread.
+  /// Replaces the set of watched files. Files watched before are compared with their state at the
+  /// last callback; new ones are checked at once, on the thread.
   void set_files(const std::vector<std::string>& files);
 
-  /// Whether a file that it watches was there at its last call.
+  /// Whether a watched file existed at the last callback.
   [[nodiscard]] bool was_there(const std::string& file) const;
 
  private:

@@ -32,7 +32,7 @@ class FileWatchTest : public ::testing::Test {
     if (watch_) return watch_->set_files(files);
     watch_ = std::move(*FileWatch::make(*loop_, files, [this] { ++calls_; }));
   }
-  /// Turns until it has been called so often; the watchdog is the test's.
+  /// Turns the loop until there have been `calls`; the test has a time-out.
   void await(int calls) {
     while (calls_ < calls) ASSERT_TRUE(loop_->turn());
     EXPECT_EQ(calls_, calls);
@@ -44,7 +44,7 @@ class FileWatchTest : public ::testing::Test {
   Folder folder_;
 };
 
-/// A disk that hangs: who looks for a file on it waits until this goes.
+/// A disk that hangs: system calls on its files block until this is destroyed.
 class HungDisk {
  public:
   explicit HungDisk(std::string folder) : folder_(std::move(folder)) {
@@ -69,7 +69,7 @@ class HungDisk {
   }
 
   explicit operator bool() const { return is_there_; }
-  /// Waits until somebody wants something of it: what.
+  /// Waits for the next request; returns its opcode.
   std::uint32_t next() {
     std::array<std::byte, FUSE_MIN_READ_BUFFER * 2> question;
     fuse_in_header header{};

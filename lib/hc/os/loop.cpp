@@ -9,7 +9,7 @@
 
 namespace hc {
 
-constexpr std::uint64_t kTimerId = 0;  // entries have others
+constexpr std::uint64_t kTimerId = 0;  // the ids of entries start at 1
 
 Result<std::unique_ptr<Loop>> Loop::make() {
   auto poll =
@@ -71,7 +71,7 @@ void Loop::set_timer(TimePoint when) {
   arm(posted_.empty() ? when : TimePoint());
 }
 
-/// A time that has passed makes the timer readable at once.
+/// A time in the past makes the timer readable at once.
 void Loop::arm(TimePoint when) const {
   using std::chrono::nanoseconds;
   itimerspec spec{};
@@ -83,7 +83,7 @@ void Loop::arm(TimePoint when) const {
 }
 
 void Loop::remove(std::uint64_t id) {
-  const auto entry = entries_.extract(id).mapped();  // what it holds may end other watches
+  const auto entry = entries_.extract(id).mapped();  // its callback may own other handles
   due_.erase({entry->due, id});
   if (entry->due == timer_due_ && entry->due != TimePoint::max()) set_timer(next_due());
   if (entry->wanted != 0) static_cast<void>(control(EPOLL_CTL_DEL, entry->descriptor, 0, id));
@@ -107,7 +107,7 @@ void Loop::do_posted() {
 void Loop::call_due() {
   const auto now = std::chrono::steady_clock::now();
   while (!due_.empty() && due_.begin()->first <= now) {
-    auto entry = entries_.at(due_.begin()->second);  // may end itself
+    auto entry = entries_.at(due_.begin()->second);  // keeps it if the callback ends its handle
     due_.erase(due_.begin());
     entry->due = TimePoint::max();
     entry->callback(0);
@@ -126,9 +126,9 @@ Status Loop::turn(std::chrono::milliseconds timeout) {
     const std::uint64_t id = event.data.u64;  // a copy, since the event is packed
     is_time = is_time || id == kTimerId;
     auto found = entries_.find(id);
-    if (found == entries_.end()) continue;  // ended by a callback before
-    auto entry = found->second;             // may end itself
-    // It may have been wanted no more since.
+    if (found == entries_.end()) continue;  // removed by an earlier callback of this turn
+    auto entry = found->second;             // keeps it if the callback ends its handle
+    // An earlier callback may have changed the wanted events.
     auto wanted = entry->wanted == 0 ? 0 : event.events & (entry->wanted | EPOLLERR | EPOLLHUP);
     if (wanted != 0) entry->callback(wanted);
   }

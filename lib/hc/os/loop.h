@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The event loop: waits for descriptors and times, and calls back. Loop::post() is the way to its
-// thread from any other, run_aside() (aside.h) from it to one for work that takes its time.
-// The rest is used from one thread; reactor.h runs a loop on a thread of its own. The
-// cost of an event does not grow with what else is watched.
+// The event loop: waits for descriptors and times, and calls back. Single-threaded except
+// Loop::post(), with which other threads call functions on the loop's thread; run_aside() (aside.h)
+// runs lengthy work on another thread, and reactor.h runs a loop on a background thread. The cost
+// of an event does not depend on the number of descriptors.
 
 #include <sys/epoll.h>
 
@@ -21,8 +21,7 @@
 
 namespace hc {
 
-/// An epoll instance with a timer in it. It can be nested: descriptor() is readable when turn() has
-/// something to do.
+/// An epoll instance with a timer. It can be nested: descriptor() is readable when turn() has work.
 ///
 ///     auto loop = Loop::make();
 ///     auto watch = (*loop)->watch(socket, EPOLLIN, [&](std::uint32_t) { read(); });
@@ -31,10 +30,10 @@ namespace hc {
 class Loop {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
-  /// Takes epoll's events, or 0 when a time has come.
+  /// Takes epoll's events, or 0 when a timer expires.
   using Callback = std::function<void(std::uint32_t events)>;
 
-  /// A callback that is registered until this object ends, which it may do within a callback.
+  /// A registered callback; destroying the handle, also within a callback, removes it.
   class Handle {
    public:
     Handle() = default;
@@ -50,15 +49,15 @@ class Loop {
     }
     explicit operator bool() const { return loop_ != nullptr; }
 
-    /// Has the descriptor watched for these events from now on (level-triggered unless EPOLLET is
-    /// among them), and for hang-up and error; 0: for nothing.
+    /// Sets the events to wait for (level-triggered unless EPOLLET is among them), with hang-up and
+    /// error; 0: none, not even these.
     ///
     /// Errors: System (no memory; a descriptor that epoll cannot wait for).
     Status want(std::uint32_t events) { return loop_->want(id_, events); }
-    /// Has another descriptor watched from now on, for nothing yet. To be called before the one
-    /// there is is closed; -1: none.
+    /// Watches another descriptor from now on, at first for no events; -1: none. Call it before the
+    /// old descriptor is closed.
     void move_to(int descriptor) { loop_->move(id_, descriptor); }
-    /// Has the callback called once with events 0, at `when` or at an earlier time set before.
+    /// Calls the callback once with events 0, at `when` or at an earlier time already set.
     void call_at(TimePoint when) { loop_->set_due(id_, when); }
 
    private:
@@ -72,21 +71,20 @@ class Loop {
   /// Errors: System.
   static Result<std::unique_ptr<Loop>> make();
 
-  /// Has `callback` called in each turn in which the descriptor has one of `events`, a hang-up or
-  /// an error. The descriptor must stay open as long as the handle. -1: for Handle::call_at()
-  /// alone.
+  /// Calls `callback` in each turn in which the descriptor has one of `events`, a hang-up or an
+  /// error. The descriptor must stay open as long as the handle; -1: only for Handle::call_at().
   ///
   /// Errors: System.
   Result<Handle> watch(int descriptor, std::uint32_t events, Callback callback);
 
-  /// Has `callback` called once, in the first turn at or after that time.
+  /// Calls `callback` once, in the first turn at or after `when`.
   Handle call_at(TimePoint when, std::function<void()> callback);
 
-  /// Has `job` called in the loop's thread, in a later turn; jobs keep their order. From any
-  /// thread, while the loop exists.
+  /// Calls `job` on the loop's thread in a later turn, in the order of the calls. May be called on
+  /// any thread while the loop exists.
   void post(std::function<void()> job);
 
-  /// Waits for the next event or time, at most `timeout` (-1: for ever), and calls back for all.
+  /// Waits up to `timeout` (-1: no limit) for events and timers, and calls their callbacks.
   /// Errors: System.
   Status turn(std::chrono::milliseconds timeout = std::chrono::milliseconds(-1));
 
@@ -116,12 +114,12 @@ class Loop {
   }
 
   Descriptor poll_, timer_;
-  TimePoint timer_due_ = TimePoint::max();  // what timer_ is set to
+  TimePoint timer_due_ = TimePoint::max();  // the time that timer_ is set to
   std::uint64_t last_id_ = 0;
   std::map<std::uint64_t, std::shared_ptr<Entry>> entries_;
   std::set<std::pair<TimePoint, std::uint64_t>> due_;
-  std::mutex mutex_;                           // of what follows, and of setting timer_
-  std::vector<std::function<void()>> posted_;  // while there are any, timer_ is due
+  std::mutex mutex_;                           // guards posted_ and setting timer_
+  std::vector<std::function<void()>> posted_;  // unless it is empty, timer_ has expired
 };
 
 }  // namespace hc

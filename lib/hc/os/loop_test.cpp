@@ -134,7 +134,7 @@ TEST_F(LoopTest, NoJobIsLostThatManyThreadsPost) {
       for (int job = 0; job < kJobs; ++job) loop_->post([&] { ++done; });
     });
   while (done < kThreads * kJobs) {
-    // Setting times meets posting.
+    // Sets timers concurrently with post().
     auto timer = loop_->call_at(std::chrono::steady_clock::now() + 1h, [] {});
     ASSERT_TRUE(loop_->turn());
   }

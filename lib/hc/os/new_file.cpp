@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::seconds kPatience{2};  // with a process that replaces a file
+constexpr std::chrono::seconds kPatience{2};  // to wait for another process that writes the file
 constexpr const char* kIsWritten = ": another process is writing it";
 
 Result<Descriptor> open_file(const std::string& path, int flags, mode_t mode = 0666) {
@@ -28,13 +28,13 @@ Result<Descriptor> open_file(const std::string& path, int flags, mode_t mode = 0
   });
 }
 
-/// Whether nobody else writes it; from then on nobody else does. Where a file system has no locks,
-/// nobody can know.
+/// Locks a file for writing; false if another process has the lock. Succeeds without a lock where
+/// the file system has none.
 bool lock(const Descriptor& file) {
   return ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 
-/// Whether an open file still has this name.
+/// Whether the path still leads to the open file.
 bool is_at(const Descriptor& file, const std::string& path) {
   struct stat open {
   }, named{};
@@ -47,21 +47,21 @@ bool has_contents(const std::string& path) {
   return ::stat(path.c_str(), &about) == 0 && about.st_size > 0;
 }
 
-/// Whether others than its owner, this process, can read or write an open file.
-bool is_of_others(const Descriptor& file) {
+/// Whether other users can read or write an open file, or own it.
+bool is_accessible_to_others(const Descriptor& file) {
   struct stat about {};
   return ::fstat(file.get(), &about) != 0 || about.st_uid != ::geteuid() ||
          (about.st_mode & (S_IRWXG | S_IRWXO)) != 0;
 }
 
-/// An empty file, locked by this process, that is to replace another.
+/// Opens PATH empty and locked, to be renamed over another file when it is written.
 Result<Descriptor> open_successor(const std::string& path, mode_t mode) {
   const auto give_up = std::chrono::steady_clock::now() + kPatience;
   Backoff pause(std::chrono::milliseconds(1));
   while (true) {
-    // Others may have put a link or a FIFO there.
+    // Another user may have put a symbolic link or a FIFO there.
     auto file = HC_TRY(open_file(path, O_WRONLY | O_NOFOLLOW | O_NONBLOCK, mode));
-    // The process before may have renamed the file.
+    // The previous writer may have renamed the file.
     if (lock(file) && is_at(file, path)) {
       if (::ftruncate(file.get(), 0) != 0) return system_error("ftruncate", path);
       return file;
@@ -82,7 +82,7 @@ Status put_in_place(const std::string& path, std::string_view contents, mode_t m
   const std::string unfinished = path + ".unfinished";
   const auto file = HC_TRY(open_successor(unfinished, mode));
   const bool is_wanted = replaces || ::access(path.c_str(), F_OK) != 0;
-  if (!replaces && is_wanted && is_of_others(file))
+  if (!replaces && is_wanted && is_accessible_to_others(file))
     return Error{Code::System, unfinished + ": other users can read it; remove it"};
   Status done = is_wanted ? write_to(file, path, contents) : Status();
   if (done && is_wanted && std::rename(unfinished.c_str(), path.c_str()) != 0)
@@ -124,7 +124,7 @@ Result<NewFile> begin_file(const std::string& path) {
     auto opened = HC_TRY(open_file(path, O_WRONLY | O_APPEND));
     return NewFile{std::move(opened), path};
   }
-  // The lock tells of two that find the same empty file.
+  // Of two processes that find the same empty file, the lock decides which one gets it.
   Result<Descriptor> file = Descriptor();
   bool is_new = false;
   auto name = free_name(path, fs::path(path).extension().string(), [&](const std::string& each) {

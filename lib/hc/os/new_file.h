@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Files that are written without destroying what others have written: the one rule of all that
-// records (doc/recordings.md, "Nothing is overwritten").
+// Creates files without overwriting existing data: the rule for everything that records
+// (doc/recordings.md, "Nothing is overwritten").
 
 #include <functional>
 #include <string>
@@ -12,44 +12,45 @@
 
 namespace hc {
 
-/// Whether a path is a device, a FIFO, or a descriptor by its name (/dev/stdout, /proc/self/fd/1):
-/// what is written there goes behind what is there.
+/// Whether a path is a device, a FIFO, or a descriptor (/dev/stdout, /proc/self/fd/1): data is then
+/// appended and never replaced.
 bool is_written_in_place(const std::string& path);
 
-/// A path, or else the first that is free of PATH_2, PATH_3, …
-/// @param ending  of a file's name, ".mtp": the number stands before it where the path has it.
+/// The first free one of PATH, PATH_2, PATH_3, …
+/// @param ending  such as ".mtp": if the path ends with it, the number is inserted before it.
 std::string free_name(const std::string& path, std::string_view ending,
                       const std::function<bool(const std::string& path)>& is_free);
 
-/// A file that is open for writing, and locked (flock) as long as it is.
+/// A file open for writing, and locked (flock) until it is closed.
 struct NewFile {
   Descriptor descriptor;
   std::string path;
-  bool is_new = false;  ///< no empty file had the name
+  bool is_new = false;  ///< created, not an empty file that existed
 };
 
-/// Begins a file. One that has contents, or that another process is writing, stays as it is, and
-/// the file is beside it: x_2.mtp for x.mtp. What is_written_in_place() is opened as it is.
+/// Creates a file, or opens an empty one. If the file has contents or another process is writing
+/// it, the next free name is used: x_2.mtp for x.mtp. Devices and the like (is_written_in_place())
+/// are opened for appending.
 ///
 /// Errors: System, NotFound (the folder does not exist).
 Result<NewFile> begin_file(const std::string& path);
 
-/// Opens a file for reading and writing where it is, to continue it; creates it where there is
-/// none. Errors: System; also while another process writes it.
+/// Opens a file for reading and writing, to continue it; creates it if it does not exist. Errors:
+/// System; also if another process is writing it.
 Result<NewFile> continue_file(const std::string& path);
 
-/// Replaces what a file contains, for files that show the present and can be made again: readers
-/// find the old or the new contents, also after a crash or on a full disk. Of several processes
-/// that replace it at once, each waits up to 2 s for those before, where the file system has locks
-/// (flock). What is_written_in_place() is written to.
+/// Replaces the contents of a file that can be regenerated. Readers see either the old or the new
+/// contents, even after a crash or on a full disk. Concurrent calls are serialised with flock,
+/// where the file system has it, and wait up to 2 s for each other. Devices and the like
+/// (is_written_in_place()) are written directly.
 ///
-/// Errors: System (also: another process does not finish); the file is as it was then.
+/// Errors: System (also: another process does not finish); the file is then unchanged.
 Status replace_file(const std::string& path, std::string_view contents);
 
-/// Makes a file that only its owner can read, unless it is there: of several that do so at once,
-/// with locks as above, all find the same contents, and never a part of them.
+/// Creates a file that only its owner can read, unless it exists. Concurrent calls, serialised as
+/// above, leave the contents of one of them, complete.
 ///
-/// Errors: System (also: PATH.unfinished is there, and others can read it), NotFound (the folder
+/// Errors: System (also: PATH.unfinished exists and other users can read it), NotFound (the folder
 /// does not exist).
 Status make_private_file(const std::string& path, std::string_view contents);
 

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 class NewFiles : public ::testing::Test {
  protected:
   [[nodiscard]] std::string at(const std::string& name) const { return folder_ / name; }
-  /// Begins a file and writes to it; its name in the folder.
+  /// Begins a file and writes to it; returns its name.
   [[nodiscard]] std::string begin(const std::string& name, std::string_view contents) const {
     auto file = must(begin_file(at(name)));
     EXPECT_TRUE(write_all(file.descriptor.get(), contents));

@@ -18,12 +18,12 @@
 namespace hc {
 namespace {
 
-struct Question {
-  nlmsghdr header{sizeof(Question), SOCK_DIAG_BY_FAMILY, NLM_F_REQUEST, 0, 0};
+struct Request {
+  nlmsghdr header{sizeof(Request), SOCK_DIAG_BY_FAMILY, NLM_F_REQUEST, 0, 0};
   inet_diag_req_v2 wanted{};
 };
 
-struct Answer {
+struct Reply {
   nlmsghdr header;
   union {
     inet_diag_msg found;
@@ -37,11 +37,11 @@ bool is_loopback(const sockaddr_storage& address) {
                IN_CLASSA_NSHIFT ==
            IN_LOOPBACKNET;
   const auto& six = reinterpret_cast<const sockaddr_in6&>(address).sin6_addr;
-  return address.ss_family == AF_INET6 &&  // or ::ffff:127.0.0.1, a peer by IPv4
+  return address.ss_family == AF_INET6 &&  // or ::ffff:127.0.0.1, an IPv4 peer
          (IN6_IS_ADDR_LOOPBACK(&six) || (IN6_IS_ADDR_V4MAPPED(&six) && six.s6_addr[12] == 127));
 }
 
-/// Writes an address into a question; gives its port, in the order of the network.
+/// Writes an address into a request; returns its port in network byte order.
 in_port_t put(const sockaddr_storage& address, __be32* words) {
   if (address.ss_family == AF_INET) {
     const auto& place = reinterpret_cast<const sockaddr_in&>(address);
@@ -53,30 +53,29 @@ in_port_t put(const sockaddr_storage& address, __be32* words) {
   return place.sin6_port;
 }
 
-/// The user that owns the socket with these two addresses; without a remote address, a listening
-/// one.
+/// The owner of the TCP socket with these addresses; without a remote one, of the listening socket.
 ///
-/// Source: man 7 sock_diag. Errors: NotFound (also a socket that nobody has, not yet or not any
-/// more), System.
+/// Source: man 7 sock_diag. Errors: NotFound (also a socket without an owner, not accepted yet or
+/// already closed), System.
 Result<uid_t> user_of(const sockaddr_storage& end, const sockaddr_storage* other) {
-  Question question;
-  question.wanted.sdiag_family = static_cast<std::uint8_t>(end.ss_family);
-  question.wanted.sdiag_protocol = IPPROTO_TCP;
-  question.wanted.idiag_states = ~0U;
-  auto& id = question.wanted.id;
+  Request request;
+  request.wanted.sdiag_family = static_cast<std::uint8_t>(end.ss_family);
+  request.wanted.sdiag_protocol = IPPROTO_TCP;
+  request.wanted.idiag_states = ~0U;
+  auto& id = request.wanted.id;
   id.idiag_sport = put(end, id.idiag_src);
   if (other != nullptr) id.idiag_dport = put(*other, id.idiag_dst);
   id.idiag_cookie[0] = id.idiag_cookie[1] = INET_DIAG_NOCOOKIE;
   Descriptor kernel(::socket(AF_NETLINK, SOCK_DGRAM | SOCK_CLOEXEC, NETLINK_SOCK_DIAG));
-  Answer answer{};
-  if (::send(kernel.get(), &question, sizeof question, 0) < 0 ||
-      ::recv(kernel.get(), &answer, sizeof answer, 0) < 0)
+  Reply reply{};
+  if (::send(kernel.get(), &request, sizeof request, 0) < 0 ||
+      ::recv(kernel.get(), &reply, sizeof reply, 0) < 0)
     return system_error("sock_diag", "");
-  const int number = answer.header.nlmsg_type == NLMSG_ERROR ? -answer.failed.error : 0;
+  const int number = reply.header.nlmsg_type == NLMSG_ERROR ? -reply.failed.error : 0;
   if (number != 0 && number != ENOENT) return system_error("sock_diag", "", number);
-  if (number != 0 || answer.found.idiag_inode == 0)
+  if (number != 0 || reply.found.idiag_inode == 0)
     return Error{Code::NotFound, "the kernel (sock_diag) does not find its socket"};
-  return answer.found.idiag_uid;
+  return reply.found.idiag_uid;
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ std::string text_of(const std::string& path) {
   return text;
 }
 
-/// The whole numbers at the beginning of a text, between spaces.
+/// The integers at the start of a text, separated by spaces.
 std::vector<std::int64_t> numbers_in(std::string_view text) {
   std::vector<std::int64_t> numbers;
   while (!text.empty()) {
@@ -39,7 +39,7 @@ std::vector<std::int64_t> numbers_in(std::string_view text) {
   return numbers;
 }
 
-/// Children of one thread, the eldest first.
+/// The children of one thread, eldest first.
 std::vector<std::int64_t> children_of(pid_t process, const std::string& thread) {
   return numbers_in(text_of("/proc/" + std::to_string(process) + "/task/" + thread + "/children"));
 }
@@ -55,7 +55,7 @@ std::vector<std::string> threads_of(pid_t process) {
   return threads;
 }
 
-/// The share of memory, of "Pss: 1234 kB".
+/// The proportional set size, from "Pss: 1234 kB" [byte].
 std::uint64_t memory_of(pid_t process) {
   constexpr std::string_view kKey = "\nPss:";
   auto text = text_of("/proc/" + std::to_string(process) + "/smaps_rollup");
@@ -76,13 +76,13 @@ std::vector<pid_t> descendants(pid_t process) {
       for (auto child : children_of(parent, thread)) all.push_back(static_cast<pid_t>(child));
   };
   add(process);
-  for (std::size_t known = 0; known < all.size();) add(all[known++]);  // which grows meanwhile
+  for (std::size_t known = 0; known < all.size();) add(all[known++]);
   return all;
 }
 
 Usage usage_of(const std::vector<pid_t>& processes, bool with_memory) {
-  // Source: man 5 proc, /proc/pid/stat. Fields are counted from behind the name, which may hold
-  // anything: the state is the first, and times of 14 to 17 the 11th to 14th behind it.
+  // Source: man 5 proc, /proc/pid/stat. Parsed from the end of the name, which may contain any
+  // character: the state is field 0, and the times (14 to 17) are 10 to 13 of the numbers after it.
   constexpr std::size_t kFirstTime = 10, kTimes = 4;
   const auto tick = std::chrono::nanoseconds(std::nano::den / ::sysconf(_SC_CLK_TCK));
   Usage usage;

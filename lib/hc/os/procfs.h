@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the kernel says of a process and all that descends from it (/proc).
+// Resource usage of a process and its descendants (/proc).
 
 #include <sys/types.h>
 
@@ -10,18 +10,18 @@
 
 namespace hc {
 
-/// All that descends from a process, without itself. Cost: some system calls for each of them.
+/// All descendants of a process, without itself. Cost: a few system calls per process.
 std::vector<pid_t> descendants(pid_t process);
 
-/// What processes have used, together.
+/// The resources used by processes, summed.
 struct Usage {
-  std::chrono::nanoseconds processor{0};  ///< with what those children used that have ended
-  std::uint64_t memory = 0;               ///< their part of what they share (PSS) [byte]
-  bool is_stopped = false;                ///< one of them, by a signal or a debugger
-  bool is_traced = false;                 ///< one of them is stopped in a debugger
+  std::chrono::nanoseconds processor{0};  ///< CPU time, with that of children that have ended
+  std::uint64_t memory = 0;               ///< proportional set size (PSS) [byte]
+  bool is_stopped = false;                ///< one is stopped by a signal or a debugger
+  bool is_traced = false;                 ///< one is stopped in a debugger
 };
 
-/// @param with_memory  whether `memory` is wanted, which takes the kernel longer than the rest.
+/// @param with_memory  whether to read `memory`, which costs more than the rest.
 Usage usage_of(const std::vector<pid_t>& processes, bool with_memory);
 
 }  // namespace hc

@@ -19,17 +19,17 @@ namespace {
 
 int stop_event = -1;  // written by the signal handler
 volatile std::sig_atomic_t stop_asked = 0;
-std::array<std::atomic<std::int64_t>, SIGTERM + 1> first_asked{};  // by signal [ns]
+std::array<std::atomic<std::int64_t>, SIGTERM + 1> first_signal{};  // by number [ns]
 
 extern "C" void ask_to_stop(int number) {
-  constexpr std::int64_t kSame =
-      1'000'000'000;  // so close together they are one: `timeout` sends two
+  // Signals within this time count as one: `timeout` sends two. [ns]
+  constexpr std::int64_t kSame = 1'000'000'000;
   int saved = errno;
   timespec time{};
   ::clock_gettime(CLOCK_MONOTONIC, &time);
   const std::int64_t now = time.tv_sec * 1'000'000'000 + time.tv_nsec;
   std::int64_t first = 0;
-  auto& known = first_asked.at(static_cast<std::size_t>(number));
+  auto& known = first_signal.at(static_cast<std::size_t>(number));
   if (!known.compare_exchange_strong(first, now) && now - first > kSame) {
     std::signal(number, SIG_DFL);
     std::raise(number);
@@ -76,7 +76,7 @@ Status write_all(int descriptor, std::string_view text) {
       pollfd writable{descriptor, POLLOUT, 0};
       ::poll(&writable, 1, -1);
     } else if (errno == EPIPE) {
-      return Error{Code::Closed, "nobody reads"};
+      return Error{Code::Closed, "the reader has closed it"};
     } else if (errno != EINTR) {
       return Error{Code::System, "write: " + std::generic_category().message(errno)};
     }

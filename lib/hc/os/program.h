@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What every program of ours needs from the system: standard descriptors, the signals that end it,
-// and text that a person asked for. The library itself never writes anything on its own account.
+// Process set-up shared by all programs: standard descriptors, signals that stop them, and writing
+// of text that a person asked for.
 
 #include <string_view>
 
@@ -9,22 +9,22 @@
 
 namespace hc {
 
-/// Opens /dev/null for those of the descriptors 0 to 2 that are closed: else the first file that is
-/// opened would get what is written to standard output or error. Called first thing in a program.
+/// Opens /dev/null for closed descriptors among 0 to 2; otherwise the next file opened would
+/// receive standard output or error. Call it first in main().
 void open_standard_descriptors();
 
-/// A descriptor that is readable once SIGINT, SIGTERM or, unless it is ignored as under nohup,
-/// SIGHUP has come, caught from the first call on; another one kills, as usual, unless it follows
-/// at once.
-/// SIGPIPE and SIGXFSZ are ignored from then on. Always the same descriptor. For the main thread.
+/// A descriptor that becomes readable on SIGINT, SIGTERM or SIGHUP (unless that is ignored, as
+/// under nohup); they are caught from the first call on. Repeating a signal kills as usual, except
+/// within 1 s. SIGPIPE and SIGXFSZ are ignored. Always returns the same descriptor. To be called on
+/// the main thread.
 int stop_descriptor();
 
-/// Whether such a signal has come since. For loops that may never wait.
+/// Whether such a signal was received. For loops that never wait.
 bool stop_requested();
 
-/// Writes all of a text, waiting where the descriptor would block.
+/// Writes a whole text, waiting where the descriptor would block.
 ///
-/// Errors: Closed (nobody reads it any more), System.
+/// Errors: Closed (the reader has closed the descriptor), System.
 Status write_all(int descriptor, std::string_view text);
 
 }  // namespace hc

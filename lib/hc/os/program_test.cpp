@@ -14,7 +14,7 @@
 namespace hc {
 namespace {
 
-/// Whether something holds in a process of its own: what catches signals does so from then on.
+/// Evaluates a condition in a child process, since signal handlers stay installed.
 template <typename Function>
 bool holds_in_child(Function function) {
   const pid_t child = ::fork();

@@ -13,11 +13,11 @@ namespace hc {
 
 struct Watch::State {
   Loop::Callback callback;
-  Loop::Handle handle;  // used with the reactor's lock
+  Loop::Handle handle;  // guarded by the reactor's mutex
   std::atomic<bool> has_ended{false};
 };
 
-/// A loop, turned by one thread with a lock that is free while the thread waits or calls back.
+/// A loop turned by one thread, which releases the mutex while it waits or calls back.
 class Watch::Reactor {
  public:
   /// Never destroyed: its thread outlives main().
@@ -30,7 +30,7 @@ class Watch::Reactor {
     std::lock_guard lock(mutex);
     if (loop_ == nullptr) {
       auto loop = HC_TRY(Loop::make());
-      auto thread = HC_TRY(start_thread([this] { run(); }));  // which waits for the lock
+      auto thread = HC_TRY(start_thread([this] { run(); }));  // waits for the mutex
       thread_ = thread.get_id();
       thread.detach();
       loop_ = std::move(loop);
@@ -40,7 +40,7 @@ class Watch::Reactor {
   }
 
   void remove(State& state) {
-    Loop::Callback callback;  // ends without the lock: it may hold watches of its own
+    Loop::Callback callback;  // destroyed after the lock: it may own other watches
     std::unique_lock lock(mutex);
     state.has_ended = true;
     state.handle.reset();
@@ -49,13 +49,13 @@ class Watch::Reactor {
     if (running_ != &state) callback.swap(state.callback);
   }
 
-  /// The loop keeps what it calls, and so the state, until it returns.
+  /// The loop keeps the callback that is running, and with it `state`, until it returns.
   void call(State& state, std::uint32_t events) {
     if (state.has_ended) return;
     running_ = &state;
     lock_.unlock();
     state.callback(events);
-    if (state.has_ended) state.callback = nullptr;  // without the lock, as in remove()
+    if (state.has_ended) state.callback = nullptr;  // unlocked, as in remove()
     lock_.lock();
     running_ = nullptr;
     returned_.notify_all();
@@ -74,8 +74,8 @@ class Watch::Reactor {
     }
   }
 
-  std::unique_lock<std::mutex> lock_;  // of the thread
-  std::condition_variable returned_;   // from a callback
+  std::unique_lock<std::mutex> lock_;  // used by the thread
+  std::condition_variable returned_;   // signalled when a callback returns
   std::thread::id thread_;
   std::unique_ptr<Loop> loop_;
   const State* running_ = nullptr;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The one background thread of a process: it turns an event loop that serves links while the
-// program's own threads do other things.
-// It starts with the first Watch and never ends; every signal is blocked in it.
+// The background thread of a process: an event loop that serves links while the program's own
+// threads are busy. It starts with the first Watch and never ends; all signals are blocked in it.
 
 #include <cstdint>
 #include <memory>
@@ -11,16 +10,16 @@
 
 namespace hc {
 
-/// A descriptor that the thread watches, and a timer with it.
+/// A descriptor watched by the background thread, with a timer.
 ///
 ///     Watch watch;
 ///     if (auto started = watch.start(socket, [&](std::uint32_t events) { … }); !started) …
-///     watch.want(EPOLLOUT);                  // until want(0), as long as there is room
+///     watch.want(EPOLLOUT);                  // until want(0), while there is room
 ///     watch.call_at(now + milliseconds(1));  // once, with events 0
 ///
-/// A callback must not block: those of all links take turns. It may use every Watch, its own also
-/// while that is being destroyed, and end its own. want() and call_at() may be called from any
-/// thread.
+/// A callback must not block, since it delays those of all links. It may use any Watch, also its
+/// own while that is being destroyed, and may end its own. want() and call_at() may be called on
+/// any thread.
 class Watch {
  public:
   using TimePoint = Loop::TimePoint;
@@ -31,17 +30,17 @@ class Watch {
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
 
-  /// To be called once, before all else.
-  /// @param descriptor  must stay open as long as the watch; -1: a timer alone.
+  /// Call it once, before all other functions.
+  /// @param descriptor  must stay open as long as the watch; -1: only a timer.
   ///
-  /// Errors: System (no descriptor or thread to be had).
+  /// Errors: System (no descriptor or thread available).
   Status start(int descriptor, Callback callback);
 
-  /// Afterwards the callback neither runs nor will run: waits for it where it runs now, but for
-  /// itself. Not to be called, then, while holding a lock which the callback takes.
+  /// Removes the callback; waits for a running one to return, unless called from it. Do not call it
+  /// while holding a lock that the callback takes.
   void end();
 
-  /// As Loop::Handle's. Cost: a system call where something changes, or the next time of all does.
+  /// As in Loop::Handle. Cost: a system call if the events or the earliest timer change.
   Status want(std::uint32_t events);
   void move_to(int descriptor);
   void call_at(TimePoint when);

@@ -34,7 +34,7 @@ Watch::TimePoint now() {
   return std::chrono::steady_clock::now();
 }
 
-/// A descriptor that is readable when it is made so, and always has room.
+/// A descriptor that is always writable, and readable after raise().
 struct Event {
   Descriptor descriptor{::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};
   void raise() const { EXPECT_EQ(::eventfd_write(descriptor.get(), 1), 0); }
@@ -46,7 +46,7 @@ TEST(Watch, ReportsWhatIsWantedUntilItIsNot) {
   std::unique_ptr<Watch> watch;
   int count = 0;
   watch = watch_of(event.descriptor.get(), [&](std::uint32_t events) {
-    if (++count < 3) return;  // level-triggered: it comes again
+    if (++count < 3) return;  // level-triggered: called again
     EXPECT_TRUE(watch->want(0));
     third.set_value(events);
   });
@@ -105,7 +105,7 @@ TEST(Watch, CallsInTheOrderOfTime) {
     }));
   const auto begin = now();
   std::promise<void> ready;
-  auto starter = watch_of(-1, [&](std::uint32_t) {  // nothing else is called meanwhile
+  auto starter = watch_of(-1, [&](std::uint32_t) {  // no other callback runs meanwhile
     for (int i : {2, 0, 1}) watches[static_cast<std::size_t>(i)]->call_at(begin + microseconds(i));
   });
   starter->call_at(begin);
@@ -131,7 +131,7 @@ TEST(Watch, MayEndItselfInItsOwnCallback) {
   std::promise<void> ended;
   std::unique_ptr<Watch> watch;
   watch = watch_of(-1, [&ended, &watch](std::uint32_t) {
-    auto& told = ended;  // the callback lives on until it returns
+    auto& told = ended;  // captures stay valid until the callback returns
     watch.reset();
     told.set_value();
   });

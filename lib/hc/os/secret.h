@@ -6,13 +6,13 @@
 
 namespace hc {
 
-/// 128 random bits, in hexadecimal digits.
+/// 128 random bits in hexadecimal.
 std::string make_secret();
 
-/// Names the variable of the environment with the secret of a run, which `hc run` makes and no
-/// other user can read: with it a restarted module recognizes what its predecessor has signed.
+/// The environment variable with the secret of a run, which `hc run` sets and other users cannot
+/// read; it lets a restarted module verify what its predecessor has signed.
 inline constexpr const char* kRunSecret = "HC_SECRET";
-/// That of this run; outside of one, a new one.
+/// The secret of this run; outside of `hc run`, a new one.
 std::string run_secret();
 
 }  // namespace hc

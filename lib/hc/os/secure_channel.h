@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What may stand between a connected socket and the bytes that it carries: encryption.
+// Encryption between a connected socket and its user.
 
 #include <sys/types.h>
 #include <sys/uio.h>
@@ -14,32 +14,32 @@
 
 namespace hc {
 
-/// Reads and writes the bytes of a connection in place of recv() and sendmsg(); never waits.
+/// Reads and writes a connection in place of recv() and sendmsg(); never blocks.
 class SecureChannel {
  public:
   virtual ~SecureChannel() = default;
 
-  /// Continues the handshake; the poll events that it waits for, 0: it is done.
+  /// Continues the handshake; returns the poll events to wait for, 0 when it is complete.
   ///
-  /// Errors: Closed (one side refused the other; the detail says which, and why).
+  /// Errors: Closed (one side refused the other; the detail says which one and why).
   virtual Result<short> agree() = 0;
 
-  /// As recv() and sendmsg(); where they give -1 with another errno than EAGAIN, failure() says
-  /// why.
+  /// As recv() and sendmsg(); if they return -1 with another errno than EAGAIN, failure() has the
+  /// reason.
   virtual ssize_t read(std::span<std::byte> space) = 0;
   virtual ssize_t write(std::span<const iovec> parts) = 0;
   [[nodiscard]] virtual Error failure() const = 0;
 
-  /// Whether bytes have been taken from the socket that read() has not given yet.
+  /// Whether bytes have been received that read() has not returned yet.
   [[nodiscard]] virtual bool has_unread() const = 0;
-  /// Whether bytes that write() took are not with the kernel yet; write() continues, also with no
-  /// parts.
+  /// Whether bytes accepted by write() have not reached the kernel yet; call write() again, if
+  /// necessary without parts.
   [[nodiscard]] virtual bool has_unsent() const = 0;
-  /// Says that nothing more will be written.
+  /// Closes the sending direction.
   virtual void end() = 0;
 };
 
-/// A socket that is connected, with its channel if it has one.
+/// A connected socket, with its channel if it is encrypted.
 struct ConnectedSocket {
   Descriptor descriptor;
   std::unique_ptr<SecureChannel> channel = nullptr;

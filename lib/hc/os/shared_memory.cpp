@@ -34,9 +34,9 @@ Result<SharedMemory> SharedMemory::make(std::uint64_t bytes, std::uint64_t reser
       system_call("ftruncate", "", [&] { return ::ftruncate(number, static_cast<off_t>(bytes)); }));
   memory.data_ = HC_TRY(map_bytes(number, bytes, PROT_READ | PROT_WRITE));
   memory.bytes_ = bytes;
-  // Large pages are fewer to set up and to look up, for who writes images; it is advice alone.
+  // Advice only: fewer pages to set up and to look up when writing images.
   ::madvise(memory.data_, bytes, MADV_HUGEPAGE);
-  // The mapping made above can still write; nobody can make another that does.
+  // The mapping made above stays writable; no other writable one can be made.
   HC_TRY(system_call("fcntl", "F_ADD_SEALS", [&] {
     return ::fcntl(number, F_ADD_SEALS, kFixedSize | F_SEAL_FUTURE_WRITE);
   }));
@@ -46,11 +46,11 @@ Result<SharedMemory> SharedMemory::make(std::uint64_t bytes, std::uint64_t reser
 
 Result<SharedMemory> SharedMemory::map(Descriptor descriptor, std::uint64_t bytes) {
   auto refuse = [](std::string what) {
-    return Error{Code::Malformed, "the memory that was handed over " + std::move(what)};
+    return Error{Code::Malformed, "the received shared memory " + std::move(what)};
   };
   int seals = ::fcntl(descriptor.get(), F_GET_SEALS);
-  if (seals < 0) return refuse("is none that can be sealed");
-  if ((seals & kFixedSize) != kFixedSize) return refuse("could change its size");
+  if (seals < 0) return refuse("cannot be sealed");
+  if ((seals & kFixedSize) != kFixedSize) return refuse("is not sealed against resizing");
   struct stat status {};
   if (::fstat(descriptor.get(), &status) != 0 ||
       static_cast<std::uint64_t>(status.st_size) != bytes)
@@ -78,7 +78,7 @@ SharedMemory::~SharedMemory() {
 Status SharedMemory::reserve(std::uint64_t end) {
   end = (end + kPageBytes - 1) / kPageBytes * kPageBytes;
   if (end <= reserved_) return {};
-  // Through the mapping, so that the advice on large pages is heard; where that call is not known,
+  // Through the mapping, so that it uses large pages; kernels without MADV_POPULATE_WRITE allocate
   // through the descriptor.
   auto populated = system_call("madvise", "MADV_POPULATE_WRITE", [&] {
     return ::madvise(data_ + reserved_, end - reserved_, MADV_POPULATE_WRITE);

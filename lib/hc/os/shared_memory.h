@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Anonymous memory that processes share: it has no name, cannot change its size, and ends with
-// the last process that maps it.
+// Anonymous shared memory of fixed size; it has no name and is freed with its last mapping.
 
 #include <atomic>
 #include <chrono>
@@ -13,7 +12,7 @@
 
 namespace hc {
 
-/// A word that several processes see; exactly one of them writes it.
+/// A word in shared memory; exactly one process writes it.
 template <typename T>
 using SharedWord = std::atomic<T>;
 static_assert(SharedWord<std::uint64_t>::is_always_lock_free);
@@ -21,16 +20,15 @@ static_assert(SharedWord<std::uint32_t>::is_always_lock_free);
 
 constexpr std::uint64_t kPageBytes = 4096;
 
-/// A mapping of shared memory.
 class SharedMemory {
  public:
-  /// New memory of `bytes`, zero, to be written here and read by others. Only the first `reserved`
-  /// bytes have pages yet; writing behind them is for who called reserve().
+  /// New zeroed memory, writable here, read-only for others. Only the first `reserved` bytes have
+  /// pages; call reserve() before writing beyond them.
   static Result<SharedMemory> make(std::uint64_t bytes, std::uint64_t reserved);
 
-  /// Memory of somebody else, read-only. `bytes` is how large it has to be.
+  /// Maps memory received from another process read-only. `bytes` is its required size.
   ///
-  /// Errors: Malformed: it is no sealed memory of that size, so that reading it could kill us.
+  /// Errors: Malformed (not sealed or of another size: reading it could raise SIGBUS).
   static Result<SharedMemory> map(Descriptor descriptor, std::uint64_t bytes);
 
   SharedMemory() = default;
@@ -42,11 +40,11 @@ class SharedMemory {
   SharedMemory& operator=(SharedMemory&& other) noexcept;
   ~SharedMemory();
 
-  /// Gives the bytes below `end` pages of their own, for good. Cost: a system call where they have
-  /// none yet. Errors: System (the host is out of memory).
+  /// Allocates pages for the bytes below `end`, permanently. Cost: a system call if they have none
+  /// yet. Errors: System (the host is out of memory).
   Status reserve(std::uint64_t end);
 
-  /// Another descriptor of the memory, which can be read alone. Errors: System.
+  /// A read-only descriptor of the memory. Errors: System.
   [[nodiscard]] Result<Descriptor> read_only() const;
 
   [[nodiscard]] std::byte* data() const { return data_; }
@@ -58,20 +56,20 @@ class SharedMemory {
   std::uint64_t bytes_ = 0, reserved_ = 0;
 };
 
-/// Lets processes see each other's stores in order at the cost of one side alone: who is seldom in
-/// need of it says order_everywhere(), and who has said allow_ordering() needs no fence of its own.
-/// Both tell whether the kernel can do that.
+/// Asymmetric memory barriers (membarrier): a process that has called allow_ordering() needs no
+/// fence on its fast path, since the other side calls order_everywhere() on its slow path. The
+/// first two return whether the kernel supports this.
 bool allow_ordering();
 bool can_order_everywhere();
-/// A fence for every thread that runs now, of processes that allow it. Cost: 1 to 10 µs.
+/// A fence for all running threads of processes that allow it. Cost: 1 to 10 µs.
 void order_everywhere();
 
-/// Sleeps as long as `word` is `value`, at most `timeout`; may wake early. The word may be in
-/// memory that is mapped read-only.
+/// Sleeps while `word` equals `value`, at most `timeout`; may wake early. The word may be in memory
+/// mapped read-only.
 void futex_wait(const SharedWord<std::uint32_t>& word, std::uint32_t value,
                 std::chrono::nanoseconds timeout);
 
-/// Wakes everybody who sleeps on `word`.
+/// Wakes all sleepers on `word`.
 void futex_wake(const SharedWord<std::uint32_t>& word);
 
 }  // namespace hc

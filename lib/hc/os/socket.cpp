@@ -35,7 +35,7 @@ bool is_with_itself(int socket) {
     return false;
   bool is_tcp = own.ss_family == AF_INET || own.ss_family == AF_INET6;
   if (!is_tcp || size != other_size || std::memcmp(&own, &other, size) != 0) return false;
-  // Else the port would be in use for a minute once the connection has ended.
+  // Reset, or the port would be in TIME_WAIT for a minute.
   const linger at_once{1, 0};
   ::setsockopt(socket, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
   return true;
@@ -56,7 +56,7 @@ Result<Descriptor> bind_socket(const Address& address, const std::string& name) 
 
 Result<Descriptor> listen_on(const Address& address, const std::string& name) {
   auto socket = HC_TRY(bind_socket(address, name));
-  constexpr int kBacklog = 1024;  // who waits here costs no descriptor
+  constexpr int kBacklog = 1024;  // connections in the backlog use no descriptor
   HC_TRY(system_call("listen", name, [&] { return ::listen(socket.get(), kBacklog); }));
   return socket;
 }
@@ -81,9 +81,8 @@ Result<ConnectedSocket> ListeningSocket::accept(const LogSink& log) const {
 }
 
 void set_up_connection(int socket) {
-  // The longest pause between the kernel's own tries, of what is sent and of asking for room; else
-  // they are minutes apart after a while, and a link that comes back is in use that late.
-  // Linux 6.15 has it, earlier ones do not know it.
+  // Limits the kernel's exponential backoff of retransmissions and window probes, which otherwise
+  // grows to minutes, so that a restored link is used soon. Ignored before Linux 6.15.
   constexpr int kLongestPause = 44;  // TCP_RTO_MAX_MS
   const std::array<std::array<int, 3>, 6> options = {{{IPPROTO_TCP, TCP_NODELAY, 1},
                                                       {SOL_SOCKET, SO_KEEPALIVE, 1},
@@ -96,7 +95,7 @@ void set_up_connection(int socket) {
 }
 
 void set_up_reader(int socket) {
-  // The kernel compares when it would ask for the third time, after 3 s.
+  // The kernel checks this at its third keepalive probe, after 3 s.
   constexpr unsigned kMilliseconds = 2500;
   ::setsockopt(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, &kMilliseconds, sizeof kMilliseconds);
 }
@@ -109,7 +108,7 @@ PeerLook look_at_peer(int socket) {
   int unanswered = 0;
   if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return {};
   if (::ioctl(socket, SIOCOUTQ, &unanswered) != 0 || unanswered == 0) return {};
-  // Without room at the reader's side nothing is sent again, but the reader is asked for room.
+  // With a zero window nothing is retransmitted, but the reader is probed.
   auto asked = std::max(info.tcpi_retransmits, info.tcpi_probes);
   milliseconds silent(info.tcpi_last_ack_recv);
   return {asked >= 2 && silent >= kVanishTime, true,
@@ -124,7 +123,7 @@ void await_acknowledgement(int socket, std::chrono::milliseconds longest) {
          std::chrono::steady_clock::now() < end && !look_at_peer(socket).vanished) {
     pollfd polled{socket, 0, 0};
     if (::poll(&polled, 1, 0) > 0 && (polled.revents & POLLERR) != 0) return;
-    std::this_thread::sleep_for(backoff.next());  // an acknowledgement is no event
+    std::this_thread::sleep_for(backoff.next());  // poll() does not report acknowledgements
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Stream sockets, TCP and Unix alike: connected, listening, and their peers.
+// Stream sockets, TCP and Unix: connected and listening ones, and their peers.
 
 #include <sys/epoll.h>
 #include <sys/socket.h>
@@ -17,17 +17,17 @@
 
 namespace hc {
 
-/// A socket that listens, and what is to be cleaned up when it stops.
+/// A listening socket and its clean-up.
 struct ListeningSocket {
   Descriptor descriptor;
-  /// Whether a peer that was accepted is wanted; an error says why not. May be empty.
+  /// Whether to admit an accepted peer; the error says why not. May be empty.
   std::function<Status(int peer)> admit;
-  /// Gives the peers in place of accept(), where they agree on a channel first: the next, none (-1)
-  /// just now, or an error of accept(). May be empty; `descriptor` is readable when it is to be
-  /// called.
+  /// Replaces accept() for peers that first complete a handshake: returns the next one, none (-1)
+  /// if there is none yet, or an error of accept(). `descriptor` is readable when it should be
+  /// called. May be empty.
   std::function<Result<ConnectedSocket>(const LogSink& log)> take_agreed;
-  std::string unlink_path;  ///< removed at the end; empty: nothing
-  bool is_paused = false;   ///< somebody waits who could not be let in
+  std::string unlink_path;  ///< removed on destruction, unless empty
+  bool is_paused = false;   ///< a waiting peer could not be accepted
 
   ListeningSocket() = default;
   ListeningSocket(ListeningSocket&&) = default;
@@ -40,20 +40,20 @@ struct ListeningSocket {
   }
   ~ListeningSocket();
 
-  /// Lets in all who wait. Where one cannot be, as there is no room, descriptor or memory, the
-  /// socket, which stays readable, is left alone for 200 ms, so that this costs no time.
+  /// Accepts all waiting peers. If one cannot be accepted for lack of room, descriptors or memory,
+  /// the socket, which stays readable, is not watched for 200 ms, to avoid a busy loop.
   ///
-  /// @param watch  of the socket: Loop::Handle or Watch; it is to call this.
+  /// @param watch  of the socket, a Loop::Handle or Watch whose callback calls this.
   template <typename Handle>
   void accept_all(Handle& watch, const LogSink& log, const std::function<bool()>& has_room,
                   const std::function<Status(ConnectedSocket peer)>& let_in);
 
  private:
-  /// The next peer that has connected; none (-1) when there is none just now. Errors: System.
+  /// The next connected peer; none (-1) if there is none. Errors: System.
   [[nodiscard]] Result<ConnectedSocket> accept(const LogSink& log) const;
 };
 
-/// Where a peer may listen: a sockaddr of some family.
+/// A socket address of any family.
 struct Address {
   Address(const void* data, unsigned length);
   [[nodiscard]] const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&storage); }
@@ -62,47 +62,45 @@ struct Address {
   unsigned size;  ///< [byte]
 };
 
-/// A fresh socket for an address, whose calls do not wait. Errors: System.
+/// A new non-blocking socket of the address's family. Errors: System.
 Result<Descriptor> open_socket(const Address& address);
 
-/// Whether a TCP connection is one with itself. The kernel makes such a one where nobody listens
-/// and the port that it chose for this end happens to be the other's; it counts as refused.
+/// Whether a TCP connection is connected to itself. The kernel makes such a connection if no
+/// process listens and the ephemeral port of this end equals the destination; treat it as refused.
 bool is_with_itself(int socket);
 
-/// How long a peer may take to answer where `wait` is 0.
+/// How long to wait for a peer's answer if `wait` is 0.
 constexpr std::chrono::seconds kAnswerTime{4};
 
-/// A socket bound to an address, and a listening one; `name` is for error lines.
+/// A socket bound to an address, and a listening one; `name` is for error messages.
 /// Errors: System.
 Result<Descriptor> bind_socket(const Address& address, const std::string& name);
 Result<Descriptor> listen_on(const Address& address, const std::string& name);
 
-/// How long a TCP peer may leave what it must answer without an answer: so one that vanishes is
-/// noticed within 4 s, with what timers are late by.
+/// How long a TCP peer may leave data unacknowledged: with the delay of timers, a vanished peer is
+/// detected within 4 s.
 constexpr std::chrono::milliseconds kVanishTime{3500};
 
-/// Has a TCP connection send what is small at once, and notice a peer that vanishes while nothing
-/// is said: it is asked after 1 and 2 s, and given up after 3 s. Harmless where the socket is not
-/// TCP.
+/// Makes a TCP connection send small messages at once, and detect a vanished peer while it is idle:
+/// keepalive probes after 1 and 2 s, closed after 3 s. No effect on sockets other than TCP.
 void set_up_connection(int socket);
-/// Has a connection that only receives end by time too (TCP_USER_TIMEOUT). One that sends would end
-/// when a slow reader has no room for as long; see look_at_peer().
+/// Makes a connection that only receives time out too (TCP_USER_TIMEOUT). On a sender, this would
+/// also close the connection of a slow reader; see look_at_peer().
 void set_up_reader(int socket);
 
-/// What a socket's kernel knows of the peer's kernel.
+/// What this host's kernel knows about the peer's kernel.
 struct PeerLook {
-  bool vanished = false;     ///< has not answered for kVanishTime, though asked twice
-  bool must_answer = false;  ///< has not acknowledged all yet, so that one is to look again
-  std::chrono::milliseconds next{0};  ///< when
+  bool vanished = false;     ///< no answer for kVanishTime, though probed twice
+  bool must_answer = false;  ///< data is unacknowledged: look again after `next`
+  std::chrono::milliseconds next{0};
 };
 
-/// Looks whether a peer of TCP that is sent something is still there; where the socket is not TCP,
-/// there is nothing to look after.
+/// Checks whether a TCP peer to which data was sent is still there; always all false for sockets
+/// other than TCP.
 PeerLook look_at_peer(int socket);
 
-/// Waits until the peer's kernel has acknowledged all that was written, has reset the connection or
-/// has vanished.
-/// @param longest  to wait
+/// Waits until the peer's kernel has acknowledged all data, has reset the connection or has
+/// vanished, or until `longest` has passed.
 void await_acknowledgement(int socket, std::chrono::milliseconds longest);
 
 template <typename Handle>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How threads are started.
+// Starting threads.
 
 #include <csignal>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace hc {
 
-/// Starts a thread in which every signal is blocked: signals are for the program's own threads.
+/// Starts a thread with all signals blocked: signals are handled by the program's own threads.
 ///
 /// Errors: System.
 template <typename Work>

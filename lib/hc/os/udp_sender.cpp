@@ -23,16 +23,16 @@
 namespace hc {
 namespace {
 
-/// Whether this host has the address: only such ones can be bound to. Where that cannot be tried,
-/// since descriptors or ports have run out, it counts as one, so that its user is looked for.
+/// Whether an address is of this host: only those can be bound. If that cannot be tested, for lack
+/// of descriptors or ports, it is assumed to be, so that its user is looked up.
 bool is_of_this_host(sockaddr_storage address) {
   Descriptor probe(::socket(address.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  reinterpret_cast<sockaddr_in&>(address).sin_port = 0;  // of IPv6 at the same place
+  reinterpret_cast<sockaddr_in&>(address).sin_port = 0;  // sin6_port has the same offset
   return ::bind(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
          errno != EADDRNOTAVAIL;
 }
 
-/// An address as /proc/net writes it: its words in hexadecimal, the port after a colon.
+/// An address as in /proc/net: words in hexadecimal, the port after a colon.
 std::string in_hexadecimal(std::span<const std::uint32_t> words, in_port_t port) {
   std::ostringstream text;
   text << std::hex << std::uppercase << std::setfill('0');
@@ -41,12 +41,12 @@ std::string in_hexadecimal(std::span<const std::uint32_t> words, in_port_t port)
   return text.str();
 }
 
-/// The local addresses of the sockets, as /proc/net/udp and udp6 write them, that send from `from`:
-/// those that are bound to it, or to every address.
+/// The local addresses, as in /proc/net/udp and udp6, of sockets that may send from `from`: those
+/// bound to it or to any address.
 std::vector<std::string> local_addresses(const sockaddr_storage& from) {
   std::array<std::uint32_t, 4> words{};
   const in_port_t port =
-      reinterpret_cast<const sockaddr_in&>(from).sin_port;  // in both at the same place
+      reinterpret_cast<const sockaddr_in&>(from).sin_port;  // sin6_port has the same offset
   if (from.ss_family == AF_INET)
     words[0] = reinterpret_cast<const sockaddr_in&>(from).sin_addr.s_addr;
   else
@@ -70,7 +70,7 @@ Result<std::optional<uid_t>> udp_sender_user(const sockaddr_storage& from) {
   for (const char* table : {"/proc/net/udp", "/proc/net/udp6"}) {
     std::ifstream file(table);
     std::string line;
-    std::getline(file, line);  // the names of the columns
+    std::getline(file, line);  // skip the column names
     while (std::getline(file, line)) {
       // sl local_address rem_address st tx:rx tr:when retrnsmt uid; source: man 5 proc.
       std::istringstream words(line);

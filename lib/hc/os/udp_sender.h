@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Which user of this host sent a UDP packet.
+// The user of this host that sent a UDP packet.
 
 #include <sys/socket.h>
 #include <sys/types.h>
@@ -11,11 +11,11 @@
 
 namespace hc {
 
-/// The user whose socket sent a UDP packet that came from this address; nothing where the address
-/// is another host's. Where several sockets have that address, one of another user counts before
-/// those of this process's user.
+/// The user whose socket sent a UDP packet from this address; nullopt if the address is of another
+/// host. If sockets of several users share the address, a user other than this process's is
+/// returned.
 ///
-/// Errors: NotFound (the socket is closed meanwhile). Cost: a look at all UDP sockets of this host.
+/// Errors: NotFound (the socket has been closed). Cost: reads all UDP sockets of this host.
 Result<std::optional<uid_t>> udp_sender_user(const sockaddr_storage& from);
 
 }  // namespace hc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// One wait for several descriptors, for programs that have no event loop.
+// Waits for several descriptors, for programs without an event loop.
 
 #include <chrono>
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace hc {
 
-/// Waits until one of `descriptors` is readable; returns its index, or `descriptors.size()` when
-/// `timeout` has passed.
+/// Waits until one of `descriptors` is readable; returns its index, or `descriptors.size()` after
+/// `timeout`.
 ///
 /// Errors: Stopped (`stop` is readable), System.
 Result<std::size_t> wait_readable(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What this thread has had allocated. It takes the place of operator new, so one file of a program
-// includes it.
+// Counts the allocations of the current thread by replacing operator new; to be included in one
+// file of a program.
 
 #include <cstdint>
 #include <cstdlib>
@@ -16,8 +16,8 @@ inline thread_local Allocations allocations;
 
 }  // namespace hc
 
-// Not inlined: compilers then take what `new` gave for the wrong end of free(). ThreadSanitizer has
-// its own, which cannot be replaced; nothing is counted there.
+// Not inlined, or compilers report mismatched free(). ThreadSanitizer's operator new cannot be
+// replaced; nothing is counted there.
 #if !defined(__has_feature)
 #define __has_feature(feature) 0
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// One message out of bytes that are all in memory, for tests.
+// For tests: decodes one message from bytes in memory.
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 
 namespace hc {
 
-/// Reads the first message in `bytes`; gives the bytes used, 0 when it is not complete yet.
+/// Reads the first message in `bytes`; returns the bytes used, 0 if it is incomplete.
 ///
 /// Errors: those of StreamReader.
 inline Result<std::size_t> decode(std::span<const std::byte> bytes, Message& message,

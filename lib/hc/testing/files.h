@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Files for tests: a folder that goes with its test, what a file contains, and a disk that is full.
+// For tests: a temporary folder, the contents of a file, and a full disk.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -14,7 +14,7 @@
 
 namespace hc {
 
-/// A folder that goes with the test.
+/// A temporary folder, removed by the destructor.
 class Folder {
  public:
   Folder() {
@@ -26,7 +26,7 @@ class Folder {
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
 
-  /// The path of a file in it.
+  /// The path of a file in the folder.
   [[nodiscard]] std::string operator/(const std::string& name) const { return path_ / name; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
@@ -34,13 +34,13 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// What a file contains.
+/// The contents of a file.
 inline std::string bytes_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Limits the size of files as long as it exists, as if the disk were full.
+/// Limits the size of files during its lifetime, like a full disk.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {

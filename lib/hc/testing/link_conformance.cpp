@@ -44,7 +44,7 @@ TEST_P(LinkConformance, ASlowReaderLosesNothing) {
   open();
   auto sender = send_all(*sink_, 500, 100'000);
   for (int i = 0; i < 500; ++i) {
-    // One look at the descriptor between any two messages, so that the sender runs ahead.
+    // Checks the descriptor between any two messages, so that the sender gets ahead.
     ASSERT_EQ(next(*source_).header.seq, i);
     std::this_thread::yield();
   }
@@ -52,7 +52,7 @@ TEST_P(LinkConformance, ASlowReaderLosesNothing) {
 }
 
 TEST_P(LinkConformance, AReaderThatTakesNothingIsGivenUpUntilItDoes) {
-  constexpr std::int64_t kPlenty = 1200;  // more than any memory takes
+  constexpr std::int64_t kPlenty = 1200;  // exceeds all buffers
   LinkOptions options;
   std::vector<bool> awaits;
   options.awaits_reader = [&](bool does) { awaits.push_back(does); };
@@ -69,7 +69,7 @@ TEST_P(LinkConformance, AReaderThatTakesNothingIsGivenUpUntilItDoes) {
       auto got = receive(*source_, message);
       ASSERT_TRUE(got && *got && message.header.seq > seq) << "behind " << seq;
       seq = message.header.seq;
-      ASSERT_EQ(message.characters(), numbered(seq, 100'000).characters());
+      ASSERT_EQ(message.text(), numbered(seq, 100'000).text());
     }
     is_heard_again = true;
     while (message.elements.size() > 1) ASSERT_TRUE(*receive(*source_, message));
@@ -89,7 +89,7 @@ TEST_P(LinkConformance, AMessageMayBeHeldForAsLongAsOneLikes) {
   for (int i = 0; i < 100; ++i) held.push_back(next(*source_));
   sender.join();
   for (int i = 0; i < 100; ++i)
-    EXPECT_EQ(held[static_cast<std::size_t>(i)].characters(), numbered(i, size(i)).characters());
+    EXPECT_EQ(held[static_cast<std::size_t>(i)].text(), numbered(i, size(i)).text());
 }
 
 TEST_P(LinkConformance, AReaderThatLeavesIsNoticed) {
@@ -110,13 +110,13 @@ TEST_P(LinkConformance, SmallAndLargeOnesStayInOrder) {
   const auto size = [](int i) { return i % 100 == 99 ? 200'000 : i % 50; };
   auto sender = send_all(*sink_, kCount, size);
   for (int i = 0; i < kCount; ++i)
-    ASSERT_EQ(next(*source_).characters(), numbered(i, size(i)).characters());
+    ASSERT_EQ(next(*source_).text(), numbered(i, size(i)).text());
   sender.join();
 }
 
 TEST_P(LinkConformance, WithKeepLatestTheWriterNeverWaits) {
   open("keep=latest");
-  auto count = send_too_many(100'000);  // without a reader it ends, too
+  auto count = send_too_many(100'000);  // also ends without a reader
   take_to(count - 1);
   EXPECT_GE(losses().dropped_newer, 10U);
   EXPECT_EQ(losses().dropped_newer, losses().lost());
@@ -133,7 +133,7 @@ TEST_P(LinkConformance, KeepsAsManyAsAsked) {
   auto count = send_too_many(100'000);
   auto lost_until_now = losses().lost();
   auto received = take_to(count - 1);
-  EXPECT_GE(received, 5U);  // and what the kernel had taken
+  EXPECT_GE(received, 5U);  // and those in the kernel's buffers
   if (GetParam().drops_at_source)
     EXPECT_EQ(received, 5U);
   else

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What every transport must do, written once; each transport's test says how its ends are opened,
-// and its program has link_conformance.cpp. No sleeps: everything waits for the other side, and the
-// test runner's time-out is the watchdog.
+// The conformance suite of all transports. A transport's test tells how to open its ends, and links
+// link_conformance.cpp. No sleeps: everything waits for the peer, and the test runner's time-out is
+// the watchdog.
 
 #include <gtest/gtest.h>
 
@@ -23,11 +23,11 @@ namespace hc::testing {
 /// A transport under test.
 struct Transport {
   std::string name;
-  /// URIs of a fresh link: where messages come out, and where they go in.
+  /// The URIs of a new link: of its source and of its sink.
   std::function<std::pair<std::string, std::string>()> make;
   bool sink_first = false;  ///< which end must be opened first
-  bool ends = true;         ///< the source ends when the sink closes (one that listens does not)
-  /// What a slow reader loses it skips and counts itself, when it comes to it; it keeps the rate.
+  bool ends = true;         ///< the source ends with the sink (listening sources do not)
+  /// The source drops messages for a slow reader and limits the rate, as with shm.
   bool drops_at_source = false;
 };
 
@@ -35,12 +35,12 @@ inline void PrintTo(const Transport& transport, std::ostream* out) {
   *out << transport.name;
 }
 
-/// A URI with one more option, or several.
+/// A URI with more options.
 inline std::string with(const std::string& uri, const std::string& options) {
   return uri + (uri.find('?') == std::string::npos ? "?" : "&") + options;
 }
 
-/// What asks links to stop, once raised and for ever.
+/// A descriptor that stops links; it stays raised.
 class Stop {
  public:
   void raise() const { event_.raise(); }
@@ -54,7 +54,7 @@ class Stop {
   Event event_ = must(Event::make());
 };
 
-/// What a link logged.
+/// The log of a link.
 struct Warnings {
   std::vector<std::string> lines;
   LinkOptions options() {
@@ -64,7 +64,8 @@ struct Warnings {
   }
 };
 
-/// Sends a message by another thread, as the sink may wait for its reader; gives what comes.
+/// Sends a message on another thread, since the sink may wait for its reader; returns it as
+/// received.
 inline Message carry(Sink& sink, Source& source, const Message& message) {
   std::thread sender([&] { EXPECT_TRUE(sink.send(message)); });
   Message come;
@@ -74,7 +75,7 @@ inline Message carry(Sink& sink, Source& source, const Message& message) {
   return come;
 }
 
-/// A message with `size` bytes of elements that its seq determines.
+/// A message with `size` bytes of elements, determined by its seq.
 inline Message numbered(std::int64_t seq, std::int32_t size) {
   Header header;
   header.info = {MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary};
@@ -86,7 +87,7 @@ inline Message numbered(std::int64_t seq, std::int32_t size) {
   return std::move(draft).finish();
 }
 
-/// Sends messages 0, 1, … by another thread, and closes the sink. @param size  of each.
+/// Sends messages 0, 1, … on another thread and closes the sink. @param size  of each.
 inline std::thread send_all(Sink& sink, int count, std::function<std::int32_t(int)> size) {
   return std::thread([&sink, count, size = std::move(size)] {
     for (int i = 0; i < count; ++i) ASSERT_TRUE(sink.send(numbered(i, size(i))));
@@ -97,12 +98,12 @@ inline std::thread send_all(Sink& sink, int count, std::int32_t size) {
   return send_all(sink, count, [size](int) { return size; });
 }
 
-// Tests that use the helpers above alone need not run the suite.
+// Tests may use only the helpers above, without the suite.
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(LinkConformance);
 
 class LinkConformance : public ::testing::TestWithParam<Transport> {
  protected:
-  /// @param options  of the sink. @param pace  of the end that keeps it.
+  /// @param options  of the sink. @param pace  options of the end that limits the rate.
   void open(const std::string& options = "", const std::string& pace = "",
             const LinkOptions& of_sink = {}) {
     auto [from, to] = GetParam().make();
@@ -114,7 +115,7 @@ class LinkConformance : public ::testing::TestWithParam<Transport> {
     if (!GetParam().sink_first) sink_ = sink_of(to, of_sink);
   }
 
-  /// Sends from another thread, takes here, compares.
+  /// Sends on another thread, receives here, and compares.
   void transfer(int count, std::int32_t size) {
     auto sender = send_all(*sink_, count, size);
     Message message;
@@ -123,7 +124,7 @@ class LinkConformance : public ::testing::TestWithParam<Transport> {
       ASSERT_TRUE(got && *got) << i;
       Message wanted = numbered(i, size);
       ASSERT_EQ(message.header, wanted.header);
-      ASSERT_EQ(message.characters(), wanted.characters());
+      ASSERT_EQ(message.text(), wanted.text());
     }
     sender.join();
     EXPECT_EQ(source_->traffic().messages, static_cast<std::uint64_t>(count));
@@ -132,24 +133,24 @@ class LinkConformance : public ::testing::TestWithParam<Transport> {
     EXPECT_FALSE(must(receive(*source_, message)));
   }
 
-  /// What both ends have lost; of no other use.
+  /// The losses of both ends; its other counters are meaningless.
   [[nodiscard]] Traffic losses() const {
     Traffic both = sink_->traffic();
     both += source_->traffic();
     return both;
   }
 
-  /// Sends, while nobody reads, until some have been lost for sure; gives how many it sent.
+  /// Sends without a reading source until messages must have been lost; returns their number.
   std::int64_t send_too_many(std::int32_t size) {
-    constexpr std::int64_t kPlenty = 500;  // more than are kept, or fit into the memory
+    constexpr std::int64_t kPlenty = 500;  // exceeds `keep` and `memory`
     std::int64_t count = 0;
     while (GetParam().drops_at_source ? count < kPlenty : losses().lost() < 10)
       EXPECT_TRUE(sink_->send(numbered(count++, size)));
     return count;
   }
 
-  /// Closes the sink, takes what there is up to message `last`, and checks that it comes in order,
-  /// and that what does not come was counted. Gives how many came.
+  /// Closes the sink, receives up to message `last`, and checks the order and that lost messages
+  /// were counted. Returns the number received.
   std::uint64_t take_to(std::int64_t last) {
     std::thread closer([&] { ASSERT_TRUE(sink_->close()); });
     Message message;
@@ -161,8 +162,8 @@ class LinkConformance : public ::testing::TestWithParam<Transport> {
         break;
       }
       seq = message.header.seq;
-      EXPECT_EQ(message.characters(),
-                numbered(seq, static_cast<std::int32_t>(message.elements.size())).characters());
+      EXPECT_EQ(message.text(),
+                numbered(seq, static_cast<std::int32_t>(message.elements.size())).text());
     }
     closer.join();
     EXPECT_EQ(sink_->traffic().messages, static_cast<std::uint64_t>(last) + 1);

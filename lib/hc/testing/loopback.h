@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Ports of this host for tests, free ones and such as answer nobody.
+// For tests: ports of this host, free ones and unresponsive ones.
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ inline sockaddr_in loopback(std::uint16_t port) {
   return address;
 }
 
-/// A port that the kernel has just found free.
+/// A port that is currently free.
 inline std::string free_port() {
   Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));
   sockaddr_in address = loopback(0);
@@ -39,7 +39,7 @@ inline Address loopback_address(std::uint16_t port) {
   return {&address, sizeof address};
 }
 
-/// A port of 127.0.0.1 that answers nobody: it has no room for another connection.
+/// An unresponsive port of 127.0.0.1: its backlog is full.
 class SilentPort {
  public:
   SilentPort() {

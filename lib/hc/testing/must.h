@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a test cannot go on without.
+// For tests: unwraps results.
 
 #include <optional>
 #include <stdexcept>
@@ -10,7 +10,7 @@
 
 namespace hc {
 
-/// The value of a result; an error ends the test, which says it.
+/// The value of a result; an error is printed and ends the test.
 template <typename T>
 T must(Result<T> result) {
   if (!result) throw std::runtime_error(result.error().text());

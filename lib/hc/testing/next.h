@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a test sends and takes over links.
+// For tests: messages to send and receive over links.
 
 #include <memory>
 #include <string>
@@ -17,7 +17,7 @@ inline std::unique_ptr<Sink> sink_of(const std::string& uri, LinkOptions options
   return must(open_sink(*parse_uri(uri), std::move(options)));
 }
 
-/// The next message that comes; the end of the source ends the test.
+/// The next message; the end of the source ends the test.
 inline Message next(Source& source) {
   Message message;
   if (!must(receive(source, message))) throw std::runtime_error("the source is at its end");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tcp and unix links do that outlive their connections.
+// Tests of tcp and unix links that survive the loss of their connections.
 
 #include <memory>
 #include <thread>
@@ -15,7 +15,7 @@ TEST_P(SocketLink, ASourceMayBeThereBeforeAnyWriter) {
   Message message;
   EXPECT_EQ(*source->take(message), Got::Nothing);
   const int descriptor = source->descriptor();
-  for (int i = 0; i < 3; ++i) {  // and outlives several
+  for (int i = 0; i < 3; ++i) {  // survives several writers
     auto sink = sink_of(with(listen(), "readers=1"));
     EXPECT_EQ(carry(*sink, *source, numbered(i, 10)).header.seq, i);
   }
@@ -45,7 +45,7 @@ TEST_P(SocketLink, GarbageIsTheEndOfAConnectionAndNotOfTheLink) {
     auto sink = sink_of(with(listen(), "readers=1"));
     std::thread sender([&] {
       ASSERT_TRUE(sink->send(numbered(i, 10)));
-      if (i == 0) static_cast<void>(sink->send(numbered(9, 2000)));  // whose header is refused
+      if (i == 0) static_cast<void>(sink->send(numbered(9, 2000)));  // its header exceeds the limit
     });
     EXPECT_EQ(next(*source).header.seq, i);
     while (i == 0 && source->traffic().bad == 0) {
@@ -59,11 +59,12 @@ TEST_P(SocketLink, GarbageIsTheEndOfAConnectionAndNotOfTheLink) {
 }
 
 TEST_P(SocketLink, BehindAConnectionThatLivedPausesAreShortAgain) {
-  internal::TimePoint now{std::chrono::seconds(1000)};  // turned by hand
+  internal::TimePoint now{std::chrono::seconds(1000)};  // advanced by the test
   constexpr std::chrono::seconds kPatience(600);
   internal::Dialer dialer(*GetParam().peer(*parse_uri(dial())), kPatience, kPatience, now);
   for (int i = 0; i < 10; ++i) {
-    for (int failures = 0; failures < 9; now = dialer.due(), ++failures) {  // until pauses are long
+    for (int failures = 0; failures < 9;
+         now = dialer.due(), ++failures) {  // until the pauses are long
       do ASSERT_FALSE(*dialer.dial(now));
       while (dialer.descriptor() >= 0);
     }
@@ -91,7 +92,7 @@ TEST_P(SocketLink, AMessageThatWasBegunIsSentAnewToTheNextReader) {
   auto sink = sink_of(with(dial(), "reconnect=60"));
   Warnings warnings;
   auto options = warnings.options();
-  options.limits.element_bytes = 1000;  // so that it closes a connection inside the message
+  options.limits.element_bytes = 1000;  // closes the connection inside the message
   auto source = source_of(listen(), options);
   std::thread sender([&] {
     ASSERT_TRUE(sink->send(numbered(0, 10'000'000)));
@@ -100,7 +101,7 @@ TEST_P(SocketLink, AMessageThatWasBegunIsSentAnewToTheNextReader) {
   await_warning(*source, warnings);
   source.reset();
   source = source_of(listen());
-  EXPECT_EQ(next(*source).characters(), numbered(0, 10'000'000).characters());
+  EXPECT_EQ(next(*source).text(), numbered(0, 10'000'000).text());
   sender.join();
   EXPECT_EQ(sink->traffic().dropped_disconnect, 0U);
 }
@@ -110,11 +111,12 @@ TEST_P(SocketLink, ASinkThatKeepsTheLatestWaitsForNobody) {
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(sink->send(numbered(i, 10)));
   EXPECT_EQ(sink->traffic().dropped_newer, 9U);
   auto source = source_of(listen());
-  EXPECT_EQ(next(*source).header.seq, 9);  // nothing more needs to be sent
+  EXPECT_EQ(next(*source).header.seq, 9);  // without sending more
 }
 
 TEST_P(SocketLink, WhoNeverFindsAnybodySaysSo) {
-  std::vector<std::pair<std::unique_ptr<Source>, std::unique_ptr<Sink>>> links;  // all wait at once
+  std::vector<std::pair<std::unique_ptr<Source>, std::unique_ptr<Sink>>>
+      links;  // all wait at the same time
   for (const char* options : {"reconnect=1", "reconnect=86400&wait=1"})
     links.emplace_back(source_of(with(dial(), options)), sink_of(with(dial(), options)));
   for (const auto& [source, sink] : links) {
@@ -160,7 +162,7 @@ TEST_P(SocketLink, WhoWaitsLongForSomebodyIsLoggedOnce) {
     ASSERT_EQ(*source->take(message), Got::Nothing);
   };
   while (warnings.lines.empty()) wait();
-  wait();  // in vain again; the pauses between tries have become long
+  wait();  // another failed attempt; the pauses have become long
   EXPECT_EQ(warnings.lines.size(), 1U);
   EXPECT_TRUE(warnings.lines[0].starts_with(with(dial(), "reconnect=60") + ": no peer yet ("))
       << warnings.lines[0];

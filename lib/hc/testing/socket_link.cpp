@@ -18,7 +18,7 @@ TEST_P(SocketLink, ANameInUseIsRefused) {
 
 TEST_P(SocketLink, ASecondListenerTakesNoReadersPlace) {
   Stop stop;
-  stop.raise();  // or it would wait for its reader for ever
+  stop.raise();  // or the sink would wait for its reader forever
   auto sink = sink_of(with(listen(), "readers=1"), stop.options());
   EXPECT_FALSE(open_sink(*parse_uri(listen())));
   EXPECT_EQ(sink->send(numbered(0, 10)).error().code, Code::Stopped);
@@ -59,7 +59,7 @@ TEST_P(SocketLink, ReadersComeAndGo) {
   auto sink = sink_of(listen());
   for (int i = 0; i < 5; ++i) {
     auto source = source_of(dial());
-    // The last reader's end is noticed by a failing send, which then goes to the next one.
+    // A failing send detects the end of the last reader; the message goes to the next one.
     std::thread sender([&] { ASSERT_TRUE(sink->send(numbered(i, 10))); });
     sender.join();
     EXPECT_EQ(next(*source).header.seq, i);
@@ -73,14 +73,14 @@ TEST_P(SocketLink, AReaderThatHasLeftTakesNoMessageAlong) {
   ASSERT_TRUE(sink->send(numbered(0, 10)));
   next(*source);
   source.reset();
-  stop.raise();  // or it would wait for the next reader for ever
+  stop.raise();  // or the sink would wait for the next reader forever
   EXPECT_EQ(sink->send(numbered(1, 10)).error().code, Code::Stopped);
   source = source_of(dial());
   ASSERT_TRUE(sink->send(numbered(2, 10)));
   EXPECT_EQ(next(*source).header.seq, 2);
 }
 
-// What `nc -N` does when its standard input is at its end.
+// As `nc -N` does at the end of its standard input.
 TEST_P(SocketLink, AReaderThatHasShutItsOwnSideReadsOn) {
   auto sink = sink_of(listen());
   auto peer = GetParam().connect(place_);
@@ -110,7 +110,7 @@ TEST_P(SocketLink, AHostilePeerDisturbsNobody) {
   auto hostile = GetParam().connect(place_);
   auto sink = sink_of(dial());
   write_to(hostile, "GET / HTTP/1.1\r\n");
-  for (int i = 0; i < 10 || warnings.lines.empty(); ++i) {  // what was written may come later
+  for (int i = 0; i < 10 || warnings.lines.empty(); ++i) {  // data may arrive later
     ASSERT_TRUE(sink->send(numbered(i, 10)));
     EXPECT_EQ(next(*source).header.seq, i);
   }
@@ -130,7 +130,7 @@ TEST_P(SocketLink, AMessageThatIsCutIsReported) {
     for (char c : bytes) write_to(peer, {&c, 1});  // one byte at a time
   }
   Message message;
-  EXPECT_EQ(next(*source).characters(), numbered(1, 100).characters());
+  EXPECT_EQ(next(*source).text(), numbered(1, 100).text());
   auto sink = sink_of(dial());
   ASSERT_TRUE(sink->send(numbered(3, 1)));
   EXPECT_EQ(next(*source).header.seq, 3);
@@ -140,7 +140,7 @@ TEST_P(SocketLink, AMessageThatIsCutIsReported) {
       std::string::npos);
 }
 
-/// Leaves the process no free descriptor, or so many, for as long as it lives.
+/// Leaves the process this many free descriptors during its lifetime.
 class NoDescriptors {
  public:
   explicit NoDescriptors(rlim_t but = 0) {
@@ -155,7 +155,7 @@ class NoDescriptors {
   rlimit saved_{};
 };
 
-/// Starts the thread that all links of a process share, whose descriptors stay open.
+/// Starts the background thread of links, whose descriptors stay open.
 static void start_link_thread() {
   ASSERT_TRUE(Watch().start(-1, [](auto) {}));
 }
@@ -210,7 +210,7 @@ TEST_P(AcceptingLink, WhoComesWhenDescriptorsHaveRunOutIsLetInLater) {
   auto source = source_of(listen(), warnings.options());
   auto sink = sink_of(dial());
   ASSERT_TRUE(sink->send(numbered(1, 1)));
-  EXPECT_EQ(source->traffic().messages, 0U);  // a first call, for which UBSan wants descriptors
+  EXPECT_EQ(source->traffic().messages, 0U);  // UBSan needs descriptors for a first call
   Message message;
   {
     NoDescriptors none;
@@ -230,11 +230,11 @@ TEST_P(AcceptingLink, AReaderThatComesWhenDescriptorsHaveRunOutIsLetInLater) {
   options.stop = stop.options().stop;
   auto sink = sink_of(listen(), options);
   std::unique_ptr<Source> source;
-  EXPECT_EQ(sink->traffic().messages, 0U);  // a first call, for which UBSan wants descriptors
+  EXPECT_EQ(sink->traffic().messages, 0U);  // UBSan needs descriptors for a first call
   Message first = numbered(1, 1);
   {
     NoDescriptors none(1);
-    source = source_of(dial());  // takes the one there is
+    source = source_of(dial());  // takes the only one
     EXPECT_EQ(sink->send(first).error().code, Code::Stopped);
   }
   EXPECT_EQ(warnings.lines,
@@ -244,12 +244,12 @@ TEST_P(AcceptingLink, AReaderThatComesWhenDescriptorsHaveRunOutIsLetInLater) {
   EXPECT_EQ(next(*source).header.seq, 2);
 }
 
-/// Where the header of an encoded message ends: a peer may be silent behind it.
+/// The end of the header of an encoded message, where a peer may stop sending.
 static std::size_t head_of(const std::string& message) {
   return message.find('\n') + 1;
 }
 
-/// Sends a message and the header of the next, and returns when the source has read both.
+/// Sends a message and the header of the next one; returns when the source has read both.
 static void enter_message(const Descriptor& peer, Source& source) {
   std::string message = encode(numbered(0, 1));
   std::string bytes = message + message.substr(0, head_of(message));
@@ -267,7 +267,7 @@ TEST_P(SocketLink, WhoIsSilentLongestMakesRoom) {
     ASSERT_EQ(*source->take(message), Got::Nothing);
     if (i == 1) enter_message(peers[1], *source);
   }
-  // The first has sent something since, and the second is inside a message.
+  // The first peer has sent something since, and the second is inside a message.
   write_to(peers[0], encode(numbered(1, 1)));
   next(*source);
   auto sink = sink_of(with(dial(), "wait=60"));
@@ -319,8 +319,8 @@ TEST_P(SocketLink, WhoIsInsideAMessageKeepsItsPlace) {
   ASSERT_TRUE(sink->send(numbered(2, 1)));
   EXPECT_EQ(*source->take(message), Got::Nothing);
   write_to(peers[7], bytes.substr(head_of(bytes)));
-  EXPECT_EQ(next(*source).characters(), numbered(1, 1).characters());
-  EXPECT_EQ(next(*source).header.seq, 2);  // of the last writer, which replaced the seventh
+  EXPECT_EQ(next(*source).text(), numbered(1, 1).text());
+  EXPECT_EQ(next(*source).header.seq, 2);  // from the last writer, which replaced the seventh
 }
 
 TEST_P(SocketLink, WhoIsSilentForLongInsideAMessageGivesItsPlaceToOneWhoWaits) {
@@ -334,7 +334,7 @@ TEST_P(SocketLink, WhoIsSilentForLongInsideAMessageGivesItsPlaceToOneWhoWaits) {
     enter_message(peers[i], *source);
   }
   ASSERT_EQ(*source->take(message), Got::Nothing);
-  EXPECT_TRUE(warnings.lines.empty());  // no other peer waits for a place
+  EXPECT_TRUE(warnings.lines.empty());  // no other peer is waiting
   auto sink = sink_of(with(dial(), "wait=60"));
   ASSERT_TRUE(sink->send(numbered(2, 1)));
   EXPECT_EQ(next(*source).header.seq, 2);
@@ -355,7 +355,7 @@ TEST_P(SocketLink, MoreReadersThanThereIsRoomForWait) {
   ASSERT_TRUE(sink->send(numbered(1, 1)));
   EXPECT_EQ(::recv(last.get(), &byte, 1, MSG_DONTWAIT), -1);
   peers.erase(peers.begin());
-  // The others read nothing, so that few messages fit until they hold up the writer.
+  // The others read nothing, so that the writer is blocked after few messages.
   pollfd polled{last.get(), POLLIN, 0};
   do {
     ASSERT_TRUE(sink->send(numbered(2, 1)));
@@ -367,7 +367,7 @@ TEST_P(SocketLink, OneSlowReaderHoldsUpNoOther) {
   auto sink = sink_of(with(listen(), "readers=2&keep=latest"));
   auto slow = GetParam().connect(place_);
   auto source = source_of(dial());
-  // What the other reads is enough for the slow one to have missed some.
+  // The fast reader reads until the slow one must have missed messages.
   for (int i = 0; sink->traffic().lost() < 10; ++i) {
     ASSERT_TRUE(sink->send(numbered(i, 100'000)));
     EXPECT_EQ(next(*source).header.seq, i);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What tcp and unix links do beyond the conformance of all: they listen, refuse, and meet again.
-// The tests are in socket_link.cpp and reconnect.cpp.
+// Tests of tcp and unix links beyond the conformance suite: listening, refusing, reconnecting.
+// They are in socket_link.cpp and reconnect.cpp.
 
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -24,25 +24,25 @@
 
 namespace hc::testing {
 
-/// A scheme whose links are sockets.
+/// A scheme of links over sockets.
 struct SocketScheme {
   std::string name;
-  std::function<std::string()> place;  ///< one that nobody listens on: "localhost:7000", "/tmp/x"
+  std::function<std::string()> place;  ///< unused: "localhost:7000", "/tmp/x"
   std::string dial, listen;            ///< schemes
-  /// A stream socket that is connected to a place, for what no link would send.
+  /// A stream socket connected to a place, for data that no link would send.
   std::function<Descriptor(const std::string& place)> connect;
-  /// What the two schemes stand for.
+  /// The transports of the two schemes.
   std::function<Result<internal::Peer>(const Uri&)> peer = {};
   std::function<Result<ListeningSocket>(const Uri&)> socket = {};
   std::string options = {};  ///< of every end, such as "?key=eyes.pem"
-  int cuts = 10'000;         ///< how many streams to cut
+  int cuts = 10'000;         ///< number of truncated streams to test
 };
 
 inline void PrintTo(const SocketScheme& scheme, std::ostream* out) {
   *out << scheme.name;
 }
 
-/// The two ways round as transports of the conformance suite.
+/// Both directions as transports of the conformance suite.
 inline std::vector<Transport> both_ways(const SocketScheme& scheme) {
   auto source_listens = [scheme] {
     std::string place = scheme.place() + scheme.options;
@@ -56,7 +56,7 @@ inline std::vector<Transport> both_ways(const SocketScheme& scheme) {
           {scheme.name + "_sink_listens", sink_listens, true, true}};
 }
 
-/// Takes from a source that gets no message, until it has logged something.
+/// Calls take() on a source that gets no message until it has logged something.
 inline void await_warning(Source& source, const Warnings& warnings) {
   Message message;
   while (warnings.lines.empty()) {
@@ -65,7 +65,7 @@ inline void await_warning(Source& source, const Warnings& warnings) {
   }
 }
 
-/// Writes what no link would send.
+/// Writes data that no link would send.
 inline void write_to(const Descriptor& peer, std::string_view bytes) {
   ASSERT_EQ(::write(peer.get(), bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
 }
@@ -74,7 +74,7 @@ inline bool is_closed(const Descriptor& peer) {
   return ::read(peer.get(), &byte, 1) <= 0;
 }
 
-// Tests that use the helpers above alone need not run the suite.
+// Tests may use only the helpers above, without the suite.
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SocketLink);
 
 class SocketLink : public ::testing::TestWithParam<SocketScheme> {
@@ -84,7 +84,7 @@ class SocketLink : public ::testing::TestWithParam<SocketScheme> {
   [[nodiscard]] std::string listen() const {
     return GetParam().listen + place_ + GetParam().options;
   }
-  /// A listening source with these times for its peers.
+  /// Opens a listening source with these time-outs for its peers.
   [[nodiscard]] std::unique_ptr<Source> source_with(internal::PeerTimes times,
                                                     Warnings& warnings) const {
     return must(internal::listening_source(*GetParam().socket(*parse_uri(listen())),
@@ -93,11 +93,11 @@ class SocketLink : public ::testing::TestWithParam<SocketScheme> {
   std::string place_;
 };
 
-/// Links that accept in the thread that uses them.
+/// Links that accept on the thread that uses them.
 class AcceptingLink : public SocketLink {};
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(AcceptingLink);
 
-/// How many descriptors this process has open.
+/// The number of open descriptors of this process.
 inline std::size_t open_descriptors() {
   std::size_t count = 0;
   for ([[maybe_unused]] const auto& each : std::filesystem::directory_iterator("/proc/self/fd"))

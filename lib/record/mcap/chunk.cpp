@@ -60,9 +60,9 @@ Result<Bytes> unpack_chunk(const Bytes& content, std::uint64_t limit) {
   reader.take(16);  // first and last log time
   reader.get(plain_size, crc, compression, stored_size);
   Bytes bytes{reader.take(stored_size), content.owner};
-  if (!reader.is_good()) return damaged("its lengths do not add up");
+  if (!reader.is_good()) return damaged("inconsistent lengths");
   if (plain_size > limit)
-    return Error{Code::TooLarge, "MCAP chunk: it holds " + std::to_string(plain_size) +
+    return Error{Code::TooLarge, "MCAP chunk: " + std::to_string(plain_size) +
                                      " bytes, more than the limit of " + std::to_string(limit)};
   if (compression == "zstd") {
     auto expanded = expand_zstd(bytes.span, plain_size);
@@ -72,12 +72,12 @@ Result<Bytes> unpack_chunk(const Bytes& content, std::uint64_t limit) {
   } else if (!compression.empty()) {
     return Error{Code::Unsupported,
                  "MCAP chunk: compression \"" + compression.substr(0, 20) +
-                     "\" is not known here; `mcap compress --compression zstd` changes it"};
+                     "\" is not supported; convert it with `mcap compress --compression zstd`"};
   }
   if (bytes.span.size() != plain_size)
-    return damaged("it holds " + std::to_string(bytes.span.size()) + " bytes, and says " +
+    return damaged(std::to_string(bytes.span.size()) + " bytes instead of " +
                    std::to_string(plain_size));
-  if (crc != 0 && crc32(bytes.span) != crc) return damaged("its CRC is wrong");
+  if (crc != 0 && crc32(bytes.span) != crc) return damaged("wrong CRC");
   return bytes;
 }
 

@@ -19,10 +19,10 @@ std::vector<std::byte> compress_zstd(std::span<const std::byte> plain) {
 }
 
 Result<std::vector<std::byte>> expand_zstd(std::span<const std::byte> bytes, std::uint64_t size) {
-  // Most bytes that one byte of zstd can stand for. Source: RFC 8878, 3.1.1.2; as in compress.
+  // Maximum expansion ratio of zstd. Source: RFC 8878, 3.1.1.2; as in hc/compress.
   constexpr std::uint64_t kMaxExpansion = (std::uint64_t{128} << 10) / 4;
   if (size / kMaxExpansion > bytes.size())
-    return Error{Code::Malformed, "MCAP chunk: it is too short for what it promises"};
+    return Error{Code::Malformed, "MCAP chunk: too few compressed bytes"};
   std::vector<std::byte> plain(size);
   const std::size_t got = ZSTD_decompress(plain.data(), plain.size(), bytes.data(), bytes.size());
   if (ZSTD_isError(got) != 0)

@@ -6,7 +6,7 @@
 namespace hc::mcap {
 namespace {
 
-/// kTables[k][b]: what the byte b does to the CRC when k more bytes follow. Source: M. Kounavis,
+/// kTables[k][b]: the effect of the byte b on the CRC after k more bytes. Source: M. Kounavis,
 /// F. Berry, "A Systematic Approach to Building High Performance, Software-based, CRC Generators"
 constexpr auto kTables = [] {
   constexpr std::uint32_t kPolynomial = 0xedb88320;

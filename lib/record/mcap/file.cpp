@@ -38,7 +38,7 @@ Status File::write(std::span<const std::byte> bytes) {
   return {};
 }
 
-/// Reserves so many bytes behind the end of the file, if the file system can do that.
+/// Reserves space after the end of the file, if the file system supports it.
 Status File::reserve(std::uint64_t bytes) const {
   rlimit limit{};
   if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && size_ + bytes > limit.rlim_cur)
@@ -51,7 +51,7 @@ Status File::reserve(std::uint64_t bytes) const {
 
 Status File::append(std::span<const std::byte> records, Opcode opcode,
                     std::span<const std::byte> in_summary) {
-  // What else the summary has: the count of a channel, its own parts and places.
+  // The rest of the summary: the count of each channel, the statistics and the offsets.
   constexpr std::uint64_t kOfChannel = 16, kOther = 1024;
   auto& group = summary_[opcode];
   std::uint64_t room = in_summary.size() + kOther;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Writes an MCAP file: complete chunks, and at the end the summary. If the program is killed, all
-// chunks written before can be read.
+// Writes an MCAP file: complete chunks, then the summary. If the program is killed, all chunks
+// written so far are readable.
 
 #include <cstdint>
 #include <map>
@@ -18,24 +18,24 @@ namespace hc::mcap {
 
 class File {
  public:
-  /// Begins a file as begin_file() does: never over an existing one. Errors: of begin_file().
+  /// Creates a file like begin_file(), never over an existing one. Errors: those of begin_file().
   static Result<File> create(const std::string& path);
 
-  // Errors of all: System. The file is as it was before, and can be closed.
+  // Errors of all: System. The file is then unchanged and can be closed.
 
   Status add(const SchemaRecord& schema);
   Status add(const ChannelRecord& channel);
   Status add(const MetadataRecord& metadata);
   Status add(const Chunk& chunk);
 
-  /// Writes the summary. Does not fail on a full disk: each record reserves the room for it.
+  /// Writes the summary. Succeeds on a full disk, since each record reserves space for it.
   Status close();
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
-  /// Records of one kind in the summary.
+  /// Records of one kind for the summary.
   struct Group {
     RecordWriter records;
     std::uint32_t count = 0;
@@ -45,7 +45,7 @@ class File {
       : path_(std::move(path)), descriptor_(std::move(descriptor)) {}
   Status write(std::span<const std::byte> bytes);
   [[nodiscard]] Status reserve(std::uint64_t bytes) const;
-  /// Writes records, and adds one about them to the summary.
+  /// Writes records, and adds an entry about them to the summary.
   Status append(std::span<const std::byte> records, Opcode opcode,
                 std::span<const std::byte> in_summary);
   [[nodiscard]] std::vector<std::byte> summary();

@@ -9,7 +9,7 @@ std::vector<std::byte> compress_zstd(std::span<const std::byte>) {
 
 Result<std::vector<std::byte>> expand_zstd(std::span<const std::byte>, std::uint64_t) {
   return Error{Code::Unsupported,
-               "MCAP chunk: this build cannot read zstd; install libzstd-dev and build again"};
+               "MCAP chunk: this build cannot read zstd; install libzstd-dev and rebuild"};
 }
 
 }  // namespace hc::mcap

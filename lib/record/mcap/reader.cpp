@@ -12,8 +12,8 @@ namespace hc::mcap {
 namespace {
 
 constexpr std::uint64_t kFooterLength = 20;
-constexpr const char* kTooShort = "a record is shorter than what it holds";
-constexpr std::uint64_t kRunBytes = std::uint64_t{4} << 20;  // of messages that are in no chunk
+constexpr const char* kTooShort = "a record is too short for its fields";
+constexpr std::uint64_t kRunBytes = std::uint64_t{4} << 20;  // of messages outside of chunks
 
 MessageRecord read_head(RecordReader& reader) {
   MessageRecord message;
@@ -33,7 +33,7 @@ Error damaged(const std::string& what, std::uint64_t at) {
   return {Code::Malformed, "MCAP: " + what + ", at byte " + std::to_string(at)};
 }
 
-/// Whether all channels that have messages are known.
+/// Whether all channels with messages have been declared.
 bool knows_channels(const Summary& summary) {
   return std::ranges::all_of(
       summary.counts, [&](const auto& each) { return summary.channels.contains(each.first); });
@@ -42,9 +42,9 @@ bool knows_channels(const Summary& summary) {
 }  // namespace
 
 Error Reader::truncated(std::uint64_t at) const {
-  return {Code::Truncated, "MCAP: the file has no end, as a recorder that was killed leaves it; " +
-                               std::to_string(at) + " of its " + std::to_string(size_) +
-                               " bytes are whole, and were read"};
+  return {Code::Truncated, "MCAP: the file is truncated, as after a crash; " + std::to_string(at) +
+                               " of its " + std::to_string(size_) +
+                               " bytes are complete and have been read"};
 }
 
 Result<Reader> Reader::open(const std::string& path, const ReaderLimits& limits) {
@@ -58,7 +58,7 @@ Result<Reader> Reader::open(const std::string& path, const ReaderLimits& limits)
   auto magic = reader.read(0, kMagic.size(), kMagic.size());
   if (!magic && magic.error().code != Code::Truncated) return magic.error();
   if (!magic || std::memcmp(magic->data(), kMagic.data(), kMagic.size()) != 0)
-    return Error{Code::Malformed, path + ": no MCAP file: it does not begin as one"};
+    return Error{Code::Malformed, path + ": not an MCAP file"};
   auto chunks = reader.read_summary();
   if (!chunks) return chunks.error();
   if (auto scanned = reader.scan(*chunks); !scanned) return scanned.error();
@@ -81,7 +81,7 @@ Result<std::vector<std::byte>> Reader::read(std::uint64_t at, std::uint64_t size
                      static_cast<off_t>(at + done));
     });
     if (!got) return got.error();
-    if (*got == 0) return truncated(at);  // it has become shorter
+    if (*got == 0) return truncated(at);  // the file has been truncated
     done += static_cast<std::size_t>(*got);
   }
   return bytes;
@@ -98,7 +98,7 @@ Result<Reader::RecordPlace> Reader::record_at(std::uint64_t at) {
 
 Status Reader::declare(const RecordPlace& place, std::span<const std::byte> content) {
   RecordReader reader(content);
-  bool is_new = false;  // they may be repeated
+  bool is_new = false;  // declarations may be repeated
   if (place.opcode == Opcode::Schema) {
     SchemaRecord schema;
     reader.get(schema.id, schema.name, schema.encoding, schema.text);
@@ -116,7 +116,7 @@ Status Reader::declare(const RecordPlace& place, std::span<const std::byte> cont
 }
 
 void Reader::add_times(const Part& part) {
-  if (part.first == 0 && part.last == 0) return;  // of a chunk without messages
+  if (part.first == 0 && part.last == 0) return;  // a chunk without messages
   summary_.begin = summary_.begin == 0 ? part.first : std::min(summary_.begin, part.first);
   summary_.end = std::max(summary_.end, part.last);
 }
@@ -146,7 +146,7 @@ Result<std::vector<Reader::Part>> Reader::read_summary() {
   if (!has_footer || begin == 0) return chunks;  // a file may have no summary
   if (begin < kMagic.size() || begin > footer_at)
     return damaged("the summary begins outside of the file", footer_at);
-  // Record by record: of a recording of days it is long.
+  // Record by record, since the summary of a recording of days is long.
   std::uint32_t found_crc = 0;
   for (std::uint64_t at = begin; at < footer_at;) {
     auto place = record_at(at);
@@ -273,7 +273,7 @@ Result<bool> Reader::is_skipped(const Part& part) {
   if (!selected_ || !part.is_chunk) return false;
   for (std::uint64_t at = part.end;;) {
     auto place = record_at(at);
-    // Where the file ends here, there may have been more.
+    // If the file ends here, further indexes may be missing.
     if (!place) return place.error().code == Code::Truncated ? Result<bool>(false) : place.error();
     if (place->opcode != Opcode::MessageIndex) return at > part.end;
     std::uint16_t channel = 0;
@@ -294,7 +294,7 @@ Result<std::vector<Reader::Pending>> Reader::open(
   if (part.is_chunk) {
     RecordReader record(bytes.span);
     const auto [opcode, content] = take_record(record);
-    if (opcode != Opcode::Chunk) return damaged("there is no chunk where one should be", part.at);
+    if (opcode != Opcode::Chunk) return damaged("the index does not lead to a chunk", part.at);
     auto plain = unpack_chunk({content, owner}, limits_.chunk_bytes);
     if (!plain)
       return Error{plain.error().code,
@@ -308,11 +308,11 @@ Result<std::vector<Reader::Pending>> Reader::open(
   while (!records.at_end()) {
     const std::uint64_t at = opened->bytes.span.size() - records.left();
     const auto [opcode, content] = take_record(records);
-    if (!records.is_good()) return damaged("a record reaches over the end of its chunk", part.at);
+    if (!records.is_good()) return damaged("a record extends beyond its chunk", part.at);
     if (opcode == Opcode::Schema || opcode == Opcode::Channel)
       if (auto declared = declare({opcode, part.at, 0}, content); !declared)
         return declared.error();
-    if (opcode != Opcode::Message) continue;  // a chunk has no others
+    if (opcode != Opcode::Message) continue;  // other records are ignored
     RecordReader reader(content);
     const auto message = read_head(reader);
     if (!reader.is_good()) return damaged("a message is shorter than its head", part.at);
@@ -329,7 +329,7 @@ Result<bool> Reader::fill() {
                         parts_[next_part_].first >= pending_[next_].time))
       return true;
     if (!has_part) {
-      if (summary_.is_whole || std::exchange(is_truncation_said_, true)) return false;
+      if (summary_.is_whole || std::exchange(is_truncation_reported_, true)) return false;
       return truncated(scanned_);
     }
     const Part& part = parts_[next_part_++];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Reads MCAP files, also of other programs: their summary, and their messages by log time. Of a
-// truncated file, as a crash leaves it, all complete chunks are read. Memory is bounded by the
-// limits and the number of chunks, whatever a file contains.
+// Reads MCAP files, also of other programs: the summary, and messages by log time. If a file was
+// truncated by a crash, its complete chunks are read. Memory is bounded by the limits and the
+// number of chunks, whatever the file contains.
 
 #include <cstdint>
 #include <functional>
@@ -26,7 +26,6 @@ struct ReaderLimits {
   std::uint64_t summary_bytes = std::uint64_t{64} << 20;  ///< of all schemas and channels
 };
 
-/// What is known of a file.
 struct Summary {
   std::map<std::uint16_t, SchemaRecord> schemas;
   std::map<std::uint16_t, ChannelRecord> channels;
@@ -36,67 +35,67 @@ struct Summary {
   std::uint64_t plain = 0;                        ///< their size, uncompressed [byte]
   std::vector<std::string> metadata;              ///< the name of each record
   bool is_whole = false;                          ///< not truncated
-  std::uint64_t unread = 0;  ///< chunks without an index that cannot be read, and so not counted
-  std::string why_unread;    ///< the error of the first of them
+  std::uint64_t unread = 0;  ///< chunks without index that cannot be read; not in `counts`
+  std::string why_unread;    ///< the first error about them
 };
 
 /// A message, in the memory of its chunk.
 struct StoredMessage {
   MessageRecord record;
-  const ChannelRecord* channel = nullptr;  ///< of the reader, as the next
+  const ChannelRecord* channel = nullptr;  ///< owned by the reader
   const SchemaRecord* schema = nullptr;    ///< null: none
   std::span<const std::byte> data;
   std::shared_ptr<const void> owner;
-  std::size_t owned = 0;  ///< of the owner [byte]
+  std::size_t owned = 0;  ///< size of the owner [byte]
 };
 
 class Reader {
  public:
-  /// Opens a file and reads its summary. Where that does not lead to all records it also scans
-  /// for them, and decompresses chunks that have no index.
+  /// Opens a file and reads its summary. If that does not list all records, scans the file for them
+  /// and decompresses chunks without an index.
   ///
   /// Errors: NotFound, System; Malformed (not MCAP, or a damaged summary), TooLarge, Unsupported
   /// (a pipe or device).
   static Result<Reader> open(const std::string& path, const ReaderLimits& limits = {});
 
-  /// Grows as chunks are read, by schemas and channels that only they declare.
+  /// Grows while chunks are read, by schemas and channels that are declared only in them.
   [[nodiscard]] const Summary& summary() const { return summary_; }
-  /// The newest metadata of each name. Errors: Malformed, TooLarge, System.
+  /// The latest metadata of each name. Errors: Malformed, TooLarge, System.
   Result<std::map<std::string, StringMap>> metadata();
 
   /// Reads only these channels; chunks without them are skipped if their index is complete.
   void select(std::set<std::uint16_t> channels) { selected_ = std::move(channels); }
-  /// Skips messages before this time, and chunks with only such messages.
+  /// Skips messages before this time, and chunks that contain only such messages.
   void start_at(std::uint64_t log_time);
 
-  /// The next message by log time, those with equal times in the order of the file; nothing at the
-  /// end. Chunks that overlap in time are open together, up to the limit of a chunk's bytes; beyond
-  /// it their messages are not sorted.
+  /// The next message by log time, messages of equal time in file order; nullopt at the end. Chunks
+  /// that overlap in time are held open together, up to the limit of a chunk's bytes; beyond it
+  /// their messages are not sorted.
   ///
   /// Errors: Truncated (once, at the end of a truncated file), Malformed, TooLarge, Unsupported,
   /// System. After Malformed, TooLarge and Unsupported the next call continues with the next chunk.
   Result<std::optional<StoredMessage>> next();
-  /// Its log time. Errors: as next(), each of them once.
+  /// The log time of the next message. Errors: as next(), each of them once.
   Result<std::optional<std::uint64_t>> next_time();
 
   [[nodiscard]] int descriptor() const { return descriptor_.get(); }
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// How much of the file next() has read. [byte]
+  /// The part of the file that next() has read. [byte]
   [[nodiscard]] std::uint64_t position() const { return position_; }
 
  private:
   struct RecordPlace {
     Opcode opcode{};
-    std::uint64_t at = 0, length = 0;  // the latter of the content
+    std::uint64_t at = 0, length = 0;  // offset of the record, size of its content
     [[nodiscard]] std::uint64_t content() const { return at + kRecordHead; }
     [[nodiscard]] std::uint64_t end() const { return content() + length; }
   };
-  /// What is read at once: a chunk, or a run of messages outside of chunks.
+  /// The unit of reading: a chunk, or a run of messages outside of chunks.
   struct Part {
     std::uint64_t first = 0, last = 0;  // log times
-    std::uint64_t at = 0, end = 0;      // in the file
-    std::uint64_t indexed = 0;  // end of its MessageIndex records, of a chunk in the summary
-    std::uint64_t plain = 0;    // size of a chunk's messages [byte]
+    std::uint64_t at = 0, end = 0;      // offsets in the file
+    std::uint64_t indexed = 0;          // end of a chunk's MessageIndex records, from the summary
+    std::uint64_t plain = 0;            // size of a chunk's messages [byte]
     bool is_chunk = false;
     bool is_counted = false;  // its messages are in Summary::counts
   };
@@ -114,23 +113,23 @@ class Reader {
 
   [[nodiscard]] Error truncated(std::uint64_t at) const;
   Result<std::vector<std::byte>> read(std::uint64_t at, std::uint64_t size, std::uint64_t limit);
-  /// The record at a place of the file. Errors: Truncated, System.
+  /// The record at an offset. Errors: Truncated, System.
   Result<RecordPlace> record_at(std::uint64_t at);
   /// Adds a schema or channel to the summary. Errors: Malformed, TooLarge.
   Status declare(const RecordPlace& place, std::span<const std::byte> content);
-  /// Reads the summary section, if there is one. Returns the chunks that it indexes, unless it
-  /// lacks the counts of messages.
+  /// Reads the summary section, if there is one. Returns the chunks that it indexes, or none if it
+  /// lacks the message counts.
   Result<std::vector<Part>> read_summary();
-  /// Reads the heads of all records, other than these chunks and their indexes.
+  /// Reads the heads of all records except these chunks and their indexes.
   Status scan(const std::vector<Part>& chunks);
   Status scan_record(const RecordPlace& place, bool is_counted);
   void add_chunk(const Part& chunk);
   void add_times(const Part& part);
-  /// Reads chunks whose messages are not counted, or whose channels are not known.
+  /// Reads chunks whose messages have not been counted or whose channels are not declared.
   void count_contents();
-  /// Whether no message of a part is selected, by its times and indexes.
+  /// Whether a part has no selected messages, by its times and indexes.
   Result<bool> is_skipped(const Part& part);
-  /// Reads a part: its messages that are wanted, in the order of the file, and declarations.
+  /// Reads a part: its wanted messages in file order, and declarations.
   Result<std::vector<Pending>> open(const Part& part,
                                     const std::function<bool(const MessageRecord&)>& is_wanted);
   /// Makes pending_[next_] the next message; false at the end. Errors: as next().
@@ -153,7 +152,7 @@ class Reader {
   std::vector<Pending> pending_;  // messages of open parts, by time
   std::size_t next_ = 0;
   std::uint64_t open_bytes_ = 0, position_ = 0;
-  bool is_truncation_said_ = false;
+  bool is_truncation_reported_ = false;
 };
 
 }  // namespace hc::mcap

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The records that an MCAP file is made of: numbers, strings, maps and lists to bytes and back.
+// The records of MCAP files: encoding and decoding of numbers, strings, maps and lists.
 // Pure. Source: https://mcap.dev/spec
 
 #include <cstddef>
@@ -16,9 +16,9 @@
 
 namespace hc::mcap {
 
-/// What begins and ends a file.
+/// The first and last bytes of a file.
 inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
-/// Before the content of each record: its opcode and length. [byte]
+/// The head of each record: opcode and length. [byte]
 inline constexpr std::size_t kRecordHead = 9;
 
 enum class Opcode : std::uint8_t {
@@ -52,7 +52,7 @@ struct ChannelRecord {
   StringMap metadata;
 };
 
-/// What the data of a message follow.
+/// The head of a message, followed by its data.
 struct MessageRecord {
   std::uint16_t channel = 0;
   std::uint32_t sequence = 0;
@@ -64,7 +64,6 @@ struct MetadataRecord {
   StringMap words;
 };
 
-/// Writes records, one after the other.
 class RecordWriter {
  public:
   std::vector<std::byte> bytes;
@@ -74,7 +73,7 @@ class RecordWriter {
     (put(fields), ...);
     end();
   }
-  /// Begins a record whose fields do not fit into one add(); end() gives it its length.
+  /// Begins a record whose fields do not fit into one add(); end() sets its length.
   void begin(Opcode opcode, const auto&... fields) {
     (put(opcode), put(std::uint64_t{0}));
     begin_ = bytes.size();
@@ -85,7 +84,6 @@ class RecordWriter {
   void append(std::span<const std::byte> more) {
     bytes.insert(bytes.end(), more.begin(), more.end());
   }
-  /// Overwrites a number.
   void set(std::size_t at, auto number) { std::memcpy(&bytes[at], &number, sizeof number); }
 
  private:
@@ -109,7 +107,7 @@ class RecordWriter {
   std::size_t begin_ = 0;
 };
 
-/// Reads the content of a record. What is missing reads as 0 or empty, and is_good() is false then.
+/// Reads the content of a record. Missing fields read as 0 or empty and make is_good() false.
 class RecordReader {
  public:
   explicit RecordReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -118,7 +116,6 @@ class RecordReader {
   [[nodiscard]] bool at_end() const { return bytes_.empty() || !is_good_; }
   [[nodiscard]] std::size_t left() const { return bytes_.size(); }
 
-  /// Reads fields one after the other.
   void get(auto&... fields) { (get_one(fields), ...); }
   std::span<const std::byte> take(std::uint64_t size) {
     is_good_ = is_good_ && size <= bytes_.size();
@@ -158,7 +155,7 @@ class RecordReader {
   bool is_good_ = true;
 };
 
-/// CRC-32 as of zlib, of bytes that follow those of which `crc` is. Cost: about 2 GB/s.
+/// CRC-32 as in zlib; `crc` is that of the preceding bytes. Cost: about 2 GB/s.
 std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t crc = 0);
 
 }  // namespace hc::mcap

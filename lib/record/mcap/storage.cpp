@@ -17,14 +17,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// `kept_0001.mcap` of `kept.mcap`.
+/// `kept_0001.mcap` for `kept.mcap`.
 std::string numbered(const std::string& file, std::uint64_t number) {
   fs::path path(file);
   const auto stem = path.stem().string(), ending = path.extension().string();
   return path.replace_filename(hc::format("{}_{:04}{}", stem, number, ending)).string();
 }
 
-/// The highest number that a file beside has; 0: there is none.
+/// The highest number among the files of this name; 0: none.
 std::uint64_t highest_number(const std::string& file) {
   const fs::path path(file);
   const auto folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -49,21 +49,21 @@ Result<std::uint64_t> parse_bytes(std::string_view text) {
   const auto bytes = number_option({"", "", {{"", std::string(text)}}}, "", 0, kRange);
   if (bytes) return static_cast<std::uint64_t>(*bytes);
   return Error{Code::Invalid,
-               hc::format("\"{}\" is no number of bytes, such as 1G (of K, M and G)", text)};
+               hc::format("\"{}\" is not a number of bytes, such as 1G (units K, M, G)", text)};
 }
 
 Result<Storage> Storage::make(const std::string& file, const StorageOptions& options) {
   if (options.keep > 0 && options.split == 0)
-    return Error{Code::Invalid, "to keep so much, a recording has to be split into files"};
+    return Error{Code::Invalid, "keep requires split: only whole files are removed"};
   if (options.last.count() > 0 && options.split > 0)
-    return Error{Code::Invalid, "what is kept in memory is not split into files"};
+    return Error{Code::Invalid, "last and split exclude each other: memory is saved to one file"};
   Storage storage(file, options);
   if (options.last.count() == 0)
     if (auto begun = storage.begin_file(0); !begun) return begun.error();
   return storage;
 }
 
-/// One file has the name that was given; of several each has a number.
+/// A single file has the given name; files of a sequence are numbered.
 Status Storage::begin_file(std::uint64_t time) {
   if (is_numbered()) number_ = std::max(number_, highest_number(name_)) + 1;
   auto file = File::create(is_numbered() ? numbered(name_, number_) : name_);
@@ -115,13 +115,14 @@ void Storage::remove_old() {
 void Storage::limit_lasting() {
   std::size_t all = 0;
   for (const auto& each : repeated_)
-    if (const auto* lasting = std::get_if<Lasting>(&each)) all += lasting->data.size() + kOfLasting;
+    if (const auto* lasting = std::get_if<Lasting>(&each))
+      all += lasting->data.size() + kLastingOverhead;
   for (const bool also_known : {false, true})
     std::erase_if(repeated_, [&](const Repeated& each) {
       const auto* lasting = std::get_if<Lasting>(&each);
       if (all <= kMostLasting || lasting == nullptr || (!also_known && !lasting->about.empty()))
         return false;
-      all -= lasting->data.size() + kOfLasting;
+      all -= lasting->data.size() + kLastingOverhead;
       return true;
     });
 }

@@ -21,50 +21,49 @@ namespace hc::mcap {
 struct StorageOptions {
   std::uint64_t split = 0;  ///< begin a new file beyond this size [byte]; 0: never
   std::uint64_t keep = 0;   ///< remove the oldest files beyond this total size [byte]; 0: never
-  /// More than 0: keep messages in memory for this time; each save() writes them to a file.
+  /// > 0: keep messages of this duration in memory; each save() writes them to a file.
   std::chrono::nanoseconds last{0};
 };
 
-/// A message that stays valid, such as the fixed frames ("latched" in ROS).
+/// A message that remains valid, such as fixed frames ("latched" in ROS).
 struct Lasting {
   std::uint16_t channel = 0;
   std::uint32_t sequence = 0;
   std::uint64_t log_time = 0;  ///< [ns since the Unix epoch]
   std::vector<std::byte> data;
-  /// Later messages about these replace it, all of them together; empty: none does.
+  /// Its subjects, such as frames. It is dropped once later messages cover them all; empty: never.
   std::set<std::string> about;
 };
 
-/// Reads a number of bytes, also with K, M or G (of 1024) behind it; empty is 0. Errors: Invalid.
+/// Parses a number of bytes, optionally with K, M or G (of 1024); empty is 0. Errors: Invalid.
 Result<std::uint64_t> parse_bytes(std::string_view text);
 
 class Storage {
  public:
-  /// What each file contains: all schemas and channels, the newest metadata of each name, and
-  /// lasting messages, after the first file with the time at which the file begins: at most one for
-  /// each thing that they are about, and no more than kMostLasting: the oldest of those about
-  /// nothing known are dropped first.
+  /// The contents of each file: all schemas and channels, the latest metadata of each name, and
+  /// lasting messages, which get the start time of the file from the second file on. There is at
+  /// most one per subject and kMostLasting in all; the oldest without subjects are dropped first.
   using Repeated = std::variant<SchemaRecord, ChannelRecord, MetadataRecord, Lasting>;
-  /// Of lasting messages, each with kOfLasting for what is around it. [byte]
-  static constexpr std::size_t kMostLasting = std::size_t{1} << 20, kOfLasting = 512;
+  /// Limit on lasting messages, each with an overhead of kLastingOverhead. [byte]
+  static constexpr std::size_t kMostLasting = std::size_t{1} << 20, kLastingOverhead = 512;
 
-  /// @param file  "kept.mcap". One that has contents stays, and a new one is written beside it
-  ///     (os/new_file.h). With `split` or `last`, "kept_0001.mcap" and so on after existing ones.
+  /// @param file  "kept.mcap". If it has contents, a new file is written beside it (os/new_file.h).
+  ///     With `split` or `last`: "kept_0001.mcap" and so on, after existing ones.
   /// Errors: System; Invalid (`keep` without `split`; `last` with either).
   static Result<Storage> make(const std::string& file, const StorageOptions& options);
 
-  // Errors of all: System. Only close() may be called then; it leaves a valid file.
+  // Errors of all: System. Then only close() may be called, which leaves a valid file.
 
   Status add(Repeated record);
   Status add(Chunk chunk);
 
-  /// With `last`: writes what is in memory to a file; returns its name.
+  /// With `last`: writes the messages in memory to a file; returns its name.
   Result<std::string> save();
   Status close();
 
-  /// Files written and not removed, after close().
+  /// The files written and not removed, after close().
   [[nodiscard]] std::vector<std::string> files() const;
-  /// The file being written; with `split` or `last` the name without numbers.
+  /// The file being written; with `split` or `last`, the name without number.
   [[nodiscard]] const std::string& file() const { return name_; }
 
  private:
@@ -75,7 +74,7 @@ class Storage {
   Status begin_file(std::uint64_t time);
   Status end_file();
   Status write(const Repeated& record, std::uint64_t time);
-  /// Forgets what is more than kMostLasting.
+  /// Drops lasting messages beyond kMostLasting.
   void limit_lasting();
   void remove_old();
 

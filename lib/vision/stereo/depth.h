@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// From disparities to metres, and to points in space.
+// Converts disparities to depth and points.
 
 #include <opencv2/core.hpp>
 
@@ -10,8 +10,8 @@ namespace hc::vision {
 struct StereoGeometry {
   double focal = 0;     ///< focal length of the rectified images [px]
   double baseline = 0;  ///< distance of the two cameras [m]
-  double offset = 0;    ///< disparity of a point infinitely far away, negated [px]
-  double cx = 0;        ///< the optical axis of the left camera in its image [px]
+  double offset = 0;    ///< negated disparity of a point at infinity [px]
+  double cx = 0;        ///< principal point of the left camera [px]
   double cy = 0;
 };
 
@@ -21,7 +21,7 @@ struct StereoGeometry {
 /// @param[out] depth  (H, W) f32 [m].
 void depth_of(const cv::Mat& disparity, const StereoGeometry& geometry, cv::Mat& depth);
 
-/// The point that each pixel shows, and its colour.
+/// The coloured point of each pixel.
 ///
 /// @param depth  (H, W) f32 [m], 0 where unknown.
 /// @param image  (H, W) or (H, W, 3) u8.

@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<std::string_view, 6> kLayouts = {"side_by_side", "top_bottom", "red_cyan",
                                                       "rows",         "left",       "right"};
 
-/// A number of about three digits.
+/// A number with about three digits.
 std::string short_number(double value, const std::string& unit) {
   char text[32];
   const double size = std::abs(value);
@@ -44,7 +44,7 @@ cv::Mat join_eyes(const cv::Mat& left, const cv::Mat& right, std::string_view la
     for (int y = 1; y < joined.rows; y += 2) right.row(y).copyTo(joined.row(y));
   } else {
     CV_Assert(layout == "red_cyan");
-    // Of grey, since a colour that only one eye sees flickers.
+    // In grey, since colours that only one eye sees flicker.
     const auto grey = [](const cv::Mat& image) {
       if (image.channels() == 1) return image;
       cv::Mat found;
@@ -59,7 +59,7 @@ cv::Mat join_eyes(const cv::Mat& left, const cv::Mat& right, std::string_view la
 
 void shade(cv::Mat& bgr, const cv::Mat& values) {
   CV_Assert(bgr.size() == values.size() && bgr.type() == CV_8UC3 && values.type() == CV_32F);
-  constexpr double kHeight = 60;  // how steep the relief looks
+  constexpr double kHeight = 60;  // apparent steepness of the relief
   constexpr double kLeast = 0.35, kMost = 1.3;
   for (int y = 0; y < bgr.rows; ++y) {
     const auto* row = values.ptr<float>(y);
@@ -68,7 +68,7 @@ void shade(cv::Mat& bgr, const cv::Mat& values) {
     for (int x = 0; x < bgr.cols; ++x) {
       const double here = row[x], left = row[std::max(0, x - 1)], up = above[x];
       if (here == 0 || left == 0 || up == 0) continue;
-      // Relative, so that a slope looks alike near and far.
+      // Relative, so that slopes look alike near and far.
       const double rise = ((left - here) + (up - here)) / here;
       const double light = std::clamp(1 - kHeight * rise, kLeast, kMost);
       for (int c = 0; c < 3; ++c)
@@ -84,7 +84,7 @@ cv::Mat with_legend(const cv::Mat& bgr, double least, double most, const std::st
   bgr.copyTo(whole(cv::Rect({0, 0}, bgr.size())));
   const int x = bgr.cols + kMargin, top = kMargin;
   const int bottom = bgr.rows - kMargin - 2 * kBar;
-  // The scale: from the maximum, on top, to the minimum.
+  // The scale, from the maximum at the top to the minimum.
   cv::Mat scale(bottom - top, 1, CV_32F);
   for (int y = 0; y < scale.rows; ++y)
     scale.at<float>(y) = 1 + static_cast<float>(scale.rows - 1 - y);

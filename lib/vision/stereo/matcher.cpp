@@ -24,7 +24,7 @@ Status check(const cv::Mat& left, const cv::Mat& right) {
     if (image->empty()) return Error{Code::Invalid, hc::format("the {} image is empty", eye)};
     if (image->depth() != CV_8U || (image->channels() != 1 && image->channels() != 3))
       return Error{Code::Invalid,
-                   hc::format("the {} image is no u8 image of one or three channels", eye)};
+                   hc::format("the {} image is not u8 with one or three channels", eye)};
   }
   if (left.size() != right.size())
     return Error{Code::Invalid, hc::format("the left image is {} x {}, the right one {} x {}",
@@ -32,8 +32,7 @@ Status check(const cv::Mat& left, const cv::Mat& right) {
   return {};
 }
 
-/// Intensities of an image as match_rows() takes it, with a border that repeats its outermost
-/// pixels.
+/// Intensities of an image for match_rows(), with a border that repeats the outermost pixels.
 void prepare(const cv::Mat& image, bool flipped, cv::Mat& bordered) {
   bordered.create(image.rows + 2 * kBorder, image.cols + 2 * kBorder + kReadBeyond, CV_8U);
   cv::Mat inside = bordered(cv::Rect({kBorder, kBorder}, image.size()));
@@ -105,8 +104,7 @@ class SemiGlobalMatcher final : public StereoMatcher {
 class OpenCvMatcher final : public StereoMatcher {
  public:
   OpenCvMatcher(const StereoOptions& options, int block_size) {
-    // The smoothness penalties of OpenCV's own documentation, for one channel; the other values
-    // were chosen on the Aloe pair.
+    // Penalties from OpenCV's documentation for one channel; the rest was tuned on the Aloe pair.
     const int area = block_size * block_size;
     constexpr int kLeast = 0, kLeftRightDifference = 1, kPreFilterCap = 63, kUniqueness = 10;
     constexpr int kSpeckleRange = 2;
@@ -118,7 +116,7 @@ class OpenCvMatcher final : public StereoMatcher {
 
   Status match(const cv::Mat& left, const cv::Mat& right, Disparities& found) override {
     HC_TRY(check(left, right));
-    // OpenCV 4.6 writes where it should not otherwise.
+    // OpenCV 4.6 writes out of bounds otherwise.
     if (left.cols <= matcher_->getNumDisparities())
       return Error{Code::Invalid, hc::format("images of {} x {} are not wider than {} disparities",
                                              left.cols, left.rows, matcher_->getNumDisparities())};

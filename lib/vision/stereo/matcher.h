@@ -9,15 +9,14 @@
 
 namespace hc::vision {
 
-/// What a matcher finds, for each pixel of the left image. Matrices that have their size and type
-/// already are written in place.
+/// The result of a matcher for each pixel of the left image. Reuses matrices of that size and type.
 struct Disparities {
-  cv::Mat disparity;   ///< (H, W) f32 [px], how far left the same point is in the right image; 0
-                       ///< where unknown
+  cv::Mat disparity;   ///< (H, W) f32 [px], shift to the left of the same point in the right image;
+                       ///< 0: unknown
   cv::Mat confidence;  ///< (H, W) u8, from 1, doubtful, to 255; 0 where unknown
 };
 
-/// A way to match images. An object is for one thread at a time and keeps its memory.
+/// A stereo matcher. Reuses its memory; not thread-safe.
 class StereoMatcher {
  public:
   StereoMatcher() = default;
@@ -27,27 +26,27 @@ class StereoMatcher {
 
   /// @param left, right  (H, W) or (H, W, 3) u8, intensities or red, green, blue.
   ///
-  /// Errors: Invalid (empty, of different sizes, not of u8, a size that the matcher does not take).
+  /// Errors: Invalid (empty, of different sizes, not u8, a size that the matcher does not support).
   virtual Status match(const cv::Mat& left, const cv::Mat& right, Disparities& found) = 0;
 };
 
-/// How images are matched.
+/// Options of the matchers.
 struct StereoOptions {
   int disparities = 128;   ///< searched, from 0 on [px]; a multiple of 16, at most 256
   int speckle_size = 100;  ///< smaller patches of disparity are removed [px]
 };
 
-/// Semi-global matching of census words along five paths: see semi_global.h. Uses all cores, as
-/// cv::setNumThreads() has them; the result does not depend on them. Confidence is how much more
-/// the second-best disparity costs.
+/// Semi-global matching of census words along five paths: see semi_global.h. Uses the number of
+/// threads of cv::setNumThreads(), which does not affect the result. Confidence is the cost margin
+/// of the second-best disparity.
 ///
 /// Cost: linear in pixels · disparities; doc/sight.md has figures.
 std::unique_ptr<StereoMatcher> semi_global_matcher(const StereoOptions& options);
 
-/// Semi-global matching of OpenCV in its three-way mode. Confidence is 255 where a disparity is
-/// known. Images must be wider than the disparities searched.
+/// OpenCV's semi-global matching in three-way mode. Confidence is 255 where a disparity is known.
+/// Images must be wider than the disparities searched.
 ///
-/// @param block_size  side of the window that is compared, odd [px].
+/// @param block_size  side of the compared window, odd [px].
 std::unique_ptr<StereoMatcher> opencv_matcher(const StereoOptions& options, int block_size = 5);
 
 }  // namespace hc::vision

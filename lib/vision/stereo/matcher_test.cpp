@@ -25,7 +25,7 @@ struct Pair {
   cv::Mat left, right;
 };
 
-/// Something random, the right view of it `shift` pixels further left.
+/// A random image; its right view is shifted to the left by `shift` pixels.
 Pair shifted_pair(cv::Size size, int shift) {
   cv::Mat scene(size.height, size.width + shift, CV_8U);
   cv::RNG(5).fill(scene, cv::RNG::UNIFORM, 0, 255);
@@ -33,7 +33,7 @@ Pair shifted_pair(cv::Size size, int shift) {
   return {scene(cv::Rect({0, 0}, size)).clone(), scene(cv::Rect({shift, 0}, size)).clone()};
 }
 
-/// Aloe as graphs/depth.toml has it; the whole graph must come to the same figures (tests/pipes).
+/// Aloe as in graphs/depth.toml; the whole graph must give the same figures (tests/pipes).
 struct Aloe {
   Aloe() {
     pair.left = fit(cv::imread(data("aloeL.jpg")), 800, 600);
@@ -90,9 +90,9 @@ TEST_P(EachMatcher, SaysWhatItDoesNotTake) {
   EXPECT_EQ(error(image, cv::Mat(100, 201, CV_8U)),
             "the left image is 200 x 100, the right one 201 x 100");
   EXPECT_EQ(error(cv::Mat(100, 200, CV_16U), image),
-            "the left image is no u8 image of one or three channels");
+            "the left image is not u8 with one or three channels");
   EXPECT_EQ(error(image, cv::Mat(100, 200, CV_8UC4)),
-            "the right image is no u8 image of one or three channels");
+            "the right image is not u8 with one or three channels");
   EXPECT_EQ(error(image, image), "") << "without any texture";
 }
 
@@ -120,7 +120,7 @@ TEST(SemiGlobalMatcher, IsBetterThanOpenCvOnAloe) {
   Disparities ours, theirs;
   ASSERT_TRUE(semi_global_matcher({})->match(aloe.pair.left, aloe.pair.right, ours));
   ASSERT_TRUE(opencv_matcher({})->match(aloe.pair.left, aloe.pair.right, theirs));
-  // OpenCV leaves a band as wide as the disparities empty: it does not count here.
+  // OpenCV leaves a band as wide as the disparities empty: exclude it.
   constexpr int kBand = 128;
   const auto our_score = aloe.score_of(ours.disparity, kBand);
   const auto their_score = aloe.score_of(theirs.disparity, kBand);

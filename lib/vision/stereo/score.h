@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How good disparities are, against ground truth.
+// Scores disparities against ground truth.
 
 #include <cmath>
 #include <cstdint>

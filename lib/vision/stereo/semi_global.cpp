@@ -23,16 +23,16 @@ using Byte = std::uint8_t;
 
 constexpr int kPlanes = 3;  // bytes of a census word
 constexpr Byte kNever = 255;
-// Where a pixel's partner would be outside of the right image it has neither a good cost nor a bad
-// one, so that the paths carry the disparities of its neighbours there.
+// A neutral matching cost for partners outside the right image, so that the paths propagate the
+// disparities of neighbours.
 constexpr Byte kOutside = 8;
 
 constexpr std::size_t round_up(std::size_t value, std::size_t unit) {
   return (value + unit - 1) / unit * unit;
 }
 
-/// The minimum of a vector's lanes, in each lane of a vector of `d`. Halves are cheaper than
-/// whole vectors, so that it folds first.
+/// The minimum of all lanes of a vector, in each lane of a vector of `d`. Folds first, since halves
+/// are cheaper than whole vectors.
 template <class D, class V>
 HWY_INLINE hn::Vec<D> min_of_lanes(D d, V v) {
   const hn::DFromV<V> folded;
@@ -55,8 +55,8 @@ HWY_INLINE hn::Vec<D> min_of_lanes(D d, V v) {
   }
 }
 
-/// As many blocks of 16 bytes as a vector has, of those of `low` and then of `high`, from block
-/// `kFirst` on, which is 1 or the last one of `low`.
+/// A vector from the blocks of 16 bytes of `low` followed by `high`, from block `kFirst` on, which
+/// is 1 or the last one of `low`.
 template <std::size_t kFirst, class D, class V = hn::Vec<D>>
 HWY_INLINE V blocks_from(D d, V low, V high) {
   if constexpr (hn::MaxLanes(d) <= 16) return kFirst == 0 ? low : high;
@@ -69,7 +69,7 @@ HWY_INLINE V blocks_from(D d, V low, V high) {
 /// The costs of all disparities of a pixel.
 template <class D, std::size_t kVectors>
 struct Costs {
-  // Not left to GCC, which compiles an implicit one without the instructions of NEON's vectors.
+  // Explicit because GCC compiles the implicit one without the instructions of NEON vectors.
   Costs() = default;
   hn::Vec<D> v[kVectors];
 };
@@ -138,7 +138,7 @@ class Sweep {
   }
 
  private:
-  // Alignment, and room before and behind: vectors read one byte beyond the costs of a pixel.
+  // Alignment and padding: vectors read one byte before and after the costs of a pixel.
   static constexpr std::size_t kGuard = 64;
   static constexpr std::size_t kGroup = 16;  // pixels whose winners are found together
 
@@ -147,11 +147,11 @@ class Sweep {
     std::int8_t fraction;
   };
 
-  /// What one walk along a row leaves for the other.
+  /// Results of the walk to the right for the walk to the left.
   struct Row {
     Byte* costs;  // of matching
     Byte* sums;   // over the paths
-    Byte* along;  // how the grey levels differ from those of the pixel before
+    Byte* along;  // differences of grey levels to the pixel before
   };
 
   void prepare(int y, Row& row) {
@@ -163,7 +163,7 @@ class Sweep {
     differences(grey, step, down_);
     differences(grey, step + 1, down_right_);
     differences(grey, step - 1, down_left_);
-    // Paths from the north-west come from the column before: the same memory, one further down.
+    // Paths from the north-west come from the previous column: shift the memory by one pixel.
     north_west_ -= kBytes;
   }
 
@@ -189,7 +189,7 @@ class Sweep {
     }
   }
 
-  /// How much a pixel differs from each of its partners.
+  /// The matching costs of a pixel and each of its partners.
   HWY_INLINE C matching_costs(std::size_t x) const {
     const D d;
     C costs;
@@ -216,7 +216,7 @@ class Sweep {
     return costs;
   }
 
-  /// A step of a path: the costs of a pixel, given those of the path's pixel before.
+  /// A step of a path: the path costs of a pixel from those of the pixel before.
   /// @returns  the minimum of each lane, to be subtracted later.
   static HWY_INLINE V arrive(const C& costs, const C& from, const C& next_to, V slope, V jump,
                              C& to) {
@@ -244,7 +244,7 @@ class Sweep {
     return arrive(costs, same, next_to, slope, jump, to);
   }
 
-  /// Subtracts the minimum from the costs of a path, and adds them to sums.
+  /// Subtracts the minimum from the costs of a path and adds the costs to `sums`.
   static HWY_INLINE void settle(C& path, V min, C& sums) {
     for (std::size_t k = 0; k < kVectors; ++k) {
       path.v[k] = hn::Sub(path.v[k], min);
@@ -261,7 +261,7 @@ class Sweep {
     return costs;
   }
 
-  /// The lesser of the costs of the disparities next to each one.
+  /// For each disparity, the lesser cost of the two next to it.
   static HWY_INLINE C next_to(const C& costs) {
     const D d;
     C min;
@@ -281,7 +281,7 @@ class Sweep {
     return hn::Add(hn::Iota(D(), Byte{0}), hn::Set(D(), static_cast<Byte>(k * kLanes)));
   }
 
-  /// How the grey levels of a row differ from those `step` bytes before them.
+  /// Absolute differences of the grey levels of a row to those `step` bytes before.
   void differences(const Byte* grey, std::ptrdiff_t step, Byte* to) const {
     const D d;
     for (std::size_t x = 0; x <= width_; x += kLanes) {
@@ -293,11 +293,11 @@ class Sweep {
 
   V jump(Byte difference) const { return hn::Set(D(), jumps_[difference]); }
 
-  /// Walks along a row to the right, and along the row above it to the left. Each has steps that
-  /// wait for the step before; the other's fill the time.
+  /// Walks along a row to the right and along the row above it to the left. Interleaved because
+  /// each step depends on the one before in the same walk.
   template <bool kRight, bool kLeft>
   void sweep(const Row& right, const Row& left) const {
-    // Of copies the compiler knows that no store of costs changes them.
+    // Local copies, which the compiler knows are not changed by stores of costs.
     const Sweep copy = *this;
     const Row to_right = right, to_left = left;
     C west, east;
@@ -336,7 +336,7 @@ class Sweep {
     store(sums, row.sums + at);
   }
 
-  /// The path to a pixel from the east, which makes its sums complete.
+  /// The path to a pixel from the east, which completes its sums.
   HWY_INLINE void step_left(const Row& row, std::size_t x, C& east) const {
     const D d;
     const std::size_t at = x * kBytes;
@@ -348,14 +348,14 @@ class Sweep {
     store(sums, row.sums + at);
   }
 
-  /// The winners of some pixels. Nothing here waits for the pixel before, so that a processor works
-  /// at several of them at once; from the steps of paths it would see one or two.
+  /// The winners of some pixels. Separate from the steps of the paths because pixels are
+  /// independent here, and a processor works on several at once.
   HWY_INLINE void find_winners(const Row& row, std::size_t begin, std::size_t end) const {
     auto* winners = reinterpret_cast<Winner*>(winners_);
     for (std::size_t x = begin; x < end; ++x) winners[x] = winner_of(row.sums + x * kBytes);
   }
 
-  /// The disparity of minimal cost of a pixel, the smallest of several.
+  /// The disparity with the minimum cost of a pixel; the smallest if there are several.
   HWY_INLINE Winner winner_of(const Byte* sums) const {
     const D d;
     const V never = hn::Set(d, kNever);
@@ -371,7 +371,7 @@ class Sweep {
     V other = never;
     const V below = hn::Set(d, static_cast<Byte>(first - 1));
     for (std::size_t k = 0; k < kVectors; ++k) {
-      // Unsigned: the disparities next to the first and itself come to 0, 1, 2.
+      // Unsigned: the winner and its neighbours become 0, 1, 2.
       const auto is_far = hn::Gt(hn::Sub(indices(k), below), hn::Set(d, Byte{2}));
       other = hn::Min(other, hn::IfThenElse(is_far, costs.v[k], never));
     }
@@ -381,7 +381,7 @@ class Sweep {
             fraction(sums, disparity)};
   }
 
-  /// Where between its neighbours the minimum of a V through the three costs is [1/64 px].
+  /// The sub-pixel offset of the minimum of a V through the three costs [1/64 px].
   HWY_INLINE std::int8_t fraction(const Byte* sums, int disparity) const {
     if (disparity == 0 || disparity + 1 >= disparities_) return 0;
     const int below = sums[disparity - 1], at = sums[disparity], above = sums[disparity + 1];
@@ -390,8 +390,8 @@ class Sweep {
     return static_cast<std::int8_t>((below - above) * (kSubPixels / 2) / rise);
   }
 
-  /// The disparities that the right image agrees with: there each pixel has the disparity of the
-  /// left pixel that matches it best. Without branches, which no processor could predict here.
+  /// Writes the disparities that pass the left-right check, in which each right pixel has the
+  /// disparity of its best left pixel. Branch-free, since branches are unpredictable here.
   void write_row(std::uint16_t* disparity, Byte* margin) {
     constexpr std::uint16_t kNone = 0xFFFF;
     const auto* winners = reinterpret_cast<const Winner*>(winners_);
@@ -436,7 +436,7 @@ class Sweep {
   Byte* north_west_ = nullptr;
   Byte* winners_ = nullptr;
   Byte* best_ = nullptr;  // of each pixel of the right image, its cost · 256 + its disparity, u16
-  // How the grey levels of a row differ from those of the row above.
+  // Differences of the grey levels of a row to those of the row above.
   Byte* down_ = nullptr;
   Byte* down_right_ = nullptr;
   Byte* down_left_ = nullptr;
@@ -471,7 +471,7 @@ HWY_EXPORT(match_rows);
 Penalties Penalties::with_jumps(int slope, int max, int min) {
   Penalties penalties;
   penalties.slope = static_cast<std::uint8_t>(slope);
-  // Half of what is above the minimum is left where the grey levels differ by 8.
+  // The part above the minimum is halved at a difference of 8 grey levels.
   for (int difference = 0; difference < 256; ++difference)
     penalties.jump[static_cast<std::size_t>(difference)] =
         static_cast<std::uint8_t>(min + (max - min) * 8 / (8 + difference));
@@ -483,7 +483,7 @@ void match_rows(const Stripe& stripe, const SemiGlobal& options, Scratch& scratc
 }
 
 std::vector<int> stripes_of(int height) {
-  // Two to a pair of cores, tall enough that the rows above them are few beside their own.
+  // An even number for pairs of cores; tall, so that warm-up rows are few in comparison.
   constexpr int kRows = 256;
   const int count = 2 * std::max(1, (height + kRows / 2) / kRows);
   std::vector<int> begins;

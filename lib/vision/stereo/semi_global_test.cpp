@@ -14,7 +14,7 @@
 namespace hc::vision {
 namespace {
 
-/// The same matching, a number at a time.
+/// Scalar reference implementation.
 class Plain {
  public:
   Plain(const cv::Mat& left, const cv::Mat& right, const SemiGlobal& options)
@@ -34,7 +34,7 @@ class Plain {
   }
 
  private:
-  using Costs = std::vector<int>;  // by disparity; empty: nothing there
+  using Costs = std::vector<int>;  // by disparity; empty: none
   using Row = std::vector<Costs>;  // by column
   struct Winner {
     int disparity, cost, margin, fraction;
@@ -165,7 +165,7 @@ class Plain {
   std::vector<Row> paths_;  // from the row above, by direction
 };
 
-/// Two views of something random, at two depths, with noise.
+/// Two noisy views of a random scene with two depths.
 void draw_pair(cv::Size size, int near, int far, std::uint64_t seed, cv::Mat& left,
                cv::Mat& right) {
   cv::RNG rng(seed);

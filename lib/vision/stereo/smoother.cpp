@@ -68,7 +68,7 @@ void mean_along(const std::uint16_t* from, std::ptrdiff_t step, int count, std::
 }
 
 void Smoother::smooth(const cv::Mat& disparity, cv::Mat& smooth) {
-  constexpr int kLanes = 32;  // at most, which are read and written beyond the last column
+  constexpr int kLanes = 32;  // at most; they are read and written beyond the last column
   const cv::Size padded(disparity.cols + 2 * kReach + kLanes, disparity.rows + 2 * kReach);
   for (cv::Mat* image : {&rows_, &columns_})
     if (image->size() != padded) *image = cv::Mat::zeros(padded, CV_16U);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Evens out what a matcher finds on surfaces, and keeps edges.
+// Smooths disparities and preserves edges.
 //
 // Source: Lee, Digital Image Smoothing and the Sigma Filter, 1983.
 
@@ -11,26 +11,26 @@
 
 namespace hc::vision {
 
-/// Keeps its memory between images; for one thread at a time.
+/// Reuses its memory; not thread-safe.
 class Smoother {
  public:
   static constexpr int kReach = 4;   ///< to either side [px]
-  static constexpr int kRange = 96;  ///< other disparities are of another surface [1/64 px]
+  static constexpr int kRange = 96;  ///< larger differences mean another surface [1/64 px]
 
-  /// Replaces each known disparity by the mean of those near it that differ by at most kRange,
+  /// Replaces each known disparity by the mean of the nearby ones that differ by at most kRange,
   /// along rows and then along columns.
   ///
   /// @param disparity  (H, W) u16 [1/64 px], at most 2¹⁴; 0 where unknown.
-  /// @param[out] smooth  (H, W) u16; unknown where `disparity` is.
-  /// The same on every processor and with any number of threads.
+  /// @param[out] smooth  (H, W) u16; 0 where unknown. The result is the same on every processor and
+  ///     with any number of threads.
   void smooth(const cv::Mat& disparity, cv::Mat& smooth);
 
  private:
   cv::Mat rows_, columns_;
 };
 
-/// A means of that, for the two directions: of `count` disparities that begin at `from`, with
-/// others kReach times `step` before and behind each.
+/// One direction of smooth(), for `count` disparities from `from` on; the neighbours of each are up
+/// to kReach times `step` before and behind it.
 void mean_along(const std::uint16_t* from, std::ptrdiff_t step, int count, std::uint16_t* to);
 
 }  // namespace hc::vision

@@ -11,7 +11,7 @@
 namespace hc::vision {
 namespace {
 
-/// The same along one direction, a number at a time.
+/// Scalar reference along one direction.
 cv::Mat plain_mean(const cv::Mat& disparity, int dy, int dx) {
   cv::Mat mean = disparity.clone();
   for (int y = 0; y < disparity.rows; ++y)

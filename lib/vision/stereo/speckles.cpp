@@ -9,7 +9,7 @@
 namespace hc::vision {
 namespace {
 
-constexpr int kBandRows = 64;  // found by one thread
+constexpr int kBandRows = 64;  // processed by one thread
 
 }  // namespace
 

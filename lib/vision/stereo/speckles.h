@@ -9,28 +9,28 @@
 
 namespace hc::vision {
 
-/// Keeps its memory between images; for one thread at a time, but works on all cores.
+/// Reuses its memory; not thread-safe, but uses all cores.
 class SpeckleFilter {
  public:
-  /// Clears the patches of fewer than `min_size` pixels. Two pixels that are one above or beside
-  /// the other belong to one patch when both are known and differ by at most `range`.
+  /// Clears the patches of fewer than `min_size` pixels. Two neighbours (above or beside) belong to
+  /// one patch if both are known and differ by at most `range`.
   ///
   /// @param[in,out] disparity  (H, W) u16, 0 where unknown.
   /// Cost: linear in the pixels.
   void remove(cv::Mat& disparity, int min_size, int range);
 
  private:
-  /// Pixels of a row that belong together.
+  /// Adjacent pixels of a row in the same patch.
   struct Run {
     int begin, end;       // columns
-    std::uint32_t patch;  // a run of the same patch: itself for the patch's first one
+    std::uint32_t patch;  // another run of the patch, or itself for the first one
     std::int32_t pixels;  // of the patch, in its first run
   };
 
   /// The patches of some rows.
   struct Patches {
     std::vector<Run> runs;
-    std::vector<std::uint32_t> rows;  // where the runs of a row begin, and those of the last end
+    std::vector<std::uint32_t> rows;  // first run of each row, then the end of the last row
 
     void clear();
     void add_row(const std::uint16_t* row, int width, int range);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Runs a test with each kind of vectors that this processor has.
+// Runs a test with each vector instruction set of this processor.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ inline auto each_kind_of_vectors() {
   constexpr std::int64_t kVectors =
       HWY_SSSE3 | HWY_SSE4 | HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL | HWY_NEON;
   std::vector<std::int64_t> found;
-  // Highway says that an ARM without instructions for AES has no NEON, and takes it nevertheless.
+  // Highway reports no NEON on an ARM without AES instructions, but uses it nevertheless.
   for (std::int64_t left = (hwy::SupportedTargets() | HWY_STATIC_TARGET) & kVectors; left != 0;
        left &= left - 1)
     found.push_back(left & -left);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who bids for the focus, and why the winner wins. Pure.
+// The bids for the focus, and why one wins. Pure.
 import { numbersOf, type Message } from "../mtp";
 
 /** A row of a workspace's `standings`. */
@@ -10,11 +10,11 @@ export interface Bid {
   /** [s] */
   readonly age: number;
   readonly inFocus: boolean;
-  /** Made by a person; above all others. */
+  /** Made by a person; overrides all others. */
   readonly ofPerson: boolean;
 }
 
-/** Bids of a message of `standings`: rows mode, salience, age, in focus, a person's. */
+/** The bids in a message of `standings`: rows of mode, salience, age, in focus, a person's. */
 export function bidsOf(message: Message): Bid[] {
   const numbers = numbersOf(message);
   const columns = message.header.width * message.header.components;
@@ -28,16 +28,16 @@ export function bidsOf(message: Message): Bid[] {
   });
 }
 
-/** What decides beside the bids. */
+/** The workspace's rules. */
 export interface Rules {
-  /** A challenger must bid more than the focus does by this. */
+  /** By which a challenger must exceed the bid in focus. */
   readonly margin: number;
-  /** How long a task keeps the focus at least [s]. */
+  /** Minimum time that a task keeps the focus [s]. */
   readonly dwell: number;
   readonly stopped: boolean;
 }
 
-/** One sentence: who has the focus, and why. @param nameOf  the name of a mode's number. */
+/** A sentence: which task has the focus, and why. @param nameOf  name of a mode. */
 export function whyText(
   bids: readonly Bid[],
   rules: Rules,
@@ -53,14 +53,14 @@ export function whyText(
       : "No task bids for the focus.";
   const name = nameOf(holder.mode);
   const bid = holder.salience.toFixed(2);
-  if (holder.ofPerson) return `${name} has the focus: a person's bid is above all others.`;
-  if (!next) return `${name} has the focus: it alone bids, with ${bid}.`;
+  if (holder.ofPerson) return `${name} has the focus: a person's bid overrides all others.`;
+  if (!next) return `${name} has the focus as the only bidder, with ${bid}.`;
   const second = `${nameOf(next.mode)} with ${next.salience.toFixed(2)}`;
   if (next.salience <= holder.salience) {
     return `${name} has the focus: it bids ${bid}, next is ${second}.`;
   }
   return next.salience <= holder.salience + rules.margin
-    ? `${name} keeps the focus with ${bid}: ${second} is not above it by more than ${rules.margin}.`
+    ? `${name} keeps the focus with ${bid}: ${second} does not exceed it by more than ${rules.margin}.`
     : `${name} keeps the focus with ${bid} for its first ${rules.dwell} s; next is ${second}.`;
 }
 
@@ -87,7 +87,7 @@ export class BidHistory {
     return [...modes].sort((a, b) => a - b);
   }
 
-  /** Saliences of a mode over time; 0 where it did not bid. */
+  /** Saliences of a mode over time; 0 without a bid. */
   of(mode: number): { time: number; salience: number; inFocus: boolean }[] {
     return this.samples.map(({ time, bids }) => {
       const bid = bids.find((each) => each.mode === mode);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a module says of itself: its ports and parameters (spec/module.md, section 2).
+// A module's description: its ports and parameters (spec/module.md, section 2).
 import type { Server } from "../server";
 
 export interface PortType {
@@ -29,7 +29,7 @@ export interface ParameterDescription {
   readonly max?: number;
   readonly step?: number;
   readonly choices?: readonly string[];
-  /** It cannot be set while the module runs. */
+  /** Changing it restarts the module. */
   readonly fixed?: boolean;
 }
 
@@ -40,7 +40,7 @@ export interface Description {
   readonly parameters: readonly ParameterDescription[];
 }
 
-/** What a module says of itself; undefined where it cannot be asked. */
+/** A module's description; undefined if it is unavailable. */
 export async function describe(server: Server, module: string): Promise<Description | undefined> {
   try {
     const [json] = await server.command(`describe ${module}`);
@@ -50,7 +50,7 @@ export async function describe(server: Server, module: string): Promise<Descript
   }
 }
 
-/** A type as a person reads it: "rgb_image of 3 × u8". */
+/** A type as text: "rgb_image of 3 × u8". */
 export function typeText({ type, components, scalar, width, height }: PortType): string {
   const size = width || height ? `, ${width || "any"} × ${height || "any"}` : "";
   return type === "string" ? "string" : `${type} of ${components} × ${scalar}${size}`;

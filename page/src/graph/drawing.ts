@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The drawing of a graph: laid out once for a structure, and its texts and colours kept up to date.
+// The drawing of a graph: laid out once for a structure; its texts and colours are updated.
 import type { GraphLink, GraphModule, GraphState } from "../server";
 import { arrowHead, fill, h, setText, svg } from "../shell";
 import { DropRates } from "./drops";
@@ -11,11 +11,11 @@ import { bytesText, dropTexts, durationText, latencyText, percentText, rateText 
 
 export interface DrawingEvents {
   openModule(name: string): void;
-  /** @param at  where it was clicked [px of the window]. */
+  /** @param at  position of the click [px of the window]. */
   openEdge(edge: Edge, at: Point): void;
 }
 
-/** As setText(), of an attribute. */
+/** As setText(), for an attribute. */
 function setAttribute(element: Element, name: string, value: string): void {
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }
@@ -48,7 +48,7 @@ export class Drawing {
   private readonly drops = new DropRates();
   private readonly failures = new Failures();
   private structure?: Structure;
-  /** The module that the tab key reaches; arrows go on from it. */
+  /** The module in the tab order; arrow keys continue from it. */
   private current = "";
 
   constructor(private readonly events: DrawingEvents) {
@@ -59,7 +59,7 @@ export class Drawing {
     this.viewport.close();
   }
 
-  /** Shows also the links of the focus and of poses, which go nearly everywhere. */
+  /** Also shows the links of the focus and of poses, which lead nearly everywhere. */
   showBackground(show: boolean): void {
     this.svg.classList.toggle("with-background", show);
   }
@@ -125,7 +125,7 @@ export class Drawing {
     const mode = module.mode && `, task ${module.mode}${isTask ? " has the focus" : ""}`;
     const condition = why ? `: ${why}` : "";
     const text = `${module.name}${mode}${condition}; ${load}`;
-    setText(elements.title, text); // which names it for screen readers too
+    setText(elements.title, text); // also its name for screen readers
   }
 
   private updateEdge(elements: EdgeElements, links: readonly GraphLink[]): void {
@@ -173,7 +173,7 @@ export class Drawing {
     this.neighbour(name, way)?.group.focus();
   }
 
-  /** The nearest module in a direction; what is aside counts double. */
+  /** The nearest module in a direction; sideways distance counts double. */
   private neighbour(name: string, way: Point): NodeElements | undefined {
     const here = this.nodeElements.get(name)?.box;
     if (!here) return undefined;
@@ -251,7 +251,7 @@ function drawGroup({ group, box }: Layout["groups"][number]): SVGGElement {
   ]);
 }
 
-/** A link in words: its ports, how it is, its latency, and what it dropped. */
+/** A link in words: its ports, status, latency and drops. */
 function linkText(link: GraphLink): string {
   const facts = [
     link.status,

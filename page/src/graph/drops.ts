@@ -3,13 +3,13 @@ import type { GraphLink, GraphState } from "../server";
 import { linkKey } from "./structure";
 import { droppedCount } from "./words";
 
-/** How many messages each link drops a second, from its counters in one state and the next. */
+/** Each link's drops per second, from its counters in consecutive states. */
 export class DropRates {
   private before = new Map<string, number>();
   private rates = new Map<string, number>();
   private uptime = 0;
 
-  /** Takes the next state; several within a fifth of a second count as one. */
+  /** Takes the next state; states within 0.2 s count as one. */
   take(state: GraphState): void {
     const seconds = state.uptime - this.uptime;
     if (seconds >= 0 && seconds < 0.2) return;
@@ -17,7 +17,7 @@ export class DropRates {
     this.rates = new Map(
       [...now].map(([key, count]) => {
         const before = this.before.get(key) ?? count;
-        // A module that was restarted counts from 0 again.
+        // A restarted module counts from 0.
         return [key, seconds > 0 && count > before ? (count - before) / seconds : 0];
       }),
     );

@@ -2,10 +2,10 @@
 import type { GraphModule, GraphState } from "../server";
 import { exitText, moduleCondition, type Condition } from "./words";
 
-/** So long a failure is shown after the module has been restarted, to be seen [s]. */
+/** How long a failure is shown after the restart of its module [s]. */
 const shown = 3;
 
-/** Remembers failures for a while: a module that is restarted at once is else never seen to fail. */
+/** Remembers failures for a while; otherwise quickly restarted modules never seem to fail. */
 export class Failures {
   private readonly restarts = new Map<string, number>();
   private readonly failed = new Map<string, number>();
@@ -20,7 +20,7 @@ export class Failures {
     }
   }
 
-  /** As moduleCondition(), and broken for a while after a failure. */
+  /** As moduleCondition(), but broken for a while after a failure. */
   conditionOf(module: GraphModule): { is: Condition; why: string } {
     const now = moduleCondition(module);
     const failed = this.failed.get(module.name);

@@ -106,7 +106,7 @@ test("the layout is the same for the same structure, from left to right, nothing
   boxes.slice(1).forEach((box, i) => {
     assert.ok(box.x - box.width / 2 > boxes[i]!.x + boxes[i]!.width / 2);
   });
-  // Its members are far apart: each has its own box.
+  // Its members are far apart, so each has its own box.
   assert.deepEqual(
     layout.groups.map(({ group }) => group),
     ["head", "head"],
@@ -161,7 +161,7 @@ test("a failure is shown for a while after the module was restarted", () => {
 test("drops are reported with their reasons and counted per second", () => {
   const link = linkOf("a.out", "b.in", { dropped_newer: 2, ignored: 1200 });
   assert.deepEqual(dropTexts(link), [
-    "2 dropped, because a newer message came first",
+    "2 dropped for a newer message",
     "1,200 ignored, because another task had the focus",
   ]);
   const rates = new DropRates();
@@ -187,14 +187,14 @@ test("one sentence says why the winner wins", () => {
   const track = bid(4, 0.6, { inFocus: true });
   const why = (...bids: Bid[]): string => whyText(bids, rules, names);
   assert.equal(why(), "No task bids for the focus.");
-  assert.equal(why(track), "track has the focus: it alone bids, with 0.60.");
+  assert.equal(why(track), "track has the focus as the only bidder, with 0.60.");
   assert.equal(
     why(track, bid(5, 0.4)),
     "track has the focus: it bids 0.60, next is read with 0.40.",
   );
   assert.equal(
     why(track, bid(5, 0.65)),
-    "track keeps the focus with 0.60: read with 0.65 is not above it by more than 0.1.",
+    "track keeps the focus with 0.60: read with 0.65 does not exceed it by more than 0.1.",
   );
   assert.equal(
     why(track, bid(5, 0.9)),
@@ -202,7 +202,7 @@ test("one sentence says why the winner wins", () => {
   );
   assert.equal(
     why(bid(2, 0.5, { inFocus: true, ofPerson: true }), bid(4, 0.6)),
-    "point has the focus: a person's bid is above all others.",
+    "point has the focus: a person's bid overrides all others.",
   );
   assert.match(whyText([track], { ...rules, stopped: true }, names), /stopped/);
 });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where modules and edges of a graph are drawn, by dagre: data goes from left to right.
+// The layout of a graph's drawing, by dagre: data flows from left to right.
 import { Graph, layout as dagreLayout } from "@dagrejs/dagre";
 import type { Edge, Structure } from "./structure";
 
@@ -10,7 +10,7 @@ export interface Point {
 }
 
 export interface Box extends Point {
-  /** x, y: its middle. */
+  /** x, y: its centre. */
   readonly width: number;
   readonly height: number;
 }
@@ -19,34 +19,34 @@ export interface Layout {
   readonly width: number;
   readonly height: number;
   readonly nodes: ReadonlyMap<string, Box>;
-  /** A group has several boxes where its members are far apart. */
+  /** A group whose members are far apart has several boxes. */
   readonly groups: readonly { readonly group: string; readonly box: Box }[];
-  /** By the keys of edges: the line, and where its label is. */
+  /** Lines and their labels, by keys of edges. */
   readonly edges: ReadonlyMap<string, Line>;
 }
 
 export const nodeHeight = 52; // [px]
 const labelSize = { width: 78, height: 26 };
 
-/** Width of a module with a name of so many letters [px]. */
+/** Width of a module with this name [px]. */
 function nodeWidth(name: string): number {
   return Math.max(112, 34 + name.length * 7.6);
 }
 
-/** What a line goes through, and where its label has room. */
+/** The points of a line, and the position of its label. */
 export interface Line {
   readonly points: readonly Point[];
   readonly label: Point;
 }
 
-/** Members of a group that are drawn in one box. */
+/** Members of a group drawn in one box. */
 interface Piece {
   readonly key: string;
   readonly group: string;
   readonly members: readonly string[];
 }
 
-/** Lays out a structure; equal ones come out equal. Cost: about 100 ms for 30 modules. */
+/** Lays out a structure; deterministic. Cost: about 100 ms for 30 modules. */
 export function layoutOf(structure: Structure): Layout {
   const pieces = piecesOf(structure, place(structure, []));
   const graph = place(structure, pieces);
@@ -66,7 +66,7 @@ export function layoutOf(structure: Structure): Layout {
   return { width, height, nodes, groups, edges };
 }
 
-/** What dagre makes of it, with a box around each piece. */
+/** The layout by dagre, with a box around each piece. */
 function place(structure: Structure, pieces: readonly Piece[]): InstanceType<typeof Graph> {
   const graph = new Graph({ compound: true });
   const margins = { marginx: 12, marginy: 12 };
@@ -88,8 +88,8 @@ function place(structure: Structure, pieces: readonly Piece[]): InstanceType<typ
 }
 
 /**
- * Groups, cut where their members are far apart, as the eyes and the neck of a head are: a box
- * around all of them would go through the whole drawing.
+ * Groups, split where their members are far apart, like the eyes and the neck of a head: one box
+ * around all of them would cover the whole drawing.
  */
 function piecesOf(structure: Structure, graph: InstanceType<typeof Graph>): Piece[] {
   const columnOf = (name: string): number => Math.round((graph.node(name) as Box).x);
@@ -116,8 +116,8 @@ function piecesOf(structure: Structure, graph: InstanceType<typeof Graph>): Piec
 }
 
 /**
- * Lines that leave modules at their right sides and reach them at their left sides, spread along
- * these in the order of where they come from, so that few cross.
+ * Lines from the right sides of modules to the left sides of others, spread along the sides in the
+ * order of their other ends, so that few cross.
  */
 function attach(
   structure: Structure,
@@ -151,7 +151,7 @@ function attach(
   return lines;
 }
 
-/** A path through points, level at each of them, as the `d` of an SVG path. */
+/** A path through points, horizontal at each of them, as the `d` of an SVG path. */
 export function pathThrough(points: readonly Point[]): string {
   const at = (x: number, y: number): string => `${x.toFixed(1)} ${y.toFixed(1)}`;
   let path = "";
@@ -161,7 +161,7 @@ export function pathThrough(points: readonly Point[]): string {
       path = `M${at(point.x, point.y)}`;
       return;
     }
-    // Backwards it swings out on both sides.
+    // A backward line swings out on both sides.
     const reach = point.x > before.x ? (point.x - before.x) / 2 : 60;
     path += `C${at(before.x + reach, before.y)} ${at(point.x - reach, point.y)} ${at(point.x, point.y)}`;
   });

@@ -13,7 +13,7 @@ import { ParameterView } from "./parameter";
 import { linksOf, moduleOf, portOf } from "./structure";
 import { bytesText, latencyText, percentText, rateText } from "./words";
 
-/** Lines of the log that are shown. */
+/** Maximum lines of the log. */
 const logLines = 200;
 
 /** A module's ports, parameters and log: {kind: "module", name}. */
@@ -59,7 +59,7 @@ class ModuleView {
     ]);
     const { server } = host;
     this.ends.push(
-      // The server begins a connection with the last lines of the log.
+      // After connecting, the server sends the last lines of the log again.
       server.onConnection(({ status }) => status === "open" && this.log.replaceChildren()),
       server.onLog((line) => this.addLine(line)),
       server.onState((state) => this.update(state)),
@@ -89,7 +89,7 @@ class ModuleView {
   private update(state: GraphState): void {
     const module = state.modules.find((each) => each.name === this.name);
     if (!module) {
-      this.status.textContent = `There is no module ${this.name} in the graph.`;
+      this.status.textContent = `The graph has no module ${this.name}.`;
       this.status.className = "module-status broken";
       return;
     }
@@ -164,7 +164,7 @@ class ModuleView {
     }
   }
 
-  /** Ports as described; those that were not, as they are linked. */
+  /** Ports of the description; without one, the linked ports. */
   private portsOf(side: "inputs" | "outputs", links: readonly GraphLink[]): PortDescription[] {
     const described = this.description?.[side] ?? [];
     const ends = links.map((link) => (side === "inputs" ? link.to : link.from));
@@ -196,7 +196,7 @@ class ModuleView {
     ]);
   }
 
-  /** A line of the log that is of this module. */
+  /** Adds a line of this module's log. */
   private addLine(line: LogLine): void {
     if (line.module !== this.name) return;
     const atEnd = this.log.scrollTop + this.log.clientHeight >= this.log.scrollHeight - 4;

@@ -8,7 +8,7 @@ import { Tables } from "./table";
 import { dropTexts, latencyText, rateText } from "./words";
 import { WorkspaceView } from "./workspace";
 
-/** Below this width the tables come first [px]. */
+/** Below this width the tables are shown first [px]. */
 const narrow = 480;
 
 /** The live graph: {kind: "graph", show?: "drawing" | "tables"}. */
@@ -21,7 +21,7 @@ export const graphPanel: PanelKind = (args, host) => {
     server.state?.links.filter((link) => edge.links.includes(linkKey(link))) ?? [];
 
   const menu = h("div.edge-menu.box", { hidden: true });
-  /** Two modules that are joined by several links: which one? */
+  /** Chooses one of several links between two modules. */
   const choose = (edge: Edge, at: Point): void => {
     const links = linksOfEdge(edge);
     if (links.length <= 1) {

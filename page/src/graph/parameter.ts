@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A parameter of a module that can be changed while it runs.
+// A control for a module's parameter.
 import { mayOperate, type Server } from "../server";
 import { h } from "../shell";
 import type { ParameterDescription } from "./describe";
 
 type Control = HTMLInputElement | HTMLSelectElement;
 
-/** Sliders are for ranges that a hand can set. */
+/** Larger ranges get no slider. */
 const widestSlider = 1000;
 
 export class ParameterView {
@@ -14,10 +14,10 @@ export class ParameterView {
   private readonly control: Control;
   private readonly slider?: HTMLInputElement;
   private readonly problem = h("p.problem", { role: "alert" });
-  /** As the module said it last. */
+  /** As last reported by the module. */
   private value = "";
 
-  /** @param is  its description; only its name where the module does not describe it. */
+  /** @param is  its description, or only its name. */
   constructor(
     private readonly server: Server,
     private readonly module: string,
@@ -46,7 +46,7 @@ export class ParameterView {
     ]);
   }
 
-  /** Shows what the module has, unless a person is changing it. */
+  /** Shows the module's value, unless a person is changing it. */
   update(value: string): void {
     if (value === this.value) return;
     this.value = value;
@@ -81,7 +81,7 @@ export class ParameterView {
   private show(value: string): void {
     if (this.is.type === "bool") (this.control as HTMLInputElement).checked = value === "true";
     else this.control.value = this.is.type === "string" ? value : shortest(value);
-    if (this.is.type === "string") this.control.title = value; // which may have more than room
+    if (this.is.type === "string") this.control.title = value; // it may be longer than the field
     if (this.slider) this.slider.value = value;
   }
 
@@ -98,7 +98,7 @@ export class ParameterView {
   }
 }
 
-/** A number without digits that only binary fractions have: 0.05 for 0.050000000000000003. */
+/** A number without artefacts of binary fractions: 0.05 for 0.050000000000000003. */
 function shortest(text: string): string {
   const number = Number(text);
   return text !== "" && Number.isFinite(number) ? String(number) : text;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The structure of a graph as it is drawn: modules in groups, and one edge for all links that join
-// two modules.
+// The structure of a graph's drawing: modules in groups, and one edge for all links of two modules.
 import type { GraphLink, GraphModule, GraphState } from "../server";
 
 /** All links from one module to another. */
@@ -11,7 +10,7 @@ export interface Edge {
   readonly to: string;
   /** Names as in links: `MODULE.PORT MODULE.PORT`. */
   readonly links: readonly string[];
-  /** All its links carry only the focus, or the poses of frames. */
+  /** Its links only carry the focus or the poses of frames. */
   readonly background: boolean;
 }
 
@@ -36,7 +35,7 @@ export function linkKey(link: GraphLink): string {
   return `${link.from} ${link.to}`;
 }
 
-/** Links that tell many modules of the focus, of a stop, and of poses of frames. */
+/** Whether a link distributes the focus, the stop, or poses of frames. */
 function isBackground(link: GraphLink): boolean {
   return ["focus", "stopped", "frames"].includes(portOf(link.to));
 }
@@ -62,7 +61,7 @@ export function structureOf(state: GraphState): Structure {
   return { nodes, edges: list, key };
 }
 
-/** Links of a module to others and from others. */
+/** Links to and from a module. */
 export function linksOf(state: GraphState, module: GraphModule): GraphLink[] {
   return state.links.filter(
     (link) => moduleOf(link.from) === module.name || moduleOf(link.to) === module.name,

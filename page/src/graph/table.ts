@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Modules and links of a graph as tables, for screen readers, phones, and who likes lists.
+// Modules and links of a graph as tables, for screen readers, phones, and those who prefer lists.
 import type { GraphLink, GraphModule, GraphState } from "../server";
 import { h, setText } from "../shell";
 import { linkKey } from "./structure";
@@ -19,7 +19,7 @@ interface Column<Row> {
   readonly open?: (row: Row) => void;
 }
 
-/** A table whose rows keep their elements while what they tell changes. */
+/** A table whose rows keep their elements while their contents change. */
 class LiveTable<Row> {
   private readonly body = h("tbody");
   readonly element: HTMLElement;

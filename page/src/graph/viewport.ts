@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Moves a drawing in its window: drag, wheel, pinch, and the keys + - 0 and arrows.
+// Moves and zooms a drawing in its window: drag, wheel, pinch, and the keys + - 0 and arrows.
 
-/** A drawing of a size inside an SVG element; `scene` is the group that is moved. */
+/** A drawing inside an SVG element; `scene` is the group that moves. */
 export class Viewport {
   private scale = 1;
   private x = 0; // of the drawing's corner in the window [px]
@@ -38,7 +38,7 @@ export class Viewport {
     if (!this.touched) this.fit();
   }
 
-  /** Shows all of the drawing, at most one and a half times as large. */
+  /** Fits the whole drawing into the window, magnified at most 1.5 times. */
   fit(): void {
     const { width, height } = this.window.getBoundingClientRect();
     if (width === 0 || height === 0) return;
@@ -49,7 +49,7 @@ export class Viewport {
     this.apply();
   }
 
-  /** Zooms about a point of the window [px], its middle if none is given. */
+  /** Zooms about a point of the window [px], by default its centre. */
   zoom(factor: number, at?: { x: number; y: number }): void {
     const { width, height } = this.window.getBoundingClientRect();
     const { x, y } = at ?? { x: width / 2, y: height / 2 };
@@ -61,7 +61,7 @@ export class Viewport {
     this.apply();
   }
 
-  /** Moves as little as is necessary for a point of the drawing to be seen. */
+  /** Moves the drawing just enough to show a point of it. */
   reveal(x: number, y: number): void {
     const { width, height } = this.window.getBoundingClientRect();
     const edge = 60; // [px]
@@ -81,7 +81,7 @@ export class Viewport {
   private apply(): void {
     const { x, y, scale } = this;
     this.scene.setAttribute("transform", `translate(${x} ${y}) scale(${scale})`);
-    // Small text is not drawn where nobody could read it.
+    // Hides text too small to read.
     this.window.classList.toggle("far", scale < 0.55);
   }
 

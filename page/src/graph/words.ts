@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers and conditions of modules and links in words that a person reads.
+// Numbers and conditions of modules and links as text.
 import type { GraphLink, GraphModule } from "../server";
 
-/** A rate: "20/s", "0.5/s", "1.2 k/s"; "" where nothing comes. */
+/** A rate: "20/s", "0.5/s", "1.2 k/s"; "" for 0. */
 export function rateText(perSecond: number): string {
   if (perSecond <= 0) return "";
   if (perSecond >= 999.5) return `${shortNumber(perSecond / 1000)} k/s`;
@@ -25,7 +25,7 @@ export function bytesText(bytes: number): string {
   return `${Math.round(bytes)} B`;
 }
 
-/** Two digits, or as many as there are before the point. */
+/** Two digits, or all digits before the point. */
 function shortNumber(value: number): string {
   return value >= 9.95 ? String(Math.round(value)) : String(Number(value.toPrecision(2)));
 }
@@ -35,36 +35,36 @@ export function percentText(part: number): string {
   return `${Math.round(part * 100)} %`;
 }
 
-/** Why messages did not go over a link, or went late, and how that is called. */
+/** Texts for messages that were delayed, dropped or ignored. */
 const dropWords: readonly [keyof GraphLink & string, (count: string) => string][] = [
-  ["delayed", (count) => `${count} went later, because the link has a rate`],
-  ["throttled", (count) => `${count} dropped, because the link has a rate`],
-  ["dropped_newer", (count) => `${count} dropped, because a newer message came first`],
-  ["dropped_memory", (count) => `${count} dropped, because there was no memory for them`],
-  ["dropped_disconnect", (count) => `${count} lost when the connection broke`],
+  ["delayed", (count) => `${count} delayed by the rate of the link`],
+  ["throttled", (count) => `${count} dropped by the rate of the link`],
+  ["dropped_newer", (count) => `${count} dropped for a newer message`],
+  ["dropped_memory", (count) => `${count} dropped for lack of memory`],
+  ["dropped_disconnect", (count) => `${count} lost when the link disconnected`],
   ["ignored", (count) => `${count} ignored, because another task had the focus`],
 ];
 
-/** What became of the messages of a link that did not get through in time, a sentence each. */
+/** Texts for a link's messages that did not arrive in time, by cause. */
 export function dropTexts(link: GraphLink): string[] {
   return dropWords
     .filter(([key]) => Number(link[key]) > 0)
     .map(([key, text]) => text(Number(link[key]).toLocaleString("en")));
 }
 
-/** Messages of a link that were dropped or lost; those that were ignored reached the reader. */
+/** Messages of a link that were dropped or lost; ignored ones did reach the reader. */
 export function droppedCount(link: GraphLink): number {
   return link.throttled + link.dropped_newer + link.dropped_memory + link.dropped_disconnect;
 }
 
-/** "31 ms, at most 48 ms" of a latency: its median, and its 99th percentile. */
+/** Median and 99th percentile of a latency: "31 ms, at most 48 ms". */
 export function latencyText(age: GraphLink["age"]): string {
   return age ? `${durationText(age[0])}, p99 ${durationText(age[1])}` : "";
 }
 
 export type Condition = "works" | "slow" | "broken" | "ended";
 
-/** How a module is, and why, in words; the reason is empty where it works. */
+/** The condition of a module, and the reason, which is empty if it works. */
 export function moduleCondition(module: GraphModule): { is: Condition; why: string } {
   const detail = module.detail ? `: ${module.detail}` : "";
   switch (module.status) {
@@ -85,7 +85,7 @@ export function moduleCondition(module: GraphModule): { is: Condition; why: stri
   }
 }
 
-/** How the last process of a module ended; above 128 it was killed by a signal. */
+/** How the last process of a module ended; a status above 128 means a signal. */
 export function exitText(module: GraphModule): string {
   if (module.exit === null) return "has ended";
   if (module.exit > 128) return `was killed by signal ${module.exit - 128}`;

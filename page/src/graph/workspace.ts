@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A workspace: who has the focus and why, and a small chart of each task's bids.
+// A workspace: which task has the focus and why, and a small chart of each task's bids.
 import type { GraphState, Server, Stream } from "../server";
 import { fill, h, setText, svg } from "../shell";
 import { BidHistory, bidsOf, whyText, type Bid } from "./bids";
@@ -55,7 +55,7 @@ export class WorkspaceView {
     );
   }
 
-  /** The last minute of a mode: its salience as a line, and a bar where it had the focus. */
+  /** The last minute of a mode: its salience as a line, and a bar while in focus. */
   private drawMode(mode: number, name: string): HTMLElement {
     const samples = this.history.of(mode);
     const end = samples.at(-1)?.time ?? 0;
@@ -90,7 +90,7 @@ export class WorkspaceView {
   }
 }
 
-/** Name of a mode's number; "mode 7" where it has none. */
+/** Name of a mode; "mode 7" if it has none. */
 export function modeName(state: GraphState, mode: number): string {
   const found = Object.entries(state.modes).find(([, number]) => number === mode);
   return found?.[0] ?? `mode ${mode}`;

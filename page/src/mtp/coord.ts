@@ -30,7 +30,7 @@ const names = new Map<number, string>(
   Object.entries(Coord).map(([name, number]) => [number, name]),
 );
 
-/** Name of a coordinate system, of a transformation "from to to"; its number where it has none. */
+/** Name of a coordinate system, of a transformation "from to to"; else its number. */
 export function coordName(coord: number): string {
   if (coord >= 1000) {
     return `${coordName(coord % 1000)} to ${coordName(Math.floor(coord / 1000))}`;
@@ -38,7 +38,7 @@ export function coordName(coord: number): string {
   return names.get(coord) ?? String(coord);
 }
 
-/** Sample frames in a second [Hz] of sound in a coordinate system; 16000 where it says nothing. */
+/** Sample rate of sound in a coordinate system [Hz]; 16000 if not specified. */
 export function sampleRate(coord: number): number {
   return { 20: 8000, 21: 16000, 22: 22050, 23: 44100, 24: 48000 }[coord] ?? 16000;
 }

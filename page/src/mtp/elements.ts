@@ -2,14 +2,14 @@
 import { arrays, type Scalar } from "./info";
 import type { Elements } from "./message";
 
-/** So many scalars, all 0. */
+/** An array of zeros. */
 export function zeros(scalar: Scalar, count: number): Elements {
   return new arrays[scalar](count);
 }
 
 /**
- * Bytes as scalars, little-endian as this machine is (all that run browsers are). A view where the
- * bytes are aligned, else a copy.
+ * Bytes as scalars, little-endian like all machines with browsers. A view if aligned, else a
+ * copy.
  */
 export function elementsOf(scalar: Scalar, bytes: Uint8Array<ArrayBuffer>): Elements {
   const Type = arrays[scalar];

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
-/** A message that a reader refuses: which rule of spec/mtp-1.md it breaks, and where. */
+/** A malformed message: the violated rule of spec/mtp-1.md, and the position. */
 export class MtpError extends Error {
   /**
    * @param rule  "R1" … "R45".
    * @param field  name of a header field, or header, elements, length, stream.
-   * @param byte  distance from the start of the stream, the first byte being 0.
+   * @param byte  offset from the start of the stream.
    */
   constructor(
     readonly rule: string,

@@ -9,7 +9,7 @@ export const maxHeaderBytes = 256;
 
 const i31 = 2n ** 31n - 1n;
 const i63 = 2n ** 63n - 1n;
-/** The fields in their order, and the least and greatest value of each. */
+/** The fields in order, and the range of each. */
 const ranges = {
   version: [1n, 1n],
   src: [0n, i31],
@@ -28,16 +28,16 @@ export const headerFields = Object.keys(ranges) as HeaderField[];
 
 interface Word {
   readonly text: string;
-  /** Distance from the start of the line. */
+  /** Offset from the start of the line. */
   readonly at: number;
 }
 
 /**
- * The header of a line.
+ * Parses a header line.
  *
- * @param line  without its line's end; a character is a byte.
- * @param start  the line's distance from the start of the stream, which errors count from.
- * @param limit  most bytes that the elements may take (R24).
+ * @param line  without its line end; one character per byte.
+ * @param start  the line's offset in the stream, for errors.
+ * @param limit  maximum bytes of the elements (R24).
  * Errors: MtpError R4 … R24.
  */
 export function parseHeader(line: string, start: number, limit: number): Header {
@@ -53,7 +53,8 @@ export function parseHeader(line: string, start: number, limit: number): Header 
   headerFields.forEach((field, index) => {
     const word = words[index];
     if (!word) return refuse("R4", field, line.length, "the field is missing");
-    if (!isInteger(word.text)) return refuse("R5", field, word.at, `${word.text} is no integer`);
+    if (!isInteger(word.text))
+      return refuse("R5", field, word.at, `${word.text} is not an integer`);
     const value = BigInt(word.text);
     const [least, most] = ranges[field];
     if (value < least || value > most) return refuse(`R${index + 6}`, field, word.at);
@@ -67,7 +68,7 @@ export function parseHeader(line: string, start: number, limit: number): Header 
     if (rule) refuse(rule, field, word.at);
   });
   const extra = words[headerFields.length];
-  if (extra) refuse("R4", "header", extra.at, "there is an extra field");
+  if (extra) refuse("R4", "header", extra.at, "extra field");
   const width = Number(values.width);
   const height = Number(values.height);
   if (width * height * kind!.components * scalarBytes[kind!.scalar] > limit) {
@@ -89,7 +90,7 @@ export function parseHeader(line: string, start: number, limit: number): Header 
   };
 }
 
-/** The header of a line as it was sent, of any size; undefined: it is none. */
+/** Parses the original header of a stream, of any size; undefined if invalid. */
 export function sentHeader(line: string): Header | undefined {
   try {
     return parseHeader(line.trim(), 0, Infinity);
@@ -98,7 +99,7 @@ export function sentHeader(line: string): Header | undefined {
   }
 }
 
-/** The rule that the width or height breaks, of R21 … R23. */
+/** The rule violated by the width or height, R21 … R23. */
 function sideRule(
   kind: Kind,
   field: HeaderField,

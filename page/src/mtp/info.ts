@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The field `info`: what the elements of a message are (spec/mtp-1.md, section 3).
+// The field `info`: the type of a message's elements (spec/mtp-1.md, section 3).
 
 export const matrixTypes = [
   "position",
@@ -17,7 +17,7 @@ export const matrixTypes = [
 ] as const;
 export type MatrixType = (typeof matrixTypes)[number];
 
-/** What holds many of each scalar, in the order of their numbers. */
+/** Array types of the scalars, in the order of their numbers. */
 export const arrays = {
   u8: Uint8Array,
   i8: Int8Array,
@@ -40,7 +40,7 @@ export const scalarBytes = Object.fromEntries(
 export const encodings = ["text", "binary", "zstd", "jpeg"] as const;
 export type Encoding = (typeof encodings)[number];
 
-/** What the digits of `info` say. */
+/** The meaning of the digits of `info`. */
 export interface Kind {
   readonly type: MatrixType;
   readonly components: number;
@@ -58,7 +58,7 @@ export function infoOf(kind: Kind): number {
   );
 }
 
-/** What a type allows, R18 and R19: first and last number of components or a list, scalars. */
+/** Allowed components (first and last, or a list) and scalars of a type, R18 and R19. */
 const many = Array.from({ length: 99 }, (_, i) => i + 1);
 const floats: readonly Scalar[] = ["f32", "f64"];
 const allowed: Record<MatrixType, { components: readonly number[]; scalars: readonly Scalar[] }> = {
@@ -76,7 +76,7 @@ const allowed: Record<MatrixType, { components: readonly number[]; scalars: read
   table: { components: many, scalars },
 };
 
-/** The kind of an `info`, or the number of the rule that it breaks: "R17" … "R21". */
+/** The kind of an `info`, or the rule that it violates: "R17" … "R21". */
 export function kindOf(info: number): Kind | string {
   const type = matrixTypes[Math.floor(info / 10000) - 1];
   if (!type) return "R17";

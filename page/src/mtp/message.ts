@@ -2,13 +2,13 @@
 // A message: eleven integers, and a matrix of elements.
 import { infoOf, type Kind } from "./info";
 
-/** The header of a message (R4), with its `info` taken apart. */
+/** The header of a message (R4), with `info` parsed. */
 export interface Header extends Kind {
   readonly src: number;
   readonly dst: number;
   readonly seq: bigint;
   readonly ttl: number;
-  /** When the sensed thing happened [ns since the Unix epoch]; 0: not given. */
+  /** Time of the sensed event [ns since the Unix epoch]; 0: not given. */
   readonly time: bigint;
   readonly info: number;
   readonly mode: number;
@@ -35,13 +35,13 @@ export type Elements = Numbers | BigIntegers;
 export interface Message {
   readonly header: Header;
   /**
-   * height × width × components scalars, row by row; of a string its bytes; of the encodings zstd
-   * and jpeg the compressed bytes. May be a view of the bytes that were read.
+   * height × width × components scalars, row by row; the bytes of a string; the compressed bytes of
+   * the encodings zstd and jpeg. May be a view of the bytes read.
    */
   readonly elements: Elements;
 }
 
-/** A header of this kind and size; everything else as a message is made with (R42, R43). */
+/** A header of this kind and size, with the other fields of a new message (R42, R43). */
 export function headerOf(
   kind: Kind,
   width: number,
@@ -64,12 +64,12 @@ export function headerOf(
   };
 }
 
-/** Scalars of a message that is not compressed; 0 where one side of it is 0. */
+/** Number of scalars of an uncompressed message; 0 if one side is 0. */
 export function scalarCount(header: Header): number {
   return header.width * header.height * header.components;
 }
 
-/** The elements as numbers; 64-bit integers lose what is above 2^53. Of compressed ones: none. */
+/** The elements as numbers, 64-bit integers rounded above 2^53; none if compressed. */
 export function numbersOf(message: Message): Numbers {
   const { encoding } = message.header;
   if (encoding === "zstd" || encoding === "jpeg") return new Uint8Array(0);
@@ -92,7 +92,7 @@ export function rowsOf(message: Message): string[] {
 
 type Other = Parameters<typeof headerOf>[3];
 
-/** A string of one row, or of a row each. */
+/** A string message of one or several rows. */
 export function textMessage(text: string | readonly string[], other: Other = {}): Message {
   const rows = (typeof text === "string" ? [text] : text).map((row) =>
     new TextEncoder().encode(row),
@@ -104,7 +104,7 @@ export function textMessage(text: string | readonly string[], other: Other = {})
   return { header: headerOf(kind, width, rows.length, other), elements };
 }
 
-/** A message with one element of so many f64 as there are numbers, in binary. */
+/** A binary message with one element of f64 components. */
 export function numbersMessage(
   type: "position" | "rotation" | "table",
   numbers: readonly number[],

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as text: how they are read (R27, R28) and written (R39).
+// Reads (R27, R28) and writes (R39) numbers as text.
 import type { Scalar } from "./info";
 
 const integer = /^(0|-?[1-9][0-9]*)$/;
 const decimal = /^-?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?$/;
 const special = /^(-?)(nan|inf|infinity)$/i;
 
-/** Least and greatest value of the integer scalars. */
+/** Ranges of the integer scalars. */
 const ranges: Partial<Record<Scalar, readonly [bigint, bigint]>> = {
   u8: [0n, 0xffn],
   i8: [-0x80n, 0x7fn],
@@ -22,7 +22,7 @@ export function isInteger(text: string): boolean {
   return integer.test(text);
 }
 
-/** The number that `text` spells, or the rule that it breaks: "R27" or "R28". */
+/** Parses a number; returns the rule that the text violates: "R27" or "R28". */
 export function numberOf(text: string, scalar: Scalar): number | bigint | "R27" | "R28" {
   const range = ranges[scalar];
   if (range) {
@@ -46,10 +46,10 @@ function single(text: string): number {
   const double = Number(text);
   const rounded = Math.fround(double);
   if (rounded === double || Number.isNaN(double)) return rounded;
-  // Infinity counts as the number that would follow the greatest f32.
+  // Infinity counts as the number that would follow the largest f32.
   const near = Number.isFinite(rounded) ? rounded : Math.sign(double) * 2 ** 128;
   const far = 2 * double - near;
-  // Where the f64 lies just between two f32, it does not say on which side the text itself is.
+  // If the f64 lies exactly between two f32, the text decides on the side.
   const side = Math.fround(far) === far || Math.abs(far) === 2 ** 128 ? compare(text, double) : 0;
   return side === 0 ? rounded : Math.fround(Math[side > 0 ? "max" : "min"](near, far));
 }
@@ -114,12 +114,12 @@ function shortest64(size: number): Decimal {
   return decimalOf(size.toExponential());
 }
 
-/** The fewest digits that read back to the same f32; of several, the nearest. */
+/** The fewest digits that round-trip the f32; of several, the nearest. */
 function shortest32(size: number): Decimal {
   for (let digits = 0; digits < 9; ++digits) {
     const nearest = size.toExponential(digits);
     if (single(nearest) === size) return decimalOf(nearest);
-    // At a power of two the room is wider above than below, where the nearest may not fit.
+    // At a power of two the interval is wider above than below, where the nearest may not fit.
     const [mantissa = "", exponent] = nearest.split("e");
     const unit = BigInt(mantissa.replace(".", ""));
     for (const other of [unit + 1n, unit - 1n]) {

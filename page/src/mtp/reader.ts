@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns bytes into messages (spec/mtp-1.md).
+// Reads messages from bytes (spec/mtp-1.md).
 import { bytesOf, elementsOf, zeros } from "./elements";
 import { MtpError } from "./error";
 import { maxHeaderBytes, parseHeader } from "./header";
@@ -13,7 +13,7 @@ const space = 0x20;
 const maxNumberBytes = 64;
 const maxLengthLine = 20;
 
-/** Where a reader is within a message. */
+/** The position of a reader within a message. */
 type Place =
   | { readonly at: "header" }
   | {
@@ -28,8 +28,7 @@ type Place =
   | { readonly at: "close"; readonly header: Header; readonly elements: Elements };
 
 /**
- * Reads a stream piece by piece. It is a basic reader: elements of the encodings zstd and jpeg are
- * given as the bytes they are.
+ * Reads a stream piece by piece. A basic reader: zstd and jpeg elements stay compressed.
  *
  *     const reader = new Reader();
  *     for await (const piece of pieces) {
@@ -40,17 +39,17 @@ type Place =
  */
 export class Reader {
   private buffer: Uint8Array<ArrayBuffer> = new Uint8Array(0);
-  private owned = false; // whether the buffer is this reader's to write to
-  private from = 0; // first byte in the buffer that is not used yet
-  private to = 0; // end of the bytes that came
+  private owned = false; // the reader may write to the buffer
+  private from = 0; // first unused byte in the buffer
+  private to = 0; // end of the bytes in the buffer
   private before = 0; // bytes of the stream before the buffer
-  private scanned = 0; // bytes after `from` that hold no line feed
+  private scanned = 0; // bytes after `from` without a line feed
   private place: Place = { at: "header" };
 
-  /** @param limit  most bytes that the elements of a message may take (R24). */
+  /** @param limit  maximum bytes of a message's elements (R24). */
   constructor(private readonly limit = 256 * 2 ** 20) {}
 
-  /** Adds bytes. Elements may be views of them, so they must not be changed afterwards. */
+  /** Adds bytes, which must not change afterwards, since elements may be views of them. */
   push(bytes: Uint8Array<ArrayBuffer>): void {
     if (this.from === this.to) {
       this.before += this.from;
@@ -62,7 +61,7 @@ export class Reader {
     }
     const size = this.to - this.from + bytes.length;
     if (!this.owned || this.to + bytes.length > this.buffer.length) {
-      // A new buffer: messages may be views of the old one.
+      // A new buffer, since messages may be views of the old one.
       const grown = new Uint8Array(Math.max(2 * size, 256));
       grown.set(this.buffer.subarray(this.from, this.to));
       this.before += this.from;
@@ -75,12 +74,12 @@ export class Reader {
     this.to += bytes.length;
   }
 
-  /** Distance of the next message, or of what is next of it, from the start of the stream. */
+  /** Offset of the next message, or of its next part, in the stream. */
   get byte(): number {
     return this.before + this.from;
   }
 
-  /** The next message; undefined where it has not come whole. Errors: MtpError; then it is over. */
+  /** The next message; undefined while incomplete. Errors: MtpError, which ends the reader. */
   next(): Message | undefined {
     for (;;) {
       const place = this.place;
@@ -119,10 +118,10 @@ export class Reader {
     }
   }
 
-  /** Says that no more comes. Errors: MtpError R2 where a message is not whole. */
+  /** Ends the stream. Errors: MtpError R2 if a message is incomplete. */
   end(): void {
     if (this.place.at !== "header" || this.from < this.to) {
-      throw new MtpError("R2", "stream", this.before + this.to, "it ends inside a message");
+      throw new MtpError("R2", "stream", this.before + this.to, "the stream ends inside a message");
     }
   }
 
@@ -136,7 +135,7 @@ export class Reader {
     return text;
   }
 
-  /** Index of the first line feed, looked for within `most` bytes; -1: none yet. */
+  /** Index of the first line feed within `most` bytes; -1: none yet. */
   private lineFeed(most: number): number {
     const end = Math.min(this.to, this.from + most);
     for (let i = this.from + this.scanned; i < end; ++i) {
@@ -166,14 +165,14 @@ export class Reader {
     const count = scalarCount(header);
     if (count === 0) return { at: "close", header, elements: zeros(header.scalar, 0) };
     if (header.encoding === "text" && header.type !== "string") {
-      // A number and what parts it from the next take two bytes, so memory grows with what came.
+      // Grown as data arrives: a number and its separator take at least two bytes.
       const elements = zeros(header.scalar, Math.min(count, 4096));
       return { at: "numbers", header, elements, read: 0, rows: 0 };
     }
     return { at: "bytes", header, count: count * scalarBytes[header.scalar] };
   }
 
-  /** Reads numbers in text; returns whether all rows have come. */
+  /** Reads numbers in text; returns whether all rows are complete. */
   private numbers(place: Extract<Place, { at: "numbers" }>): boolean {
     const { header } = place;
     const inRow = header.width * header.components;
@@ -187,7 +186,7 @@ export class Reader {
       if (end === this.to || (this.buffer[end] === CR && end + 1 === this.to)) return false;
       const inThisRow = place.read - inRow * place.rows;
       if (end === this.from) {
-        // A line's end.
+        // Line end.
         if (inThisRow < inRow) this.refuse("R29", "elements", this.from);
         this.from += this.buffer[this.from] === CR ? 2 : 1;
         place.rows += 1;
@@ -204,7 +203,7 @@ export class Reader {
     }
   }
 
-  /** Whether a space or a line's end is at an index; a CR before which comes nothing yet is. */
+  /** Whether a space or line end is at an index; a CR at the end of the buffer counts. */
   private endsNumber(index: number): boolean {
     const byte = this.buffer[index];
     if (byte === CR) return index + 1 === this.to || this.buffer[index + 1] === LF;
@@ -221,7 +220,7 @@ export class Reader {
     return Number(text);
   }
 
-  /** Reads the line feed that closes a message; returns whether it has come. */
+  /** Reads the line feed that ends a message; false if it has not arrived. */
   private close(isText: boolean): boolean {
     if (this.from === this.to) return false;
     let at = this.from;
@@ -234,19 +233,20 @@ export class Reader {
   }
 }
 
-/** Elements with twice the room, but no more than there will be. */
+/** Elements with twice the capacity, up to the final size. */
 function grown(elements: Elements, header: Header, count: number): Elements {
   const larger = zeros(header.scalar, Math.min(count, 2 * elements.length));
   bytesOf(larger).set(bytesOf(elements));
   return larger;
 }
 
-/** The one message that `bytes` hold. Its elements may be a view of them. Errors: MtpError. */
+/** The single message in `bytes`; its elements may be a view. Errors: MtpError. */
 export function readMessage(bytes: Uint8Array<ArrayBuffer>): Message {
   const reader = new Reader();
   reader.push(bytes);
   const message = reader.next();
-  if (!message) throw new MtpError("R2", "stream", bytes.length, "it ends inside a message");
+  if (!message)
+    throw new MtpError("R2", "stream", bytes.length, "the stream ends inside a message");
   if (reader.byte < bytes.length) throw new MtpError("R2", "stream", reader.byte, "more than one");
   return message;
 }

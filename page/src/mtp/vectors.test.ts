@@ -19,7 +19,7 @@ function names(folder: string): string[] {
   return files.map((name) => name.slice(0, -".mtp".length));
 }
 
-/** Ways to cut so many bytes: lengths of the pieces. */
+/** Ways to cut a number of bytes into pieces, as lengths. */
 function* cuts(length: number): Generator<() => number> {
   yield () => length;
   yield () => 1;
@@ -50,7 +50,7 @@ function readAll(bytes: Uint8Array<ArrayBuffer>, size: () => number): Outcome {
   return { messages };
 }
 
-/** A message as JSON, just as `hc cat --json` prints it (spec/mtp-1.md, section 8). */
+/** A message as JSON in the format of `hc cat --json` (spec/mtp-1.md, section 8). */
 function messageJson(message: Message): string {
   const { header } = message;
   const start =
@@ -100,7 +100,7 @@ function stringJson(bytes: Uint8Array): string {
   return `"${escaped}"`;
 }
 
-/** Text, each byte that is not part of well-formed UTF-8 being U+FFFD. */
+/** Text with U+FFFD for each byte that is not part of well-formed UTF-8. */
 function utf8(bytes: Uint8Array): string {
   const decoder = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true });
   let text = "";
@@ -139,7 +139,7 @@ for (const name of names("valid")) {
 }
 
 for (const name of names("invalid")) {
-  // What a JPEG or zstd frame holds, a basic reader does not look at.
+  // A basic reader does not look into JPEG or zstd data.
   const isOfBasicReader = !/^R3[67]_/.test(name);
   test(`invalid ${name}`, { skip: !isOfBasicReader }, () => {
     const bytes = bytesOfFile(join(vectors, "invalid", name + ".mtp"));

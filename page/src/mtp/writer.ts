@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns messages into bytes (spec/mtp-1.md, section 5).
+// Writes messages as bytes (spec/mtp-1.md, section 5).
 import { bytesOf } from "./elements";
 import { headerLine } from "./header";
 import type { Message } from "./message";
 import { numberText } from "./number";
 
-/** The bytes of a message in canonical form (R38). Compressed elements are written as they are. */
+/** The bytes of a message in canonical form (R38); compressed elements stay compressed. */
 export function writeMessage(message: Message): Uint8Array<ArrayBuffer> {
   const { header, elements } = message;
   const encoder = new TextEncoder();

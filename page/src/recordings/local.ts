@@ -2,19 +2,19 @@
 import { openMcap } from "./mcap";
 import { openMessages, type Track } from "./track";
 
-/** Files that the person has given this page; a URL cannot hold them. */
+/** Files opened by the person; a URL cannot contain them. */
 let given: readonly File[] = [];
 
 const isRecording = (name: string) => /\.(mtp|mcap)$/.test(name);
 
-/** Takes .mtp and .mcap files; returns how many there are. */
+/** Takes .mtp and .mcap files; returns their number. */
 export function giveFiles(files: Iterable<File>): number {
   const recordings = [...files].filter(({ name }) => isRecording(name));
   if (recordings.length > 0) given = recordings;
   return recordings.length;
 }
 
-/** Indexes the streams of a recording of the server, or of the files given where `name` is empty. */
+/** Indexes the streams of a recording on the server, or of the opened files if `name` is empty. */
 export async function openRecording(
   name: string,
   progress: (words: string) => void,
@@ -29,10 +29,10 @@ export async function openRecording(
   return tracks.filter((track) => track.length > 0);
 }
 
-/** A recording of the server. The browser keeps large ones on disk. */
+/** A recording on the server. The browser keeps large ones on disk. */
 async function fileOf(name: string, progress: (words: string) => void): Promise<File> {
   progress(`Reading ${name} …`);
   const response = await fetch(`/recordings/${name}.mcap`);
-  if (!response.ok) throw new Error(`The server does not give ${name}: ${response.status}.`);
+  if (!response.ok) throw new Error(`The server refuses ${name}: ${response.status}.`);
   return new File([await response.blob()], `${name}.mcap`);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams of messages in a file of MCAP (doc/recordings.md, "In the file"; https://mcap.dev/spec).
+// Streams of messages in an MCAP file (doc/recordings.md, "In the file"; https://mcap.dev/spec).
 import { elementsOf, parseHeader, type Message } from "../mtp";
 import { Track } from "./track";
 import { expandZstd } from "./zstd";
@@ -7,10 +7,10 @@ import { expandZstd } from "./zstd";
 const magic = Uint8Array.of(0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a);
 const tailBytes = 9 + 20 + magic.length; // the footer's record and the magic
 const mostBytes = 2 ** 30; // of a chunk, expanded
-const mostCompanions = 1000; // before and behind a message, among which its own is sought
+const mostCompanions = 1000; // searched before and after a message
 const opcodes = { channel: 4, chunkIndex: 8 };
 
-/** Reads numbers and text one after the other; throws RangeError behind the end. */
+/** Reads consecutive numbers and texts; throws RangeError beyond the end. */
 class Fields {
   private at = 0;
   private readonly view: DataView<ArrayBuffer>;
@@ -41,59 +41,59 @@ class Fields {
   text(): string {
     return new TextDecoder().decode(this.take(this.u32()));
   }
-  /** What a list or map of so many bytes holds. */
+  /** The contents of a list or map. */
   list(): Fields {
     return new Fields(this.take(this.u32()));
   }
   record(): { opcode: number; content: Fields } {
     return { opcode: this.u8(), content: new Fields(this.take(this.u64())) };
   }
-  /** Skips to a multiple of 4, as CDR has it behind its first four bytes. */
+  /** Skips to a multiple of 4, as in CDR after its first four bytes. */
   align(): void {
     this.move(-this.at & 3);
   }
 
   private move(size: number): number {
-    if (size > this.left) throw new RangeError("The recording is damaged: a record is cut short.");
+    if (size > this.left) throw new RangeError("The recording is damaged: truncated record.");
     const begin = this.at;
     this.at += size;
     return begin;
   }
 }
 
-/** What a summary says of a chunk. */
+/** A chunk, from the summary. */
 interface Chunk {
-  readonly end: number; // of its record in the file, where its messages end [byte]
-  readonly indexBytes: number; // of the records of its index, which are behind it
+  readonly end: number; // end of its record in the file [byte]
+  readonly indexBytes: number; // of its index records, which follow it
   readonly compression: string;
   readonly stored: number; // size of its messages in the file [byte]
   readonly plain: number;
 }
 
 interface Channel {
-  /** Of messages of MTP. */
+  /** Of MTP messages. */
   readonly stream?: Stream;
-  /** Of companions: the topic of their messages. */
+  /** Of companions: topic of their messages. */
   readonly companion?: string;
 }
 
-/** A stream, and where its messages and their companions are, which may be in other chunks. */
+/** A stream, and the places of its messages and companions, which may be in different chunks. */
 interface Stream {
   readonly track: Track;
   readonly places: Place[];
-  readonly companions: Place[]; // by log time, and then as in the file
+  readonly companions: Place[]; // by log time, then by position in the file
 }
 
-/** Where a message is. */
+/** The place of a message. */
 interface Place {
   readonly chunk: Chunk;
   readonly offset: number; // in its chunk
-  readonly number: number; // of all messages in the file
+  readonly number: number; // index in the file
   readonly time: number; // [s since 1970]
   readonly bytes: number;
 }
 
-/** Companions of the log time of a message, the nearest in the file first. */
+/** Companions with the log time of a message, the nearest in the file first. */
 function* companionsNear({ time, number }: Place, companions: readonly Place[]): Generator<Place> {
   let [low, high] = [0, companions.length];
   while (low < high) {
@@ -124,15 +124,15 @@ class McapFile {
   async index(progress: (part: number) => void): Promise<Track[]> {
     const isMagic = (bytes: Uint8Array) => magic.every((byte, i) => byte === bytes[i]);
     if (!isMagic((await this.read(0, magic.length)).bytes))
-      throw new Error("This is no MCAP file.");
+      throw new Error("This is not an MCAP file.");
     const footerAt = Math.max(0, this.file.size - tailBytes);
     const tail = await this.read(footerAt, tailBytes);
     const hasEnd = tail.left === tailBytes && isMagic(tail.bytes.subarray(-magic.length));
     const summaryAt = hasEnd ? tail.record().content.u64() : 0;
     if (summaryAt === 0)
       throw new Error(
-        "This recording has no end, as a recorder that was killed leaves it: " +
-          "hc record cut.mcap whole.mcap makes a whole one.",
+        "This recording has no end, probably because its recorder was killed; " +
+          "repair it with hc record cut.mcap whole.mcap.",
       );
     const summary = await this.read(summaryAt, footerAt - summaryAt);
     while (summary.left > 0) {
@@ -182,13 +182,13 @@ class McapFile {
   private addChunk(content: Fields): void {
     content.take(16); // first and last time
     const end = content.u64() + content.u64();
-    content.list(); // where the index of each channel is
+    content.list(); // offsets of the channels' indexes
     const indexBytes = content.u64();
     const compression = content.text();
     this.chunks.push({ end, indexBytes, compression, stored: content.u64(), plain: content.u64() });
   }
 
-  /** Adds the messages of a chunk, out of its index. */
+  /** Adds the messages of a chunk, from its index. */
   private addMessages(chunk: Chunk, indexes: Fields): void {
     const entries: { time: number; offset: number; channel: Channel | undefined }[] = [];
     while (indexes.left > 0) {
@@ -206,7 +206,7 @@ class McapFile {
     });
   }
 
-  /** The messages of a chunk, plain. */
+  /** The messages of a chunk, decompressed. */
   private contents(chunk: Chunk): Promise<Uint8Array<ArrayBuffer>> {
     if (this.newest?.chunk !== chunk) this.newest = { chunk, bytes: this.expand(chunk) };
     return this.newest.bytes;
@@ -217,7 +217,7 @@ class McapFile {
     const { bytes } = await this.read(end - stored, stored);
     if (compression === "") return bytes;
     if (compression === "zstd") return expandZstd(bytes, plain);
-    throw new Error(`This recording is compressed by ${compression}, which is not known here.`);
+    throw new Error(`This recording has an unsupported compression: ${compression}.`);
   }
 
   private async stored({ chunk, offset }: Place) {
@@ -253,10 +253,10 @@ class McapFile {
 }
 
 /**
- * The streams of a file of MCAP.
+ * Opens the streams of an MCAP file.
  *
  * @param progress  called with the part that has been read, 0 … 1.
- * Errors: it is no such file, damaged, or has no end.
+ * Errors: not an MCAP file, damaged, or without an end.
  */
 export function openMcap(
   file: Blob,

@@ -6,10 +6,10 @@ import type { Track } from "./track";
 import { expandZstd } from "./zstd";
 
 const mostAtOnce = 500; // messages of one stream in one step
-const pastOfPlots = 30; // [s] that are read again after a jump
+const pastOfPlots = 30; // [s], reread after a jump
 const smallMessage = 4096; // [byte]
 
-/** A stream of a recording, at the time of its player. */
+/** A stream of a recording, at its player's time. */
 export class ReplaySource extends Emitter implements Source {
   readonly isReplay = true;
   private shown = -1;
@@ -35,8 +35,8 @@ export class ReplaySource extends Emitter implements Source {
   }
 
   /**
-   * Gives what there is up to a time: of large messages the last one, of small ones all since the
-   * time before, after a jump those of the last half minute.
+   * Emits the messages up to a time: the last large one, and all small ones since the previous time
+   * or, after a jump, of the last half minute.
    */
   async goTo(time: number): Promise<void> {
     const last = this.track.indexAt(time);
@@ -69,7 +69,7 @@ export class ReplaySource extends Emitter implements Source {
   }
 }
 
-/** The message with elements of the encoding zstd expanded. */
+/** The message, with zstd elements expanded. */
 async function expanded({ header, elements }: Message): Promise<Message> {
   if (header.encoding !== "zstd") return { header, elements };
   const size = scalarCount(header) * scalarBytes[header.scalar];
@@ -81,7 +81,7 @@ async function expanded({ header, elements }: Message): Promise<Message> {
   };
 }
 
-/** Plays tracks by one clock. */
+/** Plays tracks with a common clock. */
 export class Player {
   readonly begin: number; // [s since 1970]
   readonly end: number;
@@ -115,7 +115,7 @@ export class Player {
     return this.states.on(listener);
   }
 
-  /** The stream of a port; undefined: it was not recorded. */
+  /** The stream of a port; undefined if it was not recorded. */
   open(port: string): ReplaySource | undefined {
     const track = this.tracks.find((each) => each.port === port);
     if (!track) return undefined;

@@ -15,7 +15,7 @@ export function bytesText(bytes: number): string {
   return `${unit === 0 ? bytes : bytes.toFixed(bytes < 10 ? 1 : 0)} ${units[unit]}`;
 }
 
-/** A name for a recording that begins now: the time, as in 20261122-210705. */
+/** A name for a new recording: the time, such as 20261122-210705. */
 export function nameOfNow(now: Date): string {
   const two = (value: number) => String(value).padStart(2, "0");
   const day = `${now.getFullYear()}${two(now.getMonth() + 1)}${two(now.getDate())}`;
@@ -136,7 +136,7 @@ class RecordingsPanel {
     this.name.value = nameOfNow(new Date(Date.now() + 1000));
   }
 
-  /** Asks for the outputs when modules have come or left. */
+  /** Updates the outputs when modules have been added or removed. */
   private updateStreams(state: GraphState): void {
     const modules = state.modules.map(({ name }) => name).join();
     if (modules === this.modules) return;
@@ -173,7 +173,9 @@ class RecordingsPanel {
     this.begin.hidden = recording !== null;
     this.running.hidden = recording === null;
     this.start.disabled = !may;
-    this.start.title = may ? "" : "This page may not record. Ask for a link that may operate.";
+    this.start.title = may
+      ? ""
+      : "This page may not record. Ask for a URL with the right to operate.";
     if (this.wasRecording !== undefined && recording === null) void this.refresh();
     if (recording && this.wasRecording !== recording.name) {
       fill(
@@ -202,7 +204,7 @@ class RecordingsPanel {
         recordings.map((recording) => this.item(recording)),
       );
       if (recordings.length === 0)
-        fill(this.list, h("li", { class: "muted" }, "There is none yet."));
+        fill(this.list, h("li", { class: "muted" }, "No recordings yet."));
     } catch (error) {
       fill(this.list, h("li", { class: "muted" }, error instanceof Error ? error.message : ""));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording on a timeline: {kind: "replay", name?, streams?}; without a name, files given.
+// A recording on a timeline: {kind: "replay", name?, streams?}; without a name the opened files.
 import { h, type PanelHost, type PanelKind } from "../shell";
 import { StreamView, type Source, type Surroundings } from "../views";
 import { openRecording } from "./local";
@@ -23,7 +23,7 @@ export const replayPanel: PanelKind = (args, host) => {
         status.textContent =
           name === ""
             ? "No files are open. Open .mcap or .mtp files in the panel Recordings."
-            : "This recording holds no message.";
+            : "This recording has no messages.";
         return;
       }
       const chosen = args.streams?.split(" ") ?? usualStreams(tracks);
@@ -45,7 +45,7 @@ export const replayPanel: PanelKind = (args, host) => {
   };
 };
 
-/** The streams with the largest messages: images come first. */
+/** The streams with the largest messages, usually images. */
 function usualStreams(tracks: readonly Track[]): string[] {
   return [...tracks]
     .sort((a, b) => b.usualBytes - a.usualBytes)
@@ -53,7 +53,7 @@ function usualStreams(tracks: readonly Track[]): string[] {
     .map(({ port }) => port);
 }
 
-/** The source of a stream that was not recorded. */
+/** A source for a stream that was not recorded. */
 function missing(port: string): Source {
   const nothing = () => () => {};
   return { port, isReplay: true, on: nothing, setWidth: nothing, close: nothing };

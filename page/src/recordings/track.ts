@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// One stream of a recording: when its messages are, and how to read each of them.
+// One stream of a recording: the times of its messages, and how to read them.
 import { Reader, readMessage, type Message } from "../mtp";
 
-/** Numbers that are added one by one. */
+/** A growing array of numbers. */
 class Column {
   private numbers = new Float64Array(256);
   length = 0;
@@ -32,9 +32,9 @@ export class Track {
     readonly message: (index: number) => Promise<Message>,
   ) {}
 
-  /** Adds a message, which takes so many bytes. */
+  /** Adds a message. @param bytes  its size. */
   add(time: number, bytes: number): void {
-    // Times that go back, or that are not given, count as those before, so that they can be searched.
+    // Missing or decreasing times count as the previous one, so that times can be searched.
     this.times.push(this.length > 0 ? Math.max(time, this.lastTime) : time);
     this.bytes += bytes;
   }
@@ -56,7 +56,7 @@ export class Track {
     return this.times.at(index);
   }
 
-  /** Bytes of a message in the middle. */
+  /** Size of a message in the middle [byte]. */
   get usualBytes(): number {
     return this.length === 0 ? 0 : this.bytes / this.length;
   }
@@ -74,10 +74,10 @@ export class Track {
 }
 
 /**
- * Reads a file of messages through once, and keeps where they are and when.
+ * Indexes a file of messages by time, in one pass.
  *
  * @param progress  called with the part that has been read, 0 … 1.
- * Errors: MtpError where a message is malformed. A truncated last message is ignored: the
+ * Errors: MtpError if a message is malformed. A truncated last message is ignored, since the
  * recording may have been interrupted.
  */
 export async function openMessages(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plays a stream of sound as it comes.
+// Plays a live stream of sound.
 import { numbersOf, sampleRate } from "../mtp";
 import type { Server, Stream } from "../server";
 import { SoundPlayer } from "../views/sound_player";

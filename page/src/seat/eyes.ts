@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The images of a pair of eyes, as they come, for whoever draws them.
+// The live images of a pair of eyes.
 import { sentHeader } from "../mtp";
 import type { Arrival, GraphState, Server, Stream } from "../server";
 import { moduleOf, portOf } from "../graph/structure";
@@ -7,19 +7,19 @@ import { bitmapOf } from "../views/picture";
 
 export type Side = "left" | "right";
 
-/** A module that sends the images of two eyes, or of one. */
+/** A module that sends images of one or two eyes. */
 export interface EyePair {
   readonly module: string;
   /** Names of its outputs. */
   readonly left: string;
   readonly right?: string;
-  /** As the cameras take them: pixels can be pointed at. */
+  /** Unprocessed camera images, whose pixels can be selected as targets. */
   readonly raw: boolean;
-  /** With things in them that are not there. */
+  /** With virtual objects. */
   readonly augmented: boolean;
 }
 
-/** The pairs of a graph: those of cameras first, augmented ones next. */
+/** The pairs in a graph: cameras first, then augmented ones. */
 export function eyePairs(state: GraphState): EyePair[] {
   const outputs = new Set(state.links.map((link) => link.from));
   const inputs = new Set(state.links.map((link) => link.to));
@@ -40,7 +40,7 @@ export function eyePairs(state: GraphState): EyePair[] {
   return pairs.sort((a, b) => order(a) - order(b));
 }
 
-/** The output that hears: sound that goes to a module `hearing`, or any that is called sound. */
+/** The output of the ears: linked to a module `hearing`, or any named sound. */
 export function earsOf(state: GraphState): string | undefined {
   const sounds = state.links.filter((link) => portOf(link.from) === "sound");
   const toHearing = sounds.find((link) => {
@@ -50,16 +50,16 @@ export function earsOf(state: GraphState): string | undefined {
   return toHearing?.from;
 }
 
-/** An image that has been decoded. */
+/** A decoded image. */
 export interface Picture {
   readonly bitmap: ImageBitmap;
-  /** When it was taken [ns]. */
+  /** Time of exposure [ns]. */
   readonly time: bigint;
   readonly coord: number;
   /** Of the sensor [px]; the bitmap may be smaller. */
   readonly width: number;
   readonly height: number;
-  /** When it came, and was decoded [ms since the Unix epoch]. */
+  /** Times of arrival and decoding [ms since the Unix epoch]. */
   readonly arrived: number;
   readonly decoded: number;
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the robot's head looked at a time, by the output that moves its frame.
+// The orientation of the robot's head over time, from the output that moves its frame.
 import { numbersOf } from "../mtp";
 import type { Server, Stream } from "../server";
 import { framesOf } from "../views/frames";
 import { anglesOfPose, type Angles } from "./orientation";
 
-/** So many poses are kept: some seconds. */
+/** Maximum number of poses, which span some seconds. */
 const most = 300;
 
-/** The output that moves the frame `head`, of the text of G31. */
+/** The output that moves the frame `head`, in the text of G31. */
 export function headOutput(frames: string): string | undefined {
   return framesOf(frames).find(({ name }) => name === "head")?.movedBy;
 }
@@ -27,7 +27,7 @@ export class GazeHistory {
     });
   }
 
-  /** The pose whose time is nearest. */
+  /** The pose nearest in time. */
   at(time: bigint): Angles | undefined {
     const away = (pose: { time: bigint }): number => Math.abs(Number(pose.time - time));
     return this.poses.length === 0

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands on the stick: a pad and the image for pointers, keys, gamepads.
+// Inputs for the stick: pointers on a pad and on the image, keys, gamepads.
 import { Keys, middle, pushOfGamepads, type Push, type Stick } from "./steering";
 
 /** A press that moves less than this is a click [px]. */
 const clickRadius = 6;
 
 /**
- * Steers by dragging on an element: the farther from where it was pressed, the faster.
+ * Steers by dragging on an element; the speed grows with the distance from the press.
  *
- * @param reach  how far a full push is [px], of the element's size now.
+ * @param reach  distance of a full deflection for the element's size [px].
  * @param shown  called with each push, to draw it.
- * @param clicked  a press that did not move.
+ * @param clicked  called for a press without motion.
  */
 export function dragSteers(
   element: HTMLElement,
@@ -53,7 +53,7 @@ export function dragSteers(
   }
 }
 
-/** Steers by arrow keys and WASD while an element, or what is in it, has the focus. */
+/** Steers by arrow keys and WASD while an element or a descendant has the focus. */
 export function keysSteer(element: HTMLElement, stick: Stick): void {
   const keys = new Keys();
   const isText = (target: EventTarget | null): boolean =>
@@ -77,7 +77,7 @@ export function keysSteer(element: HTMLElement, stick: Stick): void {
   window.addEventListener("blur", releaseAll);
 }
 
-/** Steers by gamepads; returns how to end that. */
+/** Steers by gamepads; returns a function that ends it. */
 export function gamepadsSteer(stick: Stick): () => void {
   const timer = setInterval(
     () => stick.set("gamepad", pushOfGamepads(navigator.getGamepads())),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who drives: holds the driver's socket, and repeats what a person commands as long as they do.
+// Holds the driver's socket, and repeats a person's commands while they last.
 import { Coord, headerOf, numbersMessage, textMessage, type Kind, type Message } from "../mtp";
 import { Signal, type Drive, type DriveOutput, type Server } from "../server";
 import type { Angles } from "./orientation";
@@ -10,28 +10,28 @@ export type SeatState =
   | { readonly is: "free" }
   | { readonly is: "waiting" }
   | { readonly is: "held" }
-  /** `why`: in a sentence. */
+  /** `why`: a sentence. */
   | { readonly is: "lost"; readonly why: string };
 
 const period = 33; // of the stick [ms]
 const bidPeriod = 100; // [ms]
 
-/** The server withdraws what a page commands when it has heard nothing of it for so long (W13) [ms]. */
+/** Silence after which the server withdraws a page's commands (W13) [ms]. */
 const deadMan = 200;
-/** So long a page counts as slow after it was [ms]. */
+/** How long a page counts as slow after a late command [ms]. */
 const slowFor = 3000;
 
-/** A head that is turned by less than this is at rest [rad]. */
+/** A head that turns less is at rest [rad]. */
 const still = 0.01;
-/** One that turns by more takes the robot's head back from a hand or a chosen task [rad]. */
+/** A larger turn takes the robot's head back from a hand or a chosen task [rad]. */
 const turns = 0.1;
-/** So long a new bid may be on its way [ms]. */
+/** How long a new bid may be in transit [ms]. */
 const onItsWay = 1500;
 
 /**
- * The supervisor's seat. Who takes it holds the head: the page bids for the task that steers, until
- * another is chosen or the robot is to decide. It is left when the page is hidden: a person who does
- * not see the robot does not drive it.
+ * The supervisor's seat. Taking it takes the head: the page bids for the task that steers, until
+ * another is chosen or the head is released. Hiding the page leaves the seat, since a person must
+ * see the robot to drive it.
  */
 export class Seat {
   readonly stick = new Stick();
@@ -42,22 +42,22 @@ export class Seat {
   readonly onTask = this.tasks.on;
   private drive?: Drive;
   private steering = false;
-  /** When this page last could command, and when it last was too late [ms]. */
+  /** When this page last sent a command, and when it was last too late [ms]. */
   private lastTurn = -Infinity;
   private lastLate = -Infinity;
-  /** Where the person's head was when it last was seen to move. */
+  /** The person's head when it last moved. */
   private turned: Angles = { roll: 0, pitch: 0, yaw: 0 };
-  /** Where it was when something else than the person's head took the robot's. */
+  /** The person's head when another input took the robot's head. */
   private aside?: Angles;
   private chosenAt = -Infinity; // [ms]
   private readonly timers: number[];
   private readonly hidden = (): void => {
-    if (document.hidden && this.drive) this.leave("You left the page, and with it the seat.");
+    if (document.hidden && this.drive) this.leave("You left the page and lost the seat.");
   };
 
   /**
-   * @param taskOf  number of the task that reads an output; 0: none does.
-   * @param say  tells the person why something was not done.
+   * @param taskOf  number of the task that reads an output; 0: none.
+   * @param say  shows the person an error.
    * @param commanded  called with the time of each message that moves the head [ms since the Unix epoch].
    */
   constructor(
@@ -87,22 +87,22 @@ export class Seat {
     return this.state.is === "held";
   }
 
-  /** Whether commands come too late to last: the page has too much to draw, or the machine to do. */
+  /** Whether commands expire, because the page or the machine is overloaded. */
   get isSlow(): boolean {
     return this.isHeld && performance.now() - this.lastLate < slowFor;
   }
 
-  /** Whether the bid is so new that the workspace may not have taken it. */
+  /** Whether the bid is so new that the workspace may not have received it. */
   get isFresh(): boolean {
     return performance.now() - this.chosenAt < onItsWay;
   }
 
-  /** Number of the task that the person has chosen; 0: none. */
+  /** Number of the chosen task; 0: none. */
   get task(): number {
     return this.tasks.value ?? 0;
   }
 
-  /** @param fromOther  takes it from whoever has it. */
+  /** @param fromOther  takes it from another page. */
   take(fromOther = false): void {
     this.drive?.close();
     const drive = this.server.drive({ take: fromOther });
@@ -123,7 +123,7 @@ export class Seat {
     });
   }
 
-  /** Gives the seat back. @param why  where it was not the person's wish. */
+  /** Leaves the seat. @param why  reason, if not the person's decision. */
   leave(why = ""): void {
     if (!this.drive) return;
     this.stick.release();
@@ -147,12 +147,12 @@ export class Seat {
     this.choose(0);
   }
 
-  /** The person's head turns the robot's, from now on. */
+  /** From now on, the person's head turns the robot's. */
   orient(): void {
     if (this.isHeld) this.choose(this.taskOf("rotation"));
   }
 
-  /** The person's head is turned so, since it was zeroed. */
+  /** Takes the orientation of the person's head relative to its zero. */
   turn(angles: Angles): void {
     if (!this.isHeld || this.steering || !this.mayTurn(angles)) return;
     const { roll, pitch, yaw } = angles;
@@ -169,9 +169,9 @@ export class Seat {
   }
 
   /**
-   * Looks at a pixel of an eye's image, as it was taken.
+   * Looks at a pixel of a camera image.
    *
-   * @param coord  7: of the left eye, 8: of the right one.
+   * @param coord  7: left eye, 8: right eye.
    * @param time  of that image [ns].
    */
   lookAt(x: number, y: number, coord: number, time: bigint): void {
@@ -181,15 +181,15 @@ export class Seat {
   }
 
   /**
-   * Says a text by the robot's mouth; returns whether it went out.
+   * Speaks a text with the robot's voice; returns whether it was sent.
    *
-   * @param mode  of the task in focus, which alone may speak.
+   * @param mode  of the task in focus; only that may speak.
    */
   speak(text: string, mode: number): boolean {
     return this.drive?.send("text", textMessage(text, { coord: Coord.text, mode })) ?? false;
   }
 
-  /** Sends the stick while it is pushed, and its middle once at the end. */
+  /** Sends the stick while it is pushed, and its centre once at the end. */
   private steer(): void {
     const now = performance.now();
     const isLate = now - this.lastTurn > deadMan;
@@ -198,7 +198,7 @@ export class Seat {
     if (isLate) this.lastLate = now;
     const { left, down } = this.stick.push;
     const pushed = left !== 0 || down !== 0;
-    if (pushed) this.claim("stick"); // the hand goes first
+    if (pushed) this.claim("stick"); // the hand has priority
     if (pushed || this.steering) this.sendStick();
     this.steering = pushed;
   }
@@ -214,13 +214,13 @@ export class Seat {
     if (this.task) this.sendBid(this.task, 1);
   }
 
-  /** Bids for the task that reads an output, in place of another. */
+  /** Bids for the task that reads an output, instead of another. */
   private claim(output: DriveOutput): void {
     const task = this.taskOf(output);
     if (task && task !== this.task) this.choose(task);
   }
 
-  /** Whether the person's head is obeyed: after a hand or another task, once it has turned. */
+  /** Whether to follow the person's head: after a hand or another task, once it has turned. */
   private mayTurn({ roll, pitch, yaw }: Angles): boolean {
     const task = this.taskOf("rotation");
     if (!task || task === this.task) return true;
@@ -245,7 +245,7 @@ export class Seat {
 
 const stickKind: Kind = { type: "table", components: 1, scalar: "f64", encoding: "binary" };
 
-/** A table of two numbers, as the output `stick` has it. */
+/** A message for the output `stick`. */
 function stickMessage(left: number, down: number, time: bigint): Message {
   return { header: headerOf(stickKind, 2, 1, { time }), elements: Float64Array.of(left, down) };
 }

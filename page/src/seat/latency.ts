@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Motion to photon: from a command of a person to the first image on the screen that shows it.
+// Motion-to-photon latency: from a command to the first displayed image that shows its effect.
 
 /** One measurement; all times in ms. The parts add up to `total`. */
 export interface Measurement {
   readonly total: number;
-  /** From the command to when the image was sensed. */
+  /** From the command to the image's exposure. */
   readonly sensed: number;
-  /** From there to when it came to the page: exposure, encoder, network. */
+  /** From there to the arrival at the page: exposure, encoder, network. */
   readonly arrived: number;
   readonly decoded: number;
   readonly drawn: number;
 }
 
-/** An image as it was shown; times in ms since the Unix epoch. */
+/** A displayed image; times in ms since the Unix epoch. */
 export interface Shown {
   /** Grey values of a small version of it. */
   readonly thumbnail: Uint8Array;
@@ -22,9 +22,9 @@ export interface Shown {
   readonly drawn: number;
 }
 
-/** So long nothing was commanded before a measurement begins [ms]. */
+/** Rest without commands before a measurement [ms]. */
 const rest = 500;
-/** Then it is given up [ms]. */
+/** Timeout of a measurement [ms]. */
 const patience = 2000;
 const most = 100;
 
@@ -32,12 +32,12 @@ const most = 100;
 export class Latency {
   readonly measurements: Measurement[] = [];
   private last?: Shown;
-  /** The image before the command, and how images changed by themselves before it. */
+  /** The image before the command, and the image noise before it. */
   private pending?: { at: number; before: Shown; noise: number };
   private changes: number[] = [];
   private commanded = -Infinity;
 
-  /** A command that moves the head went out. @param at  [ms since the Unix epoch] */
+  /** Notes a command that moves the head. @param at  [ms since the Unix epoch]. */
   command(at: number): void {
     const rested = at - this.commanded > rest;
     this.commanded = at;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a person's head is turned, from what devices tell. Pure; angles in rad.
+// The orientation of a person's head, from device sensors. Pure; angles in rad.
 
 /** Roll about x (forward), pitch about y (left), yaw about z (up): R = Rz(yaw) Ry(pitch) Rx(roll). */
 export interface Angles {
@@ -50,7 +50,7 @@ function anglesOf(m: Matrix): Angles {
 }
 
 /**
- * Where the back of a phone looks.
+ * Orientation of the view direction of a phone's back.
  *
  * @param alpha, beta, gamma  of DeviceOrientationEvent [degree].
  * @param screen  angle of screen.orientation [degree].
@@ -60,7 +60,7 @@ export function anglesOfDevice(alpha: number, beta: number, gamma: number, scree
   return anglesOf([...device, about(2, -screen * degree), screenFromBody].reduce(product));
 }
 
-/** Where a headset looks, from its orientation in a space whose y is up, a quaternion. */
+/** Orientation of a headset, from a quaternion in a space with y up. */
 export function anglesOfHeadset(q: { x: number; y: number; z: number; w: number }): Angles {
   const { x, y, z, w } = q;
   const headset: Matrix = [

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The supervisor's seat: what the robot sees, and all by which a person moves it.
+// The supervisor's seat: the robot's images, and the controls to move it.
 import { mayDrive, modesInFocus, type DriveOutput, type GraphState } from "../server";
 import { button, fill, h, setText, type PanelHost, type PanelKind } from "../shell";
 import { Ears } from "./ears";
@@ -16,7 +16,7 @@ import type { XrView } from "./xr";
 
 declare global {
   interface Window {
-    /** For who measures: motion to photon. */
+    /** Motion-to-photon latency, for tests and benchmarks. */
     hypercolumn?: { latency: Latency };
   }
 }
@@ -91,7 +91,7 @@ class SeatPanel {
           const mode = modesInFocus(server.state)[0]?.number ?? 0;
           if (!text || !this.seat.speak(text, mode)) return;
           this.text.value = "";
-          host.say(`Sent to be spoken: ${text}`);
+          host.say(`Sent to the robot's voice: ${text}`);
         },
       },
       [h("label", { for: "seat-text" }, "Say"), this.text, this.speakButton],
@@ -168,7 +168,7 @@ class SeatPanel {
     if (!this.seat.isHeld) return this.host.say("Take the seat first, then point.");
     if (!this.has("target")) return this.host.say("No output target of the page is linked.");
     const pixel = this.view.pixelAt(event.clientX, event.clientY);
-    if (!pixel) return this.host.say("Point at the image of an eye, as its camera takes it.");
+    if (!pixel) return this.host.say("Point at an unprocessed camera image.");
     this.seat.lookAt(pixel.x, pixel.y, pixel.coord, pixel.time);
     this.host.say(`Asked to look at pixel ${Math.round(pixel.x)}, ${Math.round(pixel.y)}.`);
   }
@@ -251,7 +251,7 @@ class SeatPanel {
     this.showWho();
   }
 
-  /** Says who has the head, and offers what can be done about it. */
+  /** Shows which task has the head, and the choices. */
   private showWho(): void {
     const { session, state } = this.host.server;
     const { seat } = this;
@@ -266,7 +266,7 @@ class SeatPanel {
       fresh: seat.isFresh,
     });
     setText(this.who, text);
-    this.who.title = text; // where there is no room for all of it
+    this.who.title = text; // in case it does not fit
     this.takeButton.hidden = !mayDrive(session) || seat.isHeld || seat.state.is === "waiting";
     const take = session?.driver === "other" ? "Take the seat from them" : "Take the seat";
     setText(this.takeButton, take);
@@ -303,7 +303,7 @@ class SeatPanel {
         },
       );
     };
-    const none = "Gives the head back, and keeps the seat";
+    const none = "Releases the head and keeps the seat";
     fill(
       this.tasks,
       names.length > 0 && draw("", 0, "Let the robot decide", none),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws what two eyes see.
+// Draws the images of two eyes.
 import type { Picture, Side } from "./eyes";
 import { placesOf, type Place, type Way } from "./places";
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the images of two eyes are in a canvas, in one of several ways. Pure.
+// The layout of two eyes' images in a canvas, in several ways. Pure.
 import type { Side } from "./eyes";
 
 export const ways = ["left", "right", "side by side", "red/cyan"] as const;
@@ -20,7 +20,7 @@ export function sidesOf(way: Way): readonly Side[] {
   return ["left", "right"];
 }
 
-/** Where eyes are drawn in a canvas: as large as there is room, in the middle. */
+/** Positions of the eyes in a canvas: centred, as large as possible. */
 export function placesOf(
   way: Way,
   image: { width: number; height: number },
@@ -36,7 +36,7 @@ export function placesOf(
   return sides.map((side, i) => ({ side, x: x + i * width, y, width, height }));
 }
 
-/** The pixel of an eye's sensor at a point of the canvas; undefined beside the images. */
+/** The sensor pixel of an eye at a point of the canvas; undefined outside the images. */
 export function pixelAt(
   places: readonly Place[],
   point: { x: number; y: number },
@@ -47,7 +47,7 @@ export function pixelAt(
       point.x >= x && point.x < x + width && point.y >= y && point.y < y + height,
   );
   if (!place) return undefined;
-  // Pixels count from the middle of the first one.
+  // The origin is the centre of the first pixel.
   const x = ((point.x - place.x) / place.width) * sensor.width - 0.5;
   const y = ((point.y - place.y) / place.height) * sensor.height - 0.5;
   return { side: place.side, x, y };

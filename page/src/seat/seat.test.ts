@@ -22,13 +22,13 @@ test("a phone that is held upright and turned", () => {
   // About the vertical, counter-clockwise from above: to the left.
   nearly(since(zero, anglesOfDevice(30, 90, 0, 0)), 0, 0, 30);
   nearly(since(zero, anglesOfDevice(350, 90, 0, 0)), 0, 0, -10);
-  // Its top tilted away from the person: its back looks down.
+  // Its top tilted away from the person: its back faces down.
   nearly(since(zero, anglesOfDevice(0, 70, 0, 0)), 0, 20, 0);
 });
 
 test("a phone that lies across looks where it looked", () => {
   const upright = anglesOfDevice(0, 90, 0, 0);
-  // Turned to the left by a quarter about its line of sight; the browser turned the picture back.
+  // Rotated 90° to the left about its line of sight; the browser rotated the picture back.
   const across = anglesOfDevice(90, 0, -90, 90);
   nearly(since({ ...upright, yaw: 0 }, { ...across, yaw: 0 }), 0, 0, 0);
   const lower = anglesOfDevice(90, 0, -70, 90);
@@ -111,7 +111,7 @@ test("motion to photon is to the first later image that changed more than before
   [100, 101, 100].forEach((grey, i) => latency.shown(image(grey, 1000 + 50 * i)));
   latency.command(1120);
   latency.shown(image(160, 1115)); // taken before the command
-  latency.shown(image(101, 1150)); // as it changed before
+  latency.shown(image(101, 1150)); // varies as before
   latency.shown(image(120, 1200));
   assert.deepEqual(latency.measurements, [
     { total: 120, sensed: 80, arrived: 30, decoded: 5, drawn: 5 },
@@ -130,7 +130,7 @@ test("the wall clock, with fractions of a millisecond", () => {
   );
   [fine, wall] = [12.25, 1002];
   assert.equal(clock.now(), 1002.25);
-  // The machine slept for two hours, in which its fine clock did not go.
+  // The machine slept for two hours while its monotonic clock stood still.
   wall += 7_200_000;
   assert.equal(clock.now(), 7_201_002);
   fine += 0.5;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stick that several hands may hold: pointer, keys, gamepad.
+// A stick with several inputs: pointer, keys, gamepad.
 
 /** Left and down, -1 … 1. */
 export interface Push {
@@ -11,7 +11,7 @@ export const middle: Push = { left: 0, down: 0 };
 
 const clip = (value: number): number => Math.max(-1, Math.min(1, value));
 
-/** Adds up what the hands push; beyond its end a stick does not go. */
+/** The sum of all inputs, limited to full deflection. */
 export class Stick {
   private readonly pushes = new Map<string, Push>();
 
@@ -33,7 +33,7 @@ export class Stick {
   }
 }
 
-/** Where keys push, by their places on the keyboard, whatever letters are on them. */
+/** Directions of keys, by position on the keyboard. */
 const keys: Record<string, Push> = {
   ArrowLeft: { left: 1, down: 0 },
   ArrowRight: { left: -1, down: 0 },
@@ -45,14 +45,14 @@ const keys: Record<string, Push> = {
   KeyS: { left: 0, down: 1 },
 };
 
-/** With Shift keys push only so far. */
+/** Deflection by keys with Shift. */
 const slow = 0.3;
 
-/** What the keys that are down push. */
+/** The deflection by pressed keys. */
 export class Keys {
   private readonly down = new Set<string>();
 
-  /** Returns whether it is a key that steers. */
+  /** Returns whether the key steers. */
   press(code: string): boolean {
     if (!keys[code]) return false;
     this.down.add(code);
@@ -78,14 +78,14 @@ export class Keys {
   }
 }
 
-/** A stick's axis without its dead zone: from 0 at its edge to 1. */
+/** A stick's axis without its dead zone: rescaled from 0 at its edge to 1. */
 export function withoutDeadZone(value: number, deadZone = 0.1): number {
   const size = Math.abs(value);
-  if (!(size > deadZone)) return 0; // nor is not-a-number
+  if (!(size > deadZone)) return 0; // true for NaN, too
   return (Math.sign(value) * Math.min(1, size - deadZone)) / (1 - deadZone);
 }
 
-/** What the sticks of gamepads push: of each the axis that is pushed farther. */
+/** The deflection of gamepads' sticks: for each axis the largest. */
 export function pushOfGamepads(
   pads: readonly (Pick<Gamepad, "axes" | "connected"> | null)[],
 ): Push {

@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stop: always visible, one press, for viewers too. It is cleared by two other controls.
+// The stop: always visible, one press, also for viewers. Clearing it takes two other controls.
 import { CommandError, mayDrive, type Session } from "../server";
 import { button, h, setText, type Shell } from "../shell";
 import { Stopping } from "./stopping";
 
 /** Two presses of Escape within this time stop the robot [ms]. */
 const twice = 600;
-/** How often it is looked whether a stop has arrived; one that has not is sent again, over a new
- * connection where there is none [ms]. */
+/** Period at which an unconfirmed stop is sent again, over a new connection if necessary [ms]. */
 const period = 200;
 
 /**
- * Puts the stop button into the header, a red bar above all while the robot is stopped, and large
- * letters over everything while a stop that was pressed is not confirmed. Nothing moves for them.
+ * Adds the stop button to the header, a red bar while the robot is stopped, and a large warning over
+ * everything while a stop is not confirmed. They do not move other elements.
  */
 export function addStop(shell: Shell): void {
   const { server } = shell;
   const stopping = new Stopping();
-  let isAsked = false; // a stop was sent, and not answered
+  let isAsked = false; // a stop was sent, but not answered
 
   const order = async (stops: boolean): Promise<void> => {
     if (stops) isAsked = true;
@@ -25,7 +24,7 @@ export function addStop(shell: Shell): void {
       await server.command(stops ? "estop" : "estop clear");
       stopping.answered(stops, "");
     } catch (error) {
-      // Where the connection is lost nothing is known; the page's own words say so.
+      // Without a connection the state is unknown, and the page's own text says so.
       const isAnswer = error instanceof CommandError && server.connection.status === "open";
       if (!stops) shell.say(error instanceof Error ? error.message : String(error));
       else if (isAnswer) stopping.answered(true, error.message);
@@ -93,7 +92,7 @@ export function addStop(shell: Shell): void {
   });
 }
 
-/** The bar while the robot is stopped, and how to show it. @param clear  lets the robot move. */
+/** The bar shown while the robot is stopped. @param clear  lets the robot move. */
 function stoppedBar(clear: () => void) {
   const confirm = h("input", { type: "checkbox", id: "stop-confirm" });
   const clearButton = button("Let it move", clear, { class: "stop-clear", disabled: true });
@@ -102,7 +101,7 @@ function stoppedBar(clear: () => void) {
     h("label.row", { for: "stop-confirm" }, [confirm, "nobody is in its way"]),
     clearButton,
   ]);
-  const note = h("span.stop-note", "Only who may drive can clear this stop.");
+  const note = h("span.stop-note", "Clearing this stop needs the right to drive.");
   const bar = h("div.stopped-bar.row.wrap", { role: "alert", hidden: true }, [
     h("strong", "STOPPED"),
     h("span", "The robot is stopped: no task has the focus."),

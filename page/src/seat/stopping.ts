@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What became of a press of the stop: pure; time is handed in [ms].
+// Tracks a press of the stop until it is confirmed. Pure; times come from the caller [ms].
 
-/** So long the server has to answer; it gives the workspace 500 ms. */
+/** Timeout of the server's answer; the server's for the workspace is 500 ms. */
 const patience = 800;
 
-/** What a person wants of the stop, until it is known to be so. */
+/** A person's order, until it is confirmed. */
 export class Stopping {
   private wanted?: { readonly stops: boolean; readonly since: number };
   private problem = "";
@@ -28,22 +28,22 @@ export class Stopping {
     else this.problem = problem;
   }
 
-  /** The workspace says how it is, after an order. */
+  /** Takes the workspace's state after an order. */
   heard(isStopped: boolean | null): void {
     if (isStopped !== null && this.wanted?.stops === isStopped) this.settle();
   }
 
-  /** A clear that was not done is no danger, so it is told once. */
+  /** A failed clear is not dangerous, so it is reported once. */
   forgetClear(): void {
     if (this.wanted?.stops === false) this.settle();
   }
 
-  /** Whether the stop is to be sent once more when it can be. */
+  /** Whether to send the stop again. */
   get isUnconfirmed(): boolean {
     return this.wanted?.stops === true;
   }
 
-  /** Why a stop that was pressed may not have arrived; empty: it has, or it is too early to say. */
+  /** Why a stop may not have arrived; empty if confirmed, or too early to tell. */
   alarm(now: number): string {
     if (!this.wanted?.stops) return "";
     if (!this.isConnected)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Telepresence by the orientation of a phone.
+// Telepresence with the orientation of a phone.
 import { anglesOfDevice, since, type Angles } from "./orientation";
 
-/** The last orientation is said again each so many ms, since a phone at rest says nothing. */
+/** Period at which the last orientation is repeated, since a phone at rest sends no events [ms]. */
 const period = 40;
 
 type WithPermission = typeof DeviceOrientationEvent & {
@@ -14,22 +14,22 @@ export class PhoneTracker {
   private last?: Angles;
   private timer = 0;
 
-  /** @param turned  how the phone is turned since it was zeroed. */
+  /** @param turned  called with the phone's orientation relative to its zero. */
   constructor(private readonly turned: (angles: Angles) => void) {}
 
   get isOn(): boolean {
     return this.timer !== 0;
   }
 
-  /** Begins; where the phone looks first is straight ahead. Errors: a sentence. */
+  /** Starts; the first orientation is straight ahead. Errors: a sentence. */
   async start(): Promise<void> {
     if (!("DeviceOrientationEvent" in window)) {
-      throw new Error("This browser does not tell how the device is turned.");
+      throw new Error("This browser does not report the device's orientation.");
     }
     const permission = await (DeviceOrientationEvent as WithPermission).requestPermission?.();
     if (permission === "denied") {
       throw new Error(
-        "The browser may not say how the device is turned: allow it access to motion sensors.",
+        "The browser may not read the device's orientation: allow access to motion sensors.",
       );
     }
     this.zero();
@@ -44,7 +44,7 @@ export class PhoneTracker {
     this.last = undefined;
   }
 
-  /** Where it looks now is straight ahead. */
+  /** Makes the current orientation straight ahead. */
   zero(): void {
     this.zeroed = this.last;
   }

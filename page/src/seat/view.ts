@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the robot's eyes see, in the seat: a canvas, and the streams that it needs.
+// The images of the robot's eyes in the seat: a canvas and its streams.
 import type { GraphState, Server } from "../server";
 import { fill, h } from "../shell";
 import { Eye, eyePairs, type EyePair, type Picture, type Side } from "./eyes";
@@ -8,7 +8,7 @@ import { drawPictures, thumbnailOf, type Pictures } from "./picture";
 import { pixelAt, placesOf, sidesOf, ways, type Way } from "./places";
 import type { XrView } from "./xr";
 
-/** Images are asked for no wider than this [px]. */
+/** Maximum width of requested images [px]. */
 const widest = 1280;
 const waiting = "Waiting for the first image…";
 
@@ -48,7 +48,7 @@ export class SeatView {
     for (const eye of this.eyes.values()) eye.close();
   }
 
-  /** Takes the pairs of eyes that the graph has now. */
+  /** Updates the pairs of eyes in the graph. */
   update(state: GraphState): void {
     const pairs = eyePairs(state);
     if (JSON.stringify(pairs) === JSON.stringify(this.pairs)) return;
@@ -68,15 +68,15 @@ export class SeatView {
     return this.pairs.find(({ module }) => module === this.source.value) ?? this.pairs[0];
   }
 
-  /** Focal length of the cameras [px of the sensor], of the parameters of the graph. */
+  /** Focal length of the cameras, from the graph's parameters [px of the sensor]. */
   get focal(): number {
     const modules = this.server.state?.modules ?? [];
     const own = modules.find((module) => module.name === this.pair?.module)?.parameters.focal;
     return Number(own) || 600;
   }
 
-  /** The pixel of an eye's sensor under a point of the window, and the time of that image [ns];
-   *  undefined where it is none of a camera's image. */
+  /** The sensor pixel of an eye under a point of the window, and the time of that image [ns];
+   *  undefined outside unprocessed camera images. */
   pixelAt(clientX: number, clientY: number) {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const pictures = this.pictures();
@@ -93,7 +93,7 @@ export class SeatView {
     return { x: found.x, y: found.y, coord: picture.coord, time: picture.time };
   }
 
-  /** Shows the images in a headset too, until `undefined` is given. */
+  /** Also shows the images in a headset; `undefined` ends that. */
   showIn(xr: XrView | undefined): void {
     this.xr = xr;
     this.reopen();
@@ -107,7 +107,7 @@ export class SeatView {
     return { left: this.eyes.get("left")?.picture, right: this.eyes.get("right")?.picture };
   }
 
-  /** Opens the streams that are needed, and closes others. */
+  /** Opens the streams needed, and closes others. */
   private reopen(): void {
     for (const eye of this.eyes.values()) eye.close();
     this.eyes.clear();
@@ -147,7 +147,7 @@ export class SeatView {
     });
   }
 
-  /** Draws what there is at the next frame; `drawn` is called then. */
+  /** Draws at the next frame, then calls `drawn`. */
   private draw(drawn: () => void = () => {}): void {
     if (this.xr) return this.xr.nextFrame(drawn);
     if (!this.drawing) {
@@ -157,10 +157,10 @@ export class SeatView {
         drawPictures(this.canvas, this.shownWay, this.pictures());
       });
     }
-    requestAnimationFrame(drawn); // after the drawing, since it came later
+    requestAnimationFrame(drawn); // after drawing, since it was requested later
   }
 
-  /** Width to ask for, in steps, so that it is not asked again for each pixel. */
+  /** Width to request, in steps, to limit the number of requests. */
   private width(): number {
     if (this.xr) return widest;
     const across = this.shownWay === "side by side" ? 2 : 1;
@@ -175,7 +175,7 @@ export class SeatView {
     this.canvas.width = w;
     this.canvas.height = h;
     for (const eye of this.eyes.values()) eye.setWidth(this.width());
-    // At once, as a canvas of another size is empty.
+    // At once, since resizing clears a canvas.
     drawPictures(this.canvas, this.shownWay, this.pictures());
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The time of the wall clock, finer than the millisecond of Date.now().
+// Wall time with a finer resolution than the millisecond of Date.now().
 
-/** More than the two clocks differ by, unless the machine slept or its clock was set [ms]. */
+/** A larger difference of the clocks means that the machine slept or its clock was set [ms]. */
 const stepped = 5;
 
 /** Wall time from a fine clock, which may stop while the machine sleeps, corrected by a coarse clock. */

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who has the head, in a sentence, and which tasks read what a driver sends. Pure.
+// Which task has the head, as a sentence, and which tasks read the driver's outputs. Pure.
 import { moduleOf } from "../graph/structure";
 import { mayDrive, type DriveOutput, type GraphState, type Session } from "../server";
 
 /**
- * The task for which a driver's output is meant: that of the module that reads it.
+ * The task of the module that reads a driver's output.
  *
  * @param web  name of the module that serves the page.
- * @returns  its number; 0: nothing reads it, or what does has no mode.
+ * @returns  its number; 0: no reader, or one without a mode.
  */
 export function taskOf(state: GraphState, web: string, output: DriveOutput): number {
   for (const { to } of state.links.filter(({ from }) => from === `${web}.${output}`)) {
@@ -21,7 +21,7 @@ export function taskOf(state: GraphState, web: string, output: DriveOutput): num
 export interface Situation {
   readonly session: Session | undefined;
   readonly seat: "free" | "waiting" | "held" | "lost";
-  /** Where the seat was lost: why. */
+  /** Why the seat was lost. */
   readonly lost: string;
   /** The page is too slow to drive. */
   readonly slow: boolean;
@@ -29,13 +29,13 @@ export interface Situation {
   readonly decides: boolean;
   /** Names of the tasks in focus. */
   readonly focus: readonly string[];
-  /** Name of the task for which this page bids; empty: none. */
+  /** Task for which this page bids; empty: none. */
   readonly bid: string;
-  /** That bid is so new that it may be on its way. */
+  /** The bid is so new that it may be in transit. */
   readonly fresh: boolean;
 }
 
-/** Who has the head. */
+/** A sentence on which task has the head. */
 export function whoText(now: Situation): string {
   const { session, seat, focus, bid } = now;
   if (!session) return "";

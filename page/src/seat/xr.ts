@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Telepresence in a headset: each eye sees what the robot's eye sees, where the robot looked then.
+// Telepresence in a headset: each eye sees the robot's eye's image, in the direction of its exposure.
 import {
   CanvasTexture,
   Group,
@@ -15,25 +15,25 @@ import {
 import type { Picture, Side } from "./eyes";
 import { anglesOfHeadset, since, type Angles } from "./orientation";
 
-/** How far the images are [m]; their size is as the camera's focal length says. */
+/** Distance of the images [m]; their size follows from the camera's focal length. */
 const distance = 4;
 
-/** Between slow frames the last orientation is said again each so many ms … */
+/** Between slow frames the last orientation is repeated at this period [ms] … */
 const period = 40;
-/** … for so long [ms]: then something is wrong with the headset. */
+/** … for this time [ms]; later the headset has failed. */
 const patience = 1000;
 
 export interface XrOptions {
   /** Focal length of the cameras [px of the sensor]. */
   readonly focal: number;
-  /** How the headset is turned since it was zeroed, each frame. */
+  /** Called each frame with the headset's orientation relative to its zero. */
   turned(angles: Angles): void;
-  /** Where the robot looked at a time [ns]; undefined: not known. */
+  /** The robot's orientation at a time [ns]; undefined: unknown. */
   gazeAt(time: bigint): Angles | undefined;
   ended(): void;
 }
 
-/** An eye's image on a plane that this eye alone sees. */
+/** An eye's image on a plane visible only to this eye. */
 class Quad {
   private readonly canvas = document.createElement("canvas");
   private texture?: CanvasTexture;
@@ -41,7 +41,7 @@ class Quad {
   readonly mesh = new Mesh(new PlaneGeometry(1, 1), this.material);
   picture?: Picture;
 
-  /** @param layer  1: the left eye's, 2: the right eye's, as three.js has them. */
+  /** @param layer  of three.js, 1: left eye, 2: right eye. */
   constructor(layer: number) {
     this.mesh.layers.set(layer);
     this.mesh.visible = false;
@@ -99,10 +99,10 @@ export class XrView {
     this.scene.add(this.gaze);
   }
 
-  /** Errors: what the browser says, where there is no headset or it may not be used. */
+  /** Errors: from the browser, without a headset or permission. */
   static async enter(options: XrOptions): Promise<XrView> {
     const xr = navigator.xr;
-    if (!xr) throw new Error("This browser has no WebXR. A headset's own browser has.");
+    if (!xr) throw new Error("This browser has no WebXR. Use the headset's browser.");
     const session = await xr.requestSession("immersive-vr");
     const view = new XrView(session, options);
     const { renderer } = view;
@@ -118,12 +118,12 @@ export class XrView {
     this.quads[side].show(picture, this.options.focal);
   }
 
-  /** Where the headset looks now is straight ahead. */
+  /** Makes the current orientation straight ahead. */
   zero(): void {
     this.zeroed = undefined;
   }
 
-  /** Calls back when what is shown now has been drawn. */
+  /** Calls back when the current images have been drawn. */
   nextFrame(drawn: () => void): void {
     this.waiting.push(drawn);
   }
@@ -145,7 +145,7 @@ export class XrView {
       const { picture } = this.quads.left.picture ? this.quads.left : this.quads.right;
       const gaze = (picture && this.options.gazeAt(picture.time)) ?? turned;
       this.gaze.position.set(position.x, position.y, position.z);
-      // Body axes to those of WebXR: left is -x, forward is -z; angles are about fixed axes.
+      // Body axes to WebXR axes: left is -x, forward is -z; angles are about fixed axes.
       const { roll, pitch, yaw } = this.zeroed;
       this.gaze.rotation.set(-(pitch + gaze.pitch), yaw + gaze.yaw, -(roll + gaze.roll));
     }

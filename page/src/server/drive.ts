@@ -4,7 +4,7 @@ import { Signal } from "./signal";
 import { Socket } from "./socket";
 import type { DriveOutput } from "./types";
 
-/** The `src` of what a driver sends (W12). */
+/** The `src` of a driver's messages (W12). */
 export const driveSource: Record<DriveOutput, number> = {
   stick: 1,
   rotation: 2,
@@ -24,20 +24,20 @@ const beat = writeMessage({
 });
 
 /**
- * The driver's seat. While it is open, the server hears from it each 50 ms, so that what was sent
- * last counts on (W13); it stops with the page, or with close().
+ * The driver's seat. While open, it sends a sign of life each 50 ms, so that the last commands stay
+ * valid (W13); this ends with the page, or with close().
  */
 export class Drive {
   private readonly statuses = new Signal<DriveStatus>({ status: "connecting" });
   private readonly refusals = new Signal<string>();
   readonly onStatus = this.statuses.on;
-  /** Why something that was sent is not done. */
+  /** Why a command was refused. */
   readonly onRefusal = this.refusals.on;
   private readonly socket: Socket;
   private readonly timer: number;
   private seq = 0n;
 
-  /** @param take  take the seat from whoever has it. */
+  /** @param take  take the seat from another page. */
   constructor(take: boolean) {
     this.socket = new Socket(() => (take ? "/drive?take=1" : "/drive"), {
       open: () => this.statuses.set({ status: "driving" }),
@@ -45,7 +45,7 @@ export class Drive {
       lost: (code, reason, retry) => {
         if (retry !== null) return this.statuses.set({ status: "connecting" });
         const isTaken = code === 4409;
-        const closed = `The server has closed it: ${reason || String(code)}.`;
+        const closed = `Closed by the server: ${reason || String(code)}.`;
         this.statuses.set({ status: "closed", why: isTaken ? "Somebody else drives." : closed });
         this.close();
       },

@@ -6,7 +6,7 @@ import { Socket } from "./socket";
 import { Stream, type StreamOptions } from "./stream";
 import type { Connection, GraphState, LogLine, Recording, Session } from "./types";
 
-/** A command that was not done; `rows` say what is wrong. */
+/** A failed command; `rows` are the error. */
 export class CommandError extends Error {
   constructor(readonly rows: readonly string[]) {
     super(rows.join("\n"));
@@ -30,7 +30,7 @@ export class Server {
   readonly onState = this.states.on;
   readonly onSession = this.sessions.on;
   readonly onConnection = this.connections.on;
-  /** Each line of the log as it comes (G46); those before are in `log`. */
+  /** New lines of the log (G46); earlier ones are in `log`. */
   readonly onLog = this.lines.on;
   private readonly waiting = new Map<bigint, Waiting>(); // by the number of the command
   private asked = 0n; // over this connection
@@ -48,12 +48,12 @@ export class Server {
       lost: (code, reason, retry) => {
         this.connections.set({ status: "lost", why: whyLost(code, reason), retry });
         const { session } = this;
-        if (session) this.sessions.set({ ...session, stopped: null }); // it is not known any more
+        if (session) this.sessions.set({ ...session, stopped: null }); // unknown now
         const lost = [...this.waiting.values()];
         this.waiting.clear();
         for (const each of lost) {
           each.reject(
-            new CommandError(["The connection was lost; it is not known if it was done."]),
+            new CommandError(["The connection was lost; the command may not have been executed."]),
           );
         }
       },
@@ -87,12 +87,12 @@ export class Server {
    * Sends commands, a row each (W7).
    *
    * @returns  the rows after `ok`.
-   * Errors: CommandError with the rows of what is wrong.
+   * Errors: CommandError with the rows of the error.
    */
   command(text: string): Promise<string[]> {
     return new Promise((resolve, reject) => {
       if (this.socket.send(text)) this.waiting.set(this.asked++, { resolve, reject });
-      else reject(new CommandError(["There is no connection to the server."]));
+      else reject(new CommandError(["No connection to the server."]));
     });
   }
 
@@ -106,14 +106,15 @@ export class Server {
     return new Drive(options.take ?? false);
   }
 
-  /** The recordings that the server keeps (W14). */
+  /** The recordings on the server (W14). */
   async recordings(): Promise<Recording[]> {
     const response = await fetch("/recordings");
-    if (!response.ok) throw new Error(`The server gives no recordings: ${response.status}.`);
+    if (!response.ok)
+      throw new Error(`The server refuses the list of recordings: ${response.status}.`);
     return (await response.json()) as Recording[];
   }
 
-  /** Connects at once, where it would have waited. */
+  /** Connects at once instead of waiting. */
   reconnect(): void {
     this.socket.retry();
   }
@@ -142,7 +143,7 @@ export class Server {
 }
 
 function whyLost(code: number, reason: string): string {
-  if (code === 1000) return "The graph has ended. Start it again, then open the URL it prints.";
+  if (code === 1000) return "The graph has ended. Restart it, then open the URL that it prints.";
   const detail = reason && ` (${reason})`;
-  return `No connection to the server${detail}: whether the robot is stopped is not known. If the graph was started again, open the URL that it prints.`;
+  return `No connection to the server${detail}: it is unknown whether the robot is stopped. If the graph was restarted, open the URL that it prints.`;
 }

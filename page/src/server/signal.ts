@@ -2,7 +2,7 @@
 
 export type Unsubscribe = () => void;
 
-/** A value that others listen to: each listener hears at once, if there is a value, and on changes. */
+/** An observable value: a listener is called at once if there is a value, and on changes. */
 export class Signal<T> {
   private readonly listeners = new Set<(value: T) => void>();
 
@@ -17,19 +17,19 @@ export class Signal<T> {
     this.emit(value);
   }
 
-  /** Calls the listeners, and keeps nothing. */
+  /** Calls the listeners without storing the value. */
   emit(value: T): void {
     for (const listener of [...this.listeners]) listener(value);
   }
 
-  /** May be handed out as it is. */
+  /** Bound, so that it can be passed on. */
   readonly on = (listener: (value: T) => void): Unsubscribe => {
     this.listeners.add(listener);
     if (this.current !== undefined) listener(this.current);
     return () => this.listeners.delete(listener);
   };
 
-  /** The value, as soon as there is one. */
+  /** Resolves with the first value. */
   first(): Promise<T> {
     return new Promise((resolve) => {
       const end = this.on((value) => {

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 
-/** What a socket of this page reports. */
+/** Events of a socket. */
 export interface SocketEvents {
   open?(): void;
   text?(text: string): void;
   binary?(bytes: Uint8Array<ArrayBuffer>): void;
-  /** The socket is shut. `retry`: seconds until it is tried again; null: it is not. */
+  /** The socket is closed. `retry`: seconds until the next try; null: none. */
   lost?(code: number, reason: string, retry: number | null): void;
 }
 
-/** Close codes after which another try would end the same way (spec/page.md). */
+/** Close codes after which a retry is useless (spec/page.md). */
 const final = new Set([1000, 1007, 1008, 1009, 4404, 4409]);
 
 /**
- * A WebSocket to a path of this server that connects again, after 0.25 s, then twice as long each
- * time, up to 5 s.
+ * A WebSocket to a path of this server that reconnects, after 0.25 s, doubled up to 5 s.
  */
 export class Socket {
   private socket?: WebSocket;
@@ -22,7 +21,7 @@ export class Socket {
   private timer?: number;
   private closed = false;
 
-  /** @param path  asked for at each connection. */
+  /** @param path  called for each connection. */
   constructor(
     private readonly path: () => string,
     private readonly events: SocketEvents,
@@ -37,7 +36,7 @@ export class Socket {
     return true;
   }
 
-  /** Tries at once, where it would have waited. */
+  /** Retries at once instead of waiting. */
   retry(): void {
     if (this.closed || !this.socket || this.socket.readyState < WebSocket.CLOSING) return;
     clearTimeout(this.timer);

@@ -6,30 +6,30 @@ import { Socket } from "./socket";
 /** How a stream is sent (W9). */
 export interface StreamOptions {
   as?: "raw" | "jpeg" | "vp8";
-  /** At most so many elements in a row. */
+  /** Maximum elements in a row. */
   width?: number;
-  /** At most so many messages a second. */
+  /** Maximum rate [Hz]. */
   rate?: number;
 }
 
-/** A message, and when it came [ms since the Unix epoch]. */
+/** A message and its arrival [ms since the Unix epoch]. */
 export interface Arrival {
   readonly message: Message;
   readonly at: number;
   readonly bytes: number;
 }
 
-/** Passes the messages of an output on to its listeners. */
+/** Passes the messages of an output to listeners. */
 export class Emitter {
   protected readonly headers = new Signal<string>();
   protected readonly problems = new Signal<string>();
   private readonly consumers = new Set<(arrival: Arrival) => void | Promise<void>>();
 
-  /** Each message; the next one comes when the promises of all listeners are settled. */
+  /** Each message; the next one follows when the promises of all listeners are settled. */
   on(event: "message", listener: (arrival: Arrival) => void | Promise<void>): Unsubscribe;
-  /** The header line as it was sent, before it was scaled or encoded (W10). */
+  /** The original header line, before scaling and encoding (W10). */
   on(event: "header", listener: (line: string) => void): Unsubscribe;
-  /** A sentence that says what is wrong; empty: nothing. */
+  /** A sentence on a problem; empty: none. */
   on(event: "problem", listener: (problem: string) => void): Unsubscribe;
   on(
     event: "message" | "header" | "problem",
@@ -52,8 +52,7 @@ export class Emitter {
 }
 
 /**
- * The messages of an output. The newest only: a listener that returns a promise holds the stream
- * up until it is settled.
+ * The newest messages of an output: a promise returned by a listener pauses the stream.
  */
 export class Stream extends Emitter {
   private readonly socket: Socket;
@@ -72,7 +71,7 @@ export class Stream extends Emitter {
     });
   }
 
-  /** The last header line as it was sent. */
+  /** The last original header line. */
   get header(): string | undefined {
     return this.headers.value;
   }
@@ -83,7 +82,7 @@ export class Stream extends Emitter {
     this.socket.send(`width=${width}`);
   }
 
-  /** Starts over: with the last message, and of video with a key frame. */
+  /** Restarts with the last message; video restarts with a key frame. */
   restart(): void {
     this.socket.reopen();
   }
@@ -125,6 +124,6 @@ function problemOf(port: string, code: number, reason: string, retry: number | n
   if (code === 4404) return reason || `There is no output ${port}.`;
   if (code === 1000) return "The graph has ended.";
   return retry === null
-    ? `The server has closed this stream: ${reason || `code ${code}`}.`
-    : "The stream is interrupted; it is being opened again.";
+    ? `The server closed this stream: ${reason || `code ${code}`}.`
+    : "The stream is interrupted; reconnecting.";
 }

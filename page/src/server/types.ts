@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the server says of the graph and the session, as far as the page reads it: JSON of G45
+// The state of the graph and the session from the server, as far as used by the page: JSON of G45
 // (spec/graph.md) and W6 (spec/page.md).
 
 export type ModuleStatus =
@@ -11,7 +11,7 @@ export type Percentiles = readonly [number, number, number];
 export interface GraphModule {
   readonly name: string;
   readonly program: string;
-  /** The included graph that it is of; empty: the file itself. */
+  /** The included graph to which it belongs; empty: the file itself. */
   readonly group: string;
   readonly pid: number;
   readonly status: ModuleStatus;
@@ -24,7 +24,7 @@ export interface GraphModule {
   readonly memory: number;
   readonly mode: string;
   readonly modes: readonly string[];
-  /** Whose focus it obeys; empty: none. */
+  /** The workspace whose focus it obeys; empty: none. */
   readonly workspace: string;
   readonly in_focus: boolean;
   readonly in_workspace: boolean;
@@ -34,7 +34,7 @@ export interface GraphModule {
 export interface GraphLink {
   readonly from: string;
   readonly to: string;
-  /** Empty, or why nothing can go over it. */
+  /** Why it is not connected; empty if it is. */
   readonly status: string;
   readonly keep: string | number;
   readonly rate: number;
@@ -71,7 +71,7 @@ export interface GraphState {
   /** [s] */
   readonly uptime: number;
   readonly status: "running" | "stopping";
-  /** The mode in focus, by the workspace that decides on it. */
+  /** The mode in focus, by workspace. */
   readonly focus: Readonly<Record<string, Focus | null>>;
   readonly modules: readonly GraphModule[];
   readonly links: readonly GraphLink[];
@@ -92,13 +92,13 @@ export interface RecordingState {
   readonly streams: readonly string[];
 }
 
-/** What a session may: each right includes those before it. */
+/** Rights of a session; each includes those before it. */
 export type Right = "view" | "drive" | "operate";
 
 export interface Session {
   readonly right: Right;
   readonly driver: "other" | null;
-  /** null: the graph has no workspace, it does not say, or there is no connection. */
+  /** null: no workspace, it is silent, or no connection. */
   readonly stopped: boolean | null;
   readonly recording: RecordingState | null;
   readonly drives: readonly DriveOutput[];
@@ -124,9 +124,9 @@ export interface Recording {
   readonly streams: readonly string[];
 }
 
-/** How the page and the server are joined. */
+/** The connection to the server. */
 export type Connection =
   | { readonly status: "connecting" }
   | { readonly status: "open" }
-  /** `retry`: seconds until it is tried again; null: not again unless asked. */
+  /** `retry`: seconds until the next try; null: only on request. */
   | { readonly status: "lost"; readonly why: string; readonly retry: number | null };

@@ -7,17 +7,17 @@ import type { PanelArgs, PanelHost } from "./panel";
 import { splitter } from "./splitter";
 
 export interface BoardHost extends Pick<PanelHost, "server" | "say"> {
-  /** The layout has changed by what a person or a panel did. */
+  /** A person or a panel has changed the layout. */
   changed(): void;
 }
 
-/** Where a dragged panel would go: to which side of which panel. */
+/** The drop target of a dragged panel: a side of a panel. */
 interface Target {
   readonly place: Place;
   readonly side: Direction;
 }
 
-/** Where the half of a panel on each side is within it. */
+/** Insets of the half of a panel at each side. */
 const halves = { left: "0 50% 0 0", right: "0 0 0 50%", up: "0 0 50%", down: "50% 0 0" };
 
 export class Board {
@@ -31,7 +31,7 @@ export class Board {
     return this.layout;
   }
 
-  /** Shows a layout; panels that it shares with the one before go on. */
+  /** Shows a layout; panels shared with the previous one continue. */
   show(layout: Layout): void {
     const former = [...this.frames.keys()];
     for (const column of layout) {
@@ -48,7 +48,7 @@ export class Board {
     this.render();
   }
 
-  /** Opens a panel in the column with the most room for it, or goes to the one that is there. */
+  /** Opens a panel in the column with the most room, or goes to the open one. */
   open(args: PanelArgs): void {
     const there = [...this.frames.keys()].find((place) => sameArgs(place.args, args));
     if (there) return this.frames.get(there)?.focus();
@@ -59,7 +59,7 @@ export class Board {
     this.finish(place);
   }
 
-  /** The column whose panels have the most room each, the last one of several. */
+  /** The column whose panels have the most room each; of several the last. */
   private roomiest(): Column {
     const room = (column: Column) => column.share / (column.places.length + 1);
     return this.layout.reduceRight((best, column) => (room(column) > room(best) ? column : best));
@@ -81,7 +81,7 @@ export class Board {
     this.element.focus();
   }
 
-  /** Takes a panel out of its column, and the column out if it was the only one. */
+  /** Removes a panel from its column, and an empty column. */
   private take(place: Place): void {
     const column = this.columnOf(place);
     column.places.splice(column.places.indexOf(place), 1);
@@ -183,7 +183,7 @@ export class Board {
     return this.element.clientWidth < 700;
   }
 
-  /** Shows what has changed, and says so. */
+  /** Shows and reports a change. */
   private finish(focus?: Place): void {
     this.render();
     this.host.changed();
@@ -234,7 +234,7 @@ export class Board {
     this.element.classList.toggle("has-enlarged", isLarge);
   }
 
-  /** Elements that share room as `those` do, and what moves their limits between them. */
+  /** Elements with the shares of `those`, and splitters between them. */
   private split(
     those: readonly { share: number }[],
     elements: readonly HTMLElement[],

@@ -3,7 +3,7 @@ import type { GraphState, Session } from "../server";
 import type { Layout } from "./layout";
 import type { PanelArgs } from "./panel";
 
-/** The two eyes: outputs left and right of a module, such that no other one like it feeds it. */
+/** The two eyes: outputs left and right of a module that has no such inputs. */
 function eyesOf(state: GraphState): string[] {
   const outputs = new Set(state.links.map((link) => link.from));
   const pairs = state.modules
@@ -18,8 +18,7 @@ function eyesOf(state: GraphState): string[] {
 }
 
 /**
- * Both eyes, the graph and the seat, as far as there are any, in so many columns as the page has
- * room for.
+ * Both eyes, the graph and the seat, if present, in as many columns as fit the page.
  *
  * @param width  of the page [px].
  */

@@ -5,14 +5,14 @@ import { panelKinds, type Panel, type PanelHost } from "./panel";
 
 export type Direction = "left" | "right" | "up" | "down";
 
-/** What a person may do to a panel as a whole. */
+/** A person's actions on a whole panel. */
 export interface FrameActions {
   move(direction: Direction): void;
-  /** Gives the panel more room of its column, or of the page where it is alone. */
+  /** Enlarges the panel in its column, or in the page if it is alone there. */
   grow(factor: number): void;
   enlarge(): void;
   close(): void;
-  /** A pointer takes the panel by its bar. */
+  /** Drags the panel by its bar. */
   drag(event: PointerEvent): void;
 }
 
@@ -52,7 +52,7 @@ export class Frame {
       ...host,
       setTitle: (t) => this.setTitle(t),
       tools: this.tools,
-    }) ?? { element: h("p.empty.muted", `There is no panel “${place.args.kind}”.`) };
+    }) ?? { element: h("p.empty.muted", `Unknown panel “${place.args.kind}”.`) };
     body.append(this.panel.element);
   }
 

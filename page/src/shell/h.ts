@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 type Child = Node | string | number | null | undefined | false;
-/** A child, or several; what is null, undefined or false is left out. */
+/** A child, or several; null, undefined and false are skipped. */
 export type Children = Child | readonly (Child | readonly Child[])[];
 
 type Handlers = {
@@ -11,9 +11,9 @@ type Attributes = Handlers & { [name: string]: unknown };
 type Parts = readonly (Attributes | Children)[];
 
 /**
- * An element: h("button.small", { onclick: stop, "aria-label": "Stop" }, "Stop"), with its classes
- * after its tag, then its attributes, if it has any, and what it holds. Functions become listeners,
- * true an empty attribute; false, null and undefined are dropped.
+ * Makes an element: h("button.small", { onclick: stop, "aria-label": "Stop" }, "Stop"), from its tag
+ * with classes, optional attributes, and children. Functions become listeners, true an empty
+ * attribute; false, null and undefined are skipped.
  */
 export function h<K extends keyof HTMLElementTagNameMap>(
   tag: K | `${K}.${string}`,
@@ -23,7 +23,7 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return complete(document.createElement(name as K), classes, parts);
 }
 
-/** As h(), of SVG. */
+/** As h(), for SVG. */
 export function svg<K extends keyof SVGElementTagNameMap>(
   tag: K | `${K}.${string}`,
   ...parts: Parts
@@ -33,7 +33,7 @@ export function svg<K extends keyof SVGElementTagNameMap>(
   return complete(element, classes, parts);
 }
 
-/** A button that does something when it is pressed. */
+/** A button with an action. */
 export function button(
   text: Children,
   onclick: (event: MouseEvent) => void,
@@ -42,7 +42,7 @@ export function button(
   return h("button", { ...attributes, onclick }, text);
 }
 
-/** The head of an arrow, as a marker of so many pixels; `refX`: where its line ends. */
+/** An arrow head as a marker of a size [px]; `refX`: where its line ends. */
 export function arrowHead(id: string, size: number, attributes: Attributes): SVGDefsElement {
   const middle = size / 2;
   const box = { id, viewBox: `0 0 ${size} ${size}`, refY: middle, ...attributes };
@@ -50,7 +50,7 @@ export function arrowHead(id: string, size: number, attributes: Attributes): SVG
   return svg("defs", svg("marker", box, shape));
 }
 
-/** Replaces what an element holds. */
+/** Replaces the children of an element. */
 export function fill(element: Element, ...children: readonly Children[]): void {
   const shown = children
     .flat(2)
@@ -58,7 +58,7 @@ export function fill(element: Element, ...children: readonly Children[]): void {
   element.replaceChildren(...(shown as (Node | string)[]));
 }
 
-/** Sets a text where it is another one, so that nothing is drawn, or read out, needlessly. */
+/** Sets a text only if it differs, to avoid needless drawing and reading aloud. */
 export function setText(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }

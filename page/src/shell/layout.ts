@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which panels are where: columns of panels, each with a share of the room; and its form in the URL.
+// The layout: columns of panels with shares of the room; and its form in the URL.
 import type { PanelArgs } from "./panel";
 
 export interface Place {
@@ -21,7 +21,7 @@ const open = (text: string) => decodeURIComponent(text.replace(/\+/g, "%20"));
 const shareText = (share: number) => (share === 1 ? "" : `*${Number(share.toFixed(2))}`);
 
 /**
- * The layout as the part of a URL after #: columns parted by "|", panels by ";", as in
+ * The layout as the fragment of a URL: columns separated by "|", panels by ";", as in
  * `stream,port=head_eyes.left;stream,port=depth.depth*0.5|graph*2`. A column's share follows
  * "**" at its end.
  */
@@ -41,7 +41,7 @@ export function layoutText(layout: Layout): string {
     .join("|");
 }
 
-/** The layout of such a text; what makes no sense is dropped. */
+/** Parses such a text; invalid parts are dropped. */
 export function layoutOf(text: string): Layout {
   const layout: Layout = [];
   for (const columnText of text.replace(/^#/, "").split("|")) {

@@ -10,7 +10,7 @@ export interface Choice {
   readonly args: PanelArgs;
 }
 
-/** Panels that are there for any graph; src/page.ts fills it. */
+/** Panels for any graph; filled by src/page.ts. */
 export const standardPanels: Choice[] = [];
 
 function modulesOf(state: GraphState | undefined): Choice[] {
@@ -46,7 +46,7 @@ export function opener(server: Server, open: (args: PanelArgs) => void): HTMLDia
       found.push({ label: typed, detail: "stream", args: { kind: "stream", port: typed } });
     }
     fill(list, found.map(item));
-    if (found.length === 0) fill(list, h("li.muted", "Nothing has that name."));
+    if (found.length === 0) fill(list, h("li.muted", "No match."));
   };
   const search = h("input", {
     type: "search",

@@ -1,35 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Server } from "../server";
 
-/** What a panel shows: its kind, and what that kind needs, such as `port`. It is kept in the URL. */
+/** A panel's kind and its arguments, such as `port`; stored in the URL. */
 export interface PanelArgs {
   readonly kind: string;
   readonly [key: string]: string | undefined;
 }
 
-/** What the shell gives a panel. */
+/** Services of the shell for a panel. */
 export interface PanelHost {
   readonly server: Server;
-  /** Opens a panel, or goes to the one that shows just this. */
+  /** Opens a panel, or goes to the one with these arguments. */
   openPanel(args: PanelArgs): void;
   /** Title of this panel. */
   setTitle(title: string): void;
-  /** Changes what this panel shows, in the URL too; it is not made again. */
+  /** Changes this panel's arguments, also in the URL, without recreating it. */
   setArgs(args: PanelArgs): void;
-  /** Says a sentence to the person, in the status line and to screen readers. */
+  /** Shows a sentence in the status line, also for screen readers. */
   say(sentence: string): void;
-  /** Room for buttons at the right of the panel's title. */
+  /** Place for buttons, to the right of the panel's title. */
   readonly tools: HTMLElement;
 }
 
-/** A panel as its kind makes it. */
+/** A panel, made by its kind. */
 export interface Panel {
   readonly element: HTMLElement;
-  /** Ends what the panel has begun: streams, timers. */
+  /** Ends the panel's streams and timers. */
   close?(): void;
 }
 
 export type PanelKind = (args: PanelArgs, host: PanelHost) => Panel;
 
-/** Who makes panels of a kind. src/page.ts fills it. */
+/** Makes panels, by kind; filled by src/page.ts. */
 export const panelKinds: Record<string, PanelKind> = {};

@@ -14,13 +14,13 @@ import { opener } from "./opener";
 import { panelKinds, type PanelArgs } from "./panel";
 import { themeButton } from "./theme";
 
-/** How long a sentence is in the status line [ms]. */
+/** How long a sentence stays in the status line [ms]. */
 const sentenceLife = 10_000;
 
 /** The page: header, panels, status line. */
 export class Shell {
   readonly element: HTMLElement;
-  /** Room in the header for what is always visible: the stop button. */
+  /** Place in the header for the stop button, always visible. */
   readonly headerSlot = h("div.header-slot.row");
   private readonly graphName = h("h1", "Hypercolumn");
   private readonly connection = h("span.connection", { role: "status" });
@@ -68,10 +68,10 @@ export class Shell {
 
   openPanel(args: PanelArgs): void {
     if (panelKinds[args.kind]) this.board.open(args);
-    else this.say(`There is no panel ${args.kind}.`);
+    else this.say(`Unknown panel ${args.kind}.`);
   }
 
-  /** Says a sentence in the status line, for as long as it takes to read it. */
+  /** Shows a sentence in the status line for a while. */
   say(sentence: string): void {
     this.status.textContent = sentence;
     window.clearTimeout(this.silence);

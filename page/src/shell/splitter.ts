@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 import { h } from "./h";
 
-/** Two neighbours that share room; shares are relative. */
+/** Two neighbours with relative shares of the room. */
 export interface Neighbours {
   readonly first: { share: number };
   readonly second: { share: number };
-  /** Puts the shares on the screen. */
+  /** Applies the shares to the screen. */
   apply(): void;
-  /** After the person is done. */
+  /** Called when the person is done. */
   done(): void;
 }
 
-const least = 0.1; // part of the room that both have
+const least = 0.1; // part of their common room
 
 /** The bar between two columns ("vertical") or panels ("horizontal"), for pointer and arrow keys. */
 export function splitter(

@@ -17,7 +17,7 @@ function apply(theme: Theme): void {
   document.dispatchEvent(new Event("themechange"));
 }
 
-/** A button that goes from the system's theme to light, to dark, and round. */
+/** A button that cycles through the system's theme, light and dark. */
 export function themeButton(): HTMLButtonElement {
   const button = h("button.icon.theme-button", { onclick: () => show(following()) });
   const following = () => themes[(themes.indexOf(stored()) + 1) % themes.length]!;
@@ -33,7 +33,7 @@ export function themeButton(): HTMLButtonElement {
   return button;
 }
 
-/** Calls at once and after each change of the theme; what draws on a canvas asks for colours then. */
+/** Calls at once and after each change of the theme, to fetch the colours for canvases. */
 export function onTheme(listener: () => void): () => void {
   document.addEventListener("themechange", listener);
   listener();

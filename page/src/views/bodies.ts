@@ -16,7 +16,7 @@ import {
   type Object3D,
 } from "three";
 
-/** Squares of half a metre on the ground, each side a line of its own so that none is too long. */
+/** A grid of 0.5 m on the ground, of short lines. */
 export function floor(): LineSegments<BufferGeometry, LineBasicMaterial> {
   const ends: number[] = [];
   for (let i = -12; i <= 12; ++i) {
@@ -29,7 +29,7 @@ export function floor(): LineSegments<BufferGeometry, LineBasicMaterial> {
   return new LineSegments(geometry, new LineBasicMaterial());
 }
 
-/** The head, drawn simply: x forward, y left, z up. */
+/** A simple head: x forward, y left, z up. */
 export function headBody(): Object3D {
   const material = new MeshLambertMaterial({ color: 0x8c9aa8, transparent: true, opacity: 0.85 });
   const skull = new Mesh(new BoxGeometry(0.09, 0.17, 0.13), material);
@@ -39,7 +39,7 @@ export function headBody(): Object3D {
   return new Group().add(skull, neck);
 }
 
-/** An eye: a ball, and what it sees as a pyramid; z forward, x right, y down. */
+/** An eye: a ball with a pyramid as its field of view; z forward, x right, y down. */
 export function eyeBody(): Object3D {
   const ball = new Mesh(
     new SphereGeometry(0.022, 16, 12),
@@ -62,7 +62,7 @@ export function eyeBody(): Object3D {
   return new Group().add(ball, pyramid);
 }
 
-/** A name that always faces who looks. */
+/** A name that always faces the viewer. */
 export function labelOf(text: string): Object3D {
   const canvas = document.createElement("canvas");
   const context = canvas.getContext("2d")!;

@@ -12,7 +12,7 @@ export class ConsoleView implements View {
   private readonly lines = h("div.console.mono", {
     role: "log",
     tabindex: 0,
-    "aria-label": "Lines as they came",
+    "aria-label": "Lines",
   });
   readonly element = this.lines;
   private isPaused = false;
@@ -22,7 +22,7 @@ export class ConsoleView implements View {
 
   show(arrival: Arrival): void {
     const { time } = arrival.message.header;
-    // A recording that is wound back starts over.
+    // A recording was rewound: start over.
     if (this.host.source.isReplay && time < this.lastTime) this.lines.replaceChildren();
     this.lastTime = time;
     const at = new Date(time > 0n ? Number(time / 1_000_000n) : arrival.at);

@@ -32,7 +32,7 @@ export function networkOf(message: Message): Network {
     const [from, to] = [numbers[at]!, numbers[at + 1]!];
     nodes = Math.max(nodes, from + 1, to + 1);
     const weights = weightsAt(at + 2, at + components);
-    // A row to itself with weight 0 says that there is such a node.
+    // A row with only zero weights declares a node.
     const isNode = from === to && weights.length > 0 && weights.every((weight) => weight === 0);
     if (!isNode) edges.push({ from, to, weights });
   }

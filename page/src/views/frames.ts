@@ -6,7 +6,7 @@ export interface Frame {
   /** Its number in headers; 0: none. */
   readonly coord: number;
   readonly parent: string;
-  /** Where it is fixed: origin in the parent [m], and rotation as a quaternion x, y, z, w. */
+  /** If fixed: origin in the parent [m], and rotation as a quaternion x, y, z, w. */
   readonly fixed?: {
     readonly translation: readonly [number, number, number];
     readonly quaternion: readonly [number, number, number, number];
@@ -15,7 +15,7 @@ export interface Frame {
   readonly movedBy?: string;
 }
 
-/** The frames of the text of G31, parents before children. */
+/** The frames in the text of G31, parents before children. */
 export function framesOf(text: string): Frame[] {
   const frames = text.split(";").flatMap((part): Frame[] => {
     const [name, coord, parent, ...place] = part.trim().split(/ +/);
@@ -37,7 +37,7 @@ function inOrder(frames: readonly Frame[]): Frame[] {
   let left = [...frames];
   while (left.length > 0) {
     const ready = left.filter(({ parent }) => !names.has(parent) || done.has(parent));
-    if (ready.length === 0) break; // a ring, which the graph would have refused
+    if (ready.length === 0) break; // a cycle, which the graph refuses
     ready.forEach(({ name }) => done.add(name));
     ordered.push(...ready);
     left = left.filter(({ name }) => !done.has(name));

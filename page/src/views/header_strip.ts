@@ -6,20 +6,20 @@ import { fill, h } from "../shell/h";
 const meanings: Record<HeaderField, string> = {
   version: "version of the protocol",
   src: "address of the output that made the message",
-  dst: "0: follows the link; above: one port; below: everybody or a group",
-  seq: "counts up by one; a gap is a loss",
+  dst: "0: follows the link; > 0: one port; < 0: all or a group",
+  seq: "increases by one; a gap is a loss",
   ttl: "routers left to pass",
-  time: "when the sensed thing happened [ns since 1970]",
-  info: "what the elements are: type, components, scalar, encoding",
-  mode: "system mode that the sender ran in",
+  time: "time of the sensed event [ns since 1970]",
+  info: "type, components, scalar and encoding of the elements",
+  mode: "system mode of the sender",
   coord: "coordinate system of the elements",
   width: "elements in a row",
   height: "rows",
 };
 
-const period = 2; // [s] that rates are measured over
+const period = 2; // window of measured rates [s]
 
-/** The header as it is on the wire, with its fields' names; rate, latency, loss. */
+/** The header as on the wire, with field names; rate, latency, loss. */
 export class HeaderStrip {
   private readonly fields = headerFields.map((name) => {
     const value = h("span.value");
@@ -46,7 +46,7 @@ export class HeaderStrip {
   private sent?: Header;
   private drawn = 0;
 
-  /** Takes the header line as it was sent. */
+  /** Takes the original header line. */
   setLine(line: string): void {
     const words = line.trim().split(/ +/);
     this.fields.forEach(({ value }, i) => (value.textContent = words[i] ?? ""));
@@ -66,7 +66,7 @@ export class HeaderStrip {
     if (now - this.drawn > 250) this.draw();
   }
 
-  /** Shows the figures; called from time to time too, so that a rate falls when nothing comes. */
+  /** Shows the figures; also called periodically, so that the rate falls without messages. */
   draw(): void {
     this.drawn = performance.now();
     const { sent, times } = this;
@@ -84,6 +84,6 @@ export class HeaderStrip {
     fill(this.summary, ...parts.filter(Boolean).map((part) => h("span", part)));
     this.summary.title =
       "Type and size; messages a second here; time from sensing to arrival; gaps of seq: messages that " +
-      "this page did not take because a newer one was there";
+      "this page skipped for newer ones";
   }
 }

@@ -58,7 +58,7 @@ export class ImageView implements View {
 
   /** Red, green, blue [0, 255] of a pixel of the canvas. */
   private colourAt(x: number, y: number): Uint8ClampedArray {
-    // By way of a canvas of one pixel, so that the large one may stay in the memory of the GPU.
+    // Via a canvas of one pixel, so that the large one can stay in GPU memory.
     this.pixel.drawImage(this.canvas, Math.floor(x), Math.floor(y), 1, 1, 0, 0, 1, 1);
     return this.pixel.getImageData(0, 0, 1, 1).data;
   }

@@ -10,7 +10,7 @@ import { matrixView, tableView } from "./table";
 import { depthView, valuesView } from "./values";
 import type { ViewKind } from "./view";
 
-/** Ways to show streams; a name may stand twice, first for those whose usual way it is. */
+/** Ways to show streams; a name may occur twice, first for streams with it as default. */
 const viewKinds: readonly ViewKind[] = [
   depthView,
   imageView,
@@ -25,7 +25,7 @@ const viewKinds: readonly ViewKind[] = [
   tableView,
 ];
 
-/** The ways to show a stream, the usual one first. */
+/** The ways to show a stream, the default first. */
 export function kindsFor(sent: Header): ViewKind[] {
   const fitting = viewKinds.filter((kind) => kind.fits(sent));
   return fitting.filter(

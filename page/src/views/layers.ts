@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What streams put into a scene: clouds, positions, poses.
+// The contents of a scene, from streams: clouds, positions, poses.
 import {
   AxesHelper,
   BufferAttribute,
@@ -20,13 +20,13 @@ import { colour } from "../shell/theme";
 
 const trailLength = 500; // positions
 
-/** What a stream puts into the scene. */
+/** The contents of a scene from one stream. */
 export interface Layer {
   readonly object: Object3D;
   /** The type of its messages. */
   readonly type: Header["type"];
   show(message: Message): void;
-  /** What takes memory of the GPU. */
+  /** Objects in GPU memory. */
   readonly owned: readonly { dispose(): void }[];
 }
 
@@ -35,7 +35,7 @@ export function removeLayer({ object, owned }: Layer): void {
   for (const each of owned) each.dispose();
 }
 
-/** What shows messages of a header; undefined: nothing does. */
+/** A layer for messages with this header; undefined: none. */
 export function layerOf({ type }: Header): Layer | undefined {
   if (type === "vector_field") return new CloudLayer();
   if (type === "position") return new PositionsLayer();
@@ -43,7 +43,7 @@ export function layerOf({ type }: Header): Layer | undefined {
   return undefined;
 }
 
-/** Points with x, y, z [m] and, where there are six components, red, green, blue [0, 1]. */
+/** Points with x, y, z [m] and, with six components, red, green, blue [0, 1]. */
 class CloudLayer implements Layer {
   private readonly geometry = new BufferGeometry();
   private readonly material = new PointsMaterial({ size: 0.012, vertexColors: true });
@@ -72,7 +72,7 @@ class CloudLayer implements Layer {
 
 type Array3 = BufferAttribute["array"];
 
-/** Copies the points that are known; returns how many. */
+/** Copies the known points; returns their number. */
 function fillCloud(numbers: Numbers, components: number, places: Array3, colours: Array3): number {
   let to = 0;
   for (let from = 0; from + components <= numbers.length; from += components) {
@@ -87,12 +87,12 @@ function fillCloud(numbers: Numbers, components: number, places: Array3, colours
   return to / 3;
 }
 
-/** Linear light of an sRGB component, about. */
+/** Approximate linear light of an sRGB component. */
 function linear(value: number): number {
   return value * value;
 }
 
-/** Positions as balls, and the way of a single one as a line. */
+/** Positions as balls, and the trail of a single one as a line. */
 class PositionsLayer implements Layer {
   readonly type = "position";
   readonly object = new Group();
@@ -148,7 +148,7 @@ class PoseLayer implements Layer {
   }
 }
 
-/** Places an object by a transformation 4 × 4, row by row. */
+/** Sets an object's pose to a 4 × 4 transformation, row by row. */
 export function setMatrix(object: Object3D, message: Message): void {
   const { width, height } = message.header;
   if (message.header.type !== "transformation" || width !== 4 || height !== 4) return;

@@ -69,7 +69,7 @@ export class NetworkView implements View {
   }
 }
 
-/** Largest weight of an edge, 1 where it has none. */
+/** Largest weight of an edge; 1 if it has none. */
 function sizeOf({ weights }: Edge): number {
   return weights.length === 0 ? 1 : Math.max(...weights.map(Math.abs));
 }
@@ -93,7 +93,7 @@ function edgeLine(
     const [x, y] = [from.x * (1 + nodeSize / radius), from.y * (1 + nodeSize / radius)];
     return svg("circle", { ...look, "marker-end": undefined, cx: x, cy: y, r }, title);
   }
-  // Bent a little, so that an edge and the one back are two lines, and ended at the node's rim.
+  // Slightly curved, so that opposite edges are separate, and ended at the node's rim.
   const length = Math.hypot(to.x - from.x, to.y - from.y);
   const bend = {
     x: (from.x + to.x) / 2 - (to.y - from.y) * 0.12,

@@ -4,14 +4,14 @@ import type { Arrival } from "../server";
 const minutes = 10;
 
 /**
- * The messages of the last ten minutes, as many as memory allows: where there are too many, every
- * second one of the older half goes, so that the past becomes coarser, not shorter.
+ * The messages of the last ten minutes within a memory limit: beyond it, every second one of the
+ * older half is dropped, so that the past becomes coarser, not shorter.
  */
 export class Past {
   private entries: Arrival[] = [];
   private bytes = 0;
 
-  /** @param mostBytes  of the messages together. */
+  /** @param mostBytes  of all messages. */
   constructor(private readonly mostBytes = 32 * 2 ** 20) {}
 
   get length(): number {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns messages of images into pictures that a canvas draws.
+// Decodes image messages for a canvas.
 import { Coord, numbersOf, type Header, type Message } from "../mtp";
 
-/** A decoded image; close() gives its memory back. */
+/** A decoded image; close() releases its memory. */
 export type Picture = ImageBitmap | VideoFrame;
 
-/** The encoding of images to ask the server for: VP8 where the browser decodes it. */
+/** The encoding to request for images: VP8 if the browser decodes it. */
 export async function bestEncoding(): Promise<"vp8" | "jpeg"> {
   if (typeof VideoDecoder === "undefined") return "jpeg";
   try {
@@ -19,7 +19,7 @@ export async function bestEncoding(): Promise<"vp8" | "jpeg"> {
 const vp8: VideoDecoderConfig = {
   codec: "vp8",
   optimizeForLatency: true,
-  // VP8's own matrix (RFC 6386, 9.2); what browsers assume differs.
+  // The matrix of VP8 (RFC 6386, 9.2); browsers assume another.
   colorSpace: {
     primaries: "bt709",
     transfer: "iec61966-2-1",
@@ -32,7 +32,7 @@ export function isImage(header: Header): boolean {
   return header.type === "rgb_image" || header.type === "intensity_image";
 }
 
-/** Whether a message is a frame of VP8 of an image (W9). */
+/** Whether a message is a VP8 frame of an image (W9). */
 export function isVideo(message: Message, sent: Header): boolean {
   return isImage(sent) && message.header.type === "table";
 }
@@ -45,10 +45,10 @@ export class PictureDecoder {
   private count = 0;
   private restarted = -Infinity; // [ms]
 
-  /** @param restart  asks for a stream that begins with a key frame. */
+  /** @param restart  requests a key frame. */
   constructor(private readonly restart: () => void = () => {}) {}
 
-  /** The picture of a message; undefined: none can be made of it. */
+  /** Decodes a message; undefined if that is impossible. */
   async decode(message: Message, sent: Header): Promise<Picture | undefined> {
     return isVideo(message, sent)
       ? this.decodeVideo(message.elements as Uint8Array<ArrayBuffer>)
@@ -100,12 +100,12 @@ export class PictureDecoder {
   }
 }
 
-/** Greatest value of what an image holds: white. */
+/** The value of white in an image. */
 function whiteOf(header: Header): number {
   return { u8: 255, u16: 65535, u32: 2 ** 32 - 1, u64: 2 ** 64 }[header.scalar as string] ?? 1;
 }
 
-/** The picture of an image that is no video, as JPEG or not; undefined: it has no pixels. */
+/** Decodes an image, JPEG or uncompressed; undefined if empty. */
 export async function bitmapOf(message: Message): Promise<ImageBitmap | undefined> {
   if (message.header.encoding === "jpeg") {
     const blob = new Blob([message.elements as Uint8Array<ArrayBuffer>], { type: "image/jpeg" });
@@ -134,7 +134,7 @@ function pixelsOf(message: Message): ImageData | undefined {
   return new ImageData(data, width, height);
 }
 
-/** Whether the values of an image are in a unit, and so not brightness: depth, disparity. */
+/** Whether an image has measurements instead of brightness: depth, disparity. */
 export function isMeasured(header: Header): boolean {
   return (
     header.type === "intensity_image" &&

@@ -137,7 +137,7 @@ export class PlotView implements View {
     this.build();
   }
 
-  /** Makes the plot again, after its series or colours have changed. */
+  /** Rebuilds the plot after a change of its series or colours. */
   private build(): void {
     if (!this.series) return;
     this.plot?.destroy();
@@ -195,7 +195,7 @@ export class PlotView implements View {
     this.showValues(plot);
   }
 
-  /** The numbers at the cursor, else the last ones. */
+  /** Shows the numbers at the cursor, else the last ones. */
   private showValues(plot: uPlot): void {
     const index = plot.cursor.idx;
     const chosen = [...this.chosen];

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 import { h } from "../shell/h";
 
-/** A place in an image, as parts of its width and height, 0 … 1. */
+/** A position in an image, as fractions of its width and height, 0 … 1. */
 export interface Spot {
   readonly across: number;
   readonly down: number;
 }
 
-/** Pixel of the sensor at a spot; 0 is the middle of the first pixel (R44). */
+/** Sensor pixel at a spot; 0 is the centre of the first pixel (R44). */
 export function pixelAt(spot: Spot, width: number, height: number): { x: number; y: number } {
   return { x: spot.across * width - 0.5, y: spot.down * height - 0.5 };
 }
 
-/** Where in a canvas that is shown with `object-fit: contain` a pointer is; undefined: beside. */
+/** Position of a pointer in a canvas with `object-fit: contain`; undefined: outside. */
 export function spotOf(canvas: HTMLCanvasElement, x: number, y: number): Spot | undefined {
   const box = canvas.getBoundingClientRect();
   const scale = Math.min(box.width / canvas.width, box.height / canvas.height);
@@ -24,9 +24,9 @@ export function spotOf(canvas: HTMLCanvasElement, x: number, y: number): Spot | 
 }
 
 /**
- * Makes a canvas tell what is under the pointer, or at a spot that arrow keys move.
+ * Shows the value of a canvas under the pointer, or at a spot moved with the arrow keys.
  *
- * @param read  words for what is at a spot.
+ * @param read  text for a spot.
  */
 export class Probe {
   readonly output = h("output.probe.mono");

@@ -2,14 +2,14 @@
 import type { Header } from "../mtp";
 import type { Source } from "./view";
 
-const step = 64; // [px], so that small changes of a panel do not change the stream
+const step = 64; // [px], so that small changes of a panel do not restart the stream
 
 /**
- * Asks a source for no more width than an element shows, in pixels of the screen, now and when the
- * element changes its size.
+ * Requests at most the width of an element in screen pixels from a source, now and when the
+ * element's size changes.
  *
- * @param sent  header of what is shown.
- * @returns  ends it.
+ * @param sent  original header of the shown messages.
+ * @returns  a function that ends this.
  */
 export function askForWidth(
   element: HTMLElement,
@@ -34,7 +34,7 @@ export function askForWidth(
   };
 }
 
-/** Whether an element is on the screen of a page that is seen. */
+/** Whether an element is visible. */
 export class Sight {
   private isInside = true;
   private readonly observer: IntersectionObserver;
@@ -57,7 +57,7 @@ export class Sight {
     return this.isInside && document.visibilityState === "visible";
   }
 
-  /** Settled when the element is seen. */
+  /** Settled when the element is visible. */
   seen(): Promise<void> {
     if (this.isSeen) return Promise.resolve();
     return new Promise((resolve) => this.waiting.push(resolve));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Positions, poses and point clouds in space, among the frames of the graph. Loaded when needed.
+// Positions, poses and point clouds in 3D, with the frames of the graph. Loaded on demand.
 import {
   AmbientLight,
   AxesHelper,
@@ -22,9 +22,9 @@ import { layerOf, removeLayer, setMatrix, type Layer } from "./layers";
 import { Sight } from "./room";
 import type { Source, Surroundings, View, ViewHost } from "./view";
 
-const cloudWidth = 320; // elements in a row that a cloud is asked for
+const cloudWidth = 320; // requested elements in a row of a cloud
 
-/** A scene with the graph's frames, and what streams put into it. */
+/** A 3D scene with the graph's frames and the contents of streams. */
 export class Scene {
   readonly element: HTMLElement;
   private readonly renderer: WebGLRenderer;
@@ -74,7 +74,7 @@ export class Scene {
     this.ends = [() => observer.disconnect(), () => this.sight.close(), endTheme];
   }
 
-  /** Looks over the head's shoulder, as at the beginning. */
+  /** Resets the view: from behind the head. */
   look(): void {
     this.camera.position.set(-0.9, 0.7, 1.8);
     this.controls.target.set(1.5, 0, 0.9);
@@ -122,7 +122,7 @@ export class Scene {
     const coord = header.type === "transformation" ? Math.floor(header.coord / 1000) : header.coord;
     const frame = this.byCoord.get(coord);
     if (frame) return frame;
-    // A rotation that is in no frame here, as of a person's head, is shown at the robot's.
+    // A rotation without a frame in this graph, e.g. of a person's head, is shown at the robot.
     return (header.type === "rotation" && this.byCoord.get(Coord.robot)) || this.root;
   }
 
@@ -148,7 +148,7 @@ export class Scene {
     this.follow(frames.filter(({ movedBy }) => movedBy !== undefined));
   }
 
-  /** Moves frames as their outputs say. */
+  /** Moves frames by their outputs. */
   private follow(frames: readonly Frame[]): void {
     for (const port of new Set(frames.map(({ movedBy }) => movedBy!))) {
       const moved = frames.filter(({ movedBy }) => movedBy === port);
@@ -177,7 +177,7 @@ export class Scene {
     this.draw();
   }
 
-  /** Draws with the next frame of the screen, once however often it is called before. */
+  /** Draws once with the next screen frame, however often it is called. */
   private async draw(): Promise<void> {
     if (this.isWaiting) return;
     this.isWaiting = true;
@@ -222,7 +222,7 @@ export class SceneView implements View {
   }
 }
 
-/** Adds a live stream to a scene; returns what takes it out. */
+/** Adds a live stream to a scene; returns a function that removes it. */
 export function addStream(
   scene: Scene,
   surroundings: Surroundings,

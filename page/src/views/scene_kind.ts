@@ -2,7 +2,7 @@
 import type { Header } from "../mtp";
 import type { ViewKind } from "./view";
 
-/** Whether elements are metres or radians in a frame of space, not pixels or a gaze. */
+/** Whether elements are metres or radians in a spatial frame, not pixels or a gaze. */
 function isInSpace({ coord }: Header): boolean {
   return coord <= 6 || coord === 14 || (coord >= 100 && coord < 1000);
 }
@@ -22,7 +22,7 @@ export const sceneView: ViewKind = {
   },
 };
 
-/** A point cloud; the scene is the usual way to show it. */
+/** The default view of a point cloud. */
 export const cloudView: ViewKind = {
   ...sceneView,
   fits: (sent) => sent.type === "vector_field" && sceneView.fits(sent),

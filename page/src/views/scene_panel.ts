@@ -4,7 +4,7 @@ import type { GraphState } from "../server";
 import { button, fill, h, type PanelKind } from "../shell";
 import { liveSurroundings } from "./panels";
 
-/** Ports that a new scene shows: the clouds of modules that find depth. */
+/** Default ports of a new scene: the clouds of depth modules. */
 function usualPorts(state: GraphState | undefined): string[] {
   const finders = state?.modules.filter(({ program }) => /(^|\/)depth$/.test(program)) ?? [];
   return finders.map(({ name }) => `${name}.points`);
@@ -12,12 +12,12 @@ function usualPorts(state: GraphState | undefined): string[] {
 
 let lists = 0;
 
-/** Whether a scene may have something to show of it. */
+/** Whether a scene can show it. */
 function isSpatial({ type }: Output): boolean {
   return type === "" || /position|rotation|transformation|vector_field/.test(type);
 }
 
-/** Several streams in one scene: {kind: "scene", ports?}, ports joined by spaces. */
+/** Several streams in one scene: {kind: "scene", ports?}, ports separated by spaces. */
 export const scenePanel: PanelKind = (args, host) => {
   host.setTitle("Scene");
   const element = h("div.stream-panel.stack");
@@ -83,7 +83,7 @@ export const scenePanel: PanelKind = (args, host) => {
     element.append(list, scene.element);
   };
   open().catch((error: unknown) => {
-    element.append(h("p.problem", "This browser does not draw in three dimensions (WebGL)."));
+    element.append(h("p.problem", "This browser has no 3D graphics (WebGL)."));
     console.error(error);
   });
   return {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /**
- * Numbers over time, of the last ten minutes: columns that grow to a limit, then lose their oldest
- * quarter.
+ * Numbers of the last ten minutes: columns that grow to a limit, then drop their oldest quarter.
  */
 export class Series {
   private times = new Float64Array(1024); // [s since 1970]
@@ -11,7 +10,7 @@ export class Series {
 
   /**
    * @param width  numbers at a time.
-   * @param most  times that are kept at most.
+   * @param most  maximum number of times.
    */
   constructor(
     readonly width: number,
@@ -32,11 +31,11 @@ export class Series {
     return this.times[this.count - 1]!;
   }
 
-  /** Adds numbers; what is older than the last one or ten minutes before is dropped. */
+  /** Adds numbers; drops ones out of order, and old ones after ten minutes. */
   push(time: number, numbers: ArrayLike<number>): void {
     if (this.count > 0 && time <= this.lastTime) {
       if (time > this.lastTime - 1) return;
-      this.count = 0; // the source has started over
+      this.count = 0; // the source has restarted
     }
     if (this.count === this.times.length) this.makeRoom();
     this.times[this.count] = time;
@@ -44,7 +43,7 @@ export class Series {
     this.count += 1;
   }
 
-  /** The times from `from` to `to` [s], and one more at each side, and columns at them. */
+  /** The times from `from` to `to` [s] and one more on each side, with their columns. */
   window(from: number, to: number, columns: readonly number[]): Float64Array[] {
     const first = Math.max(0, this.indexOf(from) - 1);
     const last = Math.min(this.count, this.indexOf(to) + 1);
@@ -52,7 +51,7 @@ export class Series {
     return shown.map((column) => column.slice(first, last));
   }
 
-  /** Index of the first time that is not before `time`. */
+  /** Index of the first time not before `time`. */
   private indexOf(time: number): number {
     let [low, high] = [0, this.count];
     while (low < high) {

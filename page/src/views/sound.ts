@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sound as levels, as a spectrum over time, and to be heard.
+// Sound as levels and a spectrum over time, and playback.
 import { numbersOf, sampleRate, type Header } from "../mtp";
 import type { Arrival } from "../server";
 import { h, setText } from "../shell/h";
@@ -10,7 +10,7 @@ import { turbo } from "./turbo";
 import type { View, ViewKind } from "./view";
 
 const frames = 512; // sample frames of one spectrum
-const floor = -70; // [dB], shown as nothing
+const floor = -70; // [dB], shown as black
 
 export class SoundView implements View {
   readonly element: HTMLElement;
@@ -97,7 +97,7 @@ export class SoundView implements View {
     });
   }
 
-  /** Adds samples; whenever half of those of a spectrum are new, a column of the picture. */
+  /** Adds samples, and a column to the picture for each half window. */
   private add(samples: Float32Array): void {
     for (let at = 0; at < samples.length;) {
       const piece = samples.subarray(at, at + frames / 2 - this.fresh);

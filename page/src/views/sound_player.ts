@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-const ahead = 0.08; // [s] of sound that are waiting to be heard, against gaps
+const ahead = 0.08; // buffered sound, against gaps [s]
 
-/** Plays pieces of sound one after the other. */
+/** Plays consecutive pieces of sound. */
 export class SoundPlayer {
   private readonly context = new AudioContext();
   private next = 0;
@@ -16,7 +16,7 @@ export class SoundPlayer {
     const buffer = this.context.createBuffer(channels.length, count, rate);
     channels.forEach((samples, i) => buffer.copyToChannel(samples, i));
     const now = this.context.currentTime;
-    if (this.next > now + 0.5) return; // a piece too far ahead would make all later ones late
+    if (this.next > now + 0.5) return; // it would delay all later pieces
     if (this.next < now) this.next = now + ahead;
     const source = this.context.createBufferSource();
     source.buffer = buffer;

@@ -20,7 +20,7 @@ export function channelsOf(
   });
 }
 
-/** Level of samples [dB], 0 being full scale of a square wave; at least -100. */
+/** Level of samples [dB]; 0: square wave at full scale; at least -100. */
 export function level(samples: ArrayLike<number>): number {
   let sum = 0;
   for (let i = 0; i < samples.length; ++i) sum += samples[i]! ** 2;
@@ -28,10 +28,10 @@ export function level(samples: ArrayLike<number>): number {
 }
 
 /**
- * Size of each frequency in samples [dB], 0 being a full sine: of count / 2 frequencies from 0 to
- * half the sample rate. Hann window.
+ * Magnitudes of count / 2 frequencies from 0 to half the sample rate [dB]; 0: sine at full scale.
+ * Hann window.
  *
- * @param samples  a power of two of them.
+ * @param samples  their number must be a power of two.
  */
 export function spectrum(samples: ArrayLike<number>): Float64Array {
   const count = samples.length;

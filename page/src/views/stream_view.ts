@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stream with its header, shown as what it is.
+// A stream with its header, shown by its type.
 import { sentHeader, type Header } from "../mtp";
 import type { Arrival } from "../server";
 import { h } from "../shell/h";
@@ -13,9 +13,9 @@ import type { Source, Surroundings, View, ViewKind } from "./view";
 export interface StreamViewHost {
   readonly surroundings: Surroundings;
   say(sentence: string): void;
-  /** The person has chosen another way to show the stream. */
+  /** Called when the person chooses another view. */
   chosen?(view: string): void;
-  /** Room for controls. */
+  /** Place for controls. */
   readonly tools: HTMLElement;
 }
 
@@ -52,7 +52,7 @@ export class StreamView {
   private lastSnapshot = 0;
   private last?: Arrival;
 
-  /** @param wanted  name of the way to show the stream, where it fits; empty: the usual one. */
+  /** @param wanted  name of the view, if it fits; empty: the default. */
   constructor(
     private readonly source: Source,
     private readonly host: StreamViewHost,
@@ -107,24 +107,24 @@ export class StreamView {
       await view.show(arrival, sent);
       return;
     }
-    // The server sends no more until this one is done with; then the newest, of video a key frame.
+    // The server waits until this message is processed, then sends the newest, of video a key frame.
     if (this.isPaused) await new Promise<void>((resolve) => this.held.push(resolve));
     if (!isVideo(arrival.message, sent)) this.past.push(arrival);
     if (!view.runsUnseen) await this.sight.seen();
-    await this.view?.show(arrival, sent); // which may be another one by now
+    await this.view?.show(arrival, sent); // may have changed meanwhile
     if (isVideo(arrival.message, sent)) void this.keepSnapshot(arrival.at);
   }
 
-  /** Keeps what is shown now; the stream continues meanwhile, since browsers encode when idle. */
+  /** Keeps a snapshot, in parallel with the stream, since browsers encode when idle. */
   private async keepSnapshot(now: number): Promise<void> {
     if (now < this.lastSnapshot + snapshotPeriod) return;
-    this.lastSnapshot = Infinity; // until this one is made
+    this.lastSnapshot = Infinity; // until this one is finished
     const snapshot = await this.view?.snapshot?.();
     this.lastSnapshot = now;
     if (snapshot) this.past.push(snapshot);
   }
 
-  /** Makes the view that fits, if there is another one now. */
+  /** Creates the matching view, if it has changed. */
   private async choose(sent: Header): Promise<void> {
     await this.making;
     const fitting = kindsFor(sent);

@@ -21,7 +21,7 @@ export class TableView implements View {
 
   show(arrival: Arrival): void {
     clearTimeout(this.timer);
-    const wait = this.drawn + 100 - performance.now(); // nobody reads faster
+    const wait = this.drawn + 100 - performance.now(); // faster than anyone can read
     if (wait > 0) this.timer = window.setTimeout(() => this.draw(arrival), wait);
     else this.draw(arrival);
   }
@@ -70,7 +70,7 @@ export class TableView implements View {
     );
     this.more.textContent =
       rows === 0
-        ? "It is empty: no rows, no elements."
+        ? "Empty: no rows or no elements."
         : rows < height || columns < width
           ? `The first ${rows} × ${columns} of ${height} rows × ${width} columns.`
           : "";
@@ -89,7 +89,7 @@ export const tableView: ViewKind = {
   make: () => new TableView(),
 };
 
-/** Of tables with several elements and of transformations; the usual way to show them. */
+/** The default view of tables with several elements and of transformations. */
 export const matrixView: ViewKind = {
   ...tableView,
   fits: ({ type, width, height }) =>

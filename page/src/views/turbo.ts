@@ -7,10 +7,10 @@ const polynomials = [
   [0.1066733, 12.64194608, -60.58204836, 110.36276771, -89.90310912, 27.34824973],
 ];
 
-/** The lowest level, a clear blue: the scale's own end is nearly as black as a hole. */
+/** The lowest level, a clear blue: the scale's end is nearly as black as a hole. */
 const lowest = 28 / 255;
 
-/** Red, green, blue [0, 255] of a level from 0, blue, to 1, red; as `hc view` colours depth. */
+/** Red, green, blue [0, 255] of a level from 0 (blue) to 1 (red), as in `hc view`. */
 export function turbo(level: number): [number, number, number] {
   const x = lowest + Math.min(1, Math.max(0, level)) * (1 - lowest);
   const [r, g, b] = polynomials.map((terms) => {

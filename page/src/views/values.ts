@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth, disparity and other measured grids in colours, blue near zero and red far off.
+// Depth, disparity and other measured grids in colours, from blue (zero) to red.
 import { Coord, numbersOf, type Header, type Numbers } from "../mtp";
 import type { Arrival } from "../server";
 import { h } from "../shell/h";
@@ -10,7 +10,7 @@ import { turbo, turboPixels } from "./turbo";
 import type { View, ViewHost, ViewKind } from "./view";
 
 const palette = turboPixels();
-/** Holes are stripes of two greys, which no value has. */
+/** Holes are stripes of two greys, which are not in the scale. */
 const holes = [0xff101010, 0xff585858] as const;
 
 function unitOf(header: Header): string {
@@ -18,12 +18,12 @@ function unitOf(header: Header): string {
   return header.coord === Coord.disparity ? "px" : "";
 }
 
-/** Whether a value is known: 0 is unknown where the coordinate system says so (R44). */
+/** Whether a value is known: 0 is unknown in some coordinate systems (R44). */
 function known(value: number, isZeroUnknown: boolean): boolean {
   return Number.isFinite(value) && !(isZeroUnknown && value === 0);
 }
 
-/** 2nd and 98th percentile of what is known, of about 2000 samples. */
+/** 2nd and 98th percentile of about 2000 samples of known values. */
 export function usualRange(
   values: ArrayLike<number>,
   isZeroUnknown: boolean,
@@ -192,5 +192,5 @@ export const valuesView: ViewKind = {
   make: (host) => new ValuesView(host),
 };
 
-/** Of what is measured; the first choice there. */
+/** The default view of measurements. */
 export const depthView: ViewKind = { ...valuesView, fits: isMeasured };

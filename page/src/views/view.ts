@@ -2,29 +2,29 @@
 import type { Header } from "../mtp";
 import type { Arrival, GraphState, Session, Unsubscribe } from "../server";
 
-/** Where messages come from: a stream of the server, or a recording. */
+/** A source of messages: a stream of the server, or a recording. */
 export interface Source {
   /** MODULE.PORT */
   readonly port: string;
-  /** Whether its messages are of another time than now. */
+  /** Whether its messages are recorded. */
   readonly isReplay?: boolean;
   on(event: "message", listener: (arrival: Arrival) => void | Promise<void>): Unsubscribe;
   on(event: "header", listener: (line: string) => void): Unsubscribe;
   on(event: "problem", listener: (problem: string) => void): Unsubscribe;
-  /** Asks for no more elements in a row. */
+  /** Limits the elements in a row. */
   setWidth(width: number): void;
-  /** Starts over, of video with a key frame. */
+  /** Restarts; video restarts with a key frame. */
   restart?(): void;
   close(): void;
 }
 
-/** What views may know of the graph. */
+/** The graph, for views. */
 export interface Surroundings {
   readonly state: GraphState | undefined;
   readonly session: Session | undefined;
   /** Settled when state and session are known. */
   ready(): Promise<void>;
-  /** Opens another source of the same time: live, or of the same recording. */
+  /** Opens another source: live, or of the same recording. */
   open(port: string): Source;
 }
 
@@ -42,17 +42,17 @@ export interface View {
   /**
    * Shows a message.
    *
-   * @param sent  header as it was sent, before the server scaled or encoded the message.
-   * @returns  where it takes time: when the view is ready for the next one.
+   * @param sent  original header, before the server scaled or encoded the message.
+   * @returns  a promise, if it takes time: settled when ready for the next message.
    */
   show(arrival: Arrival, sent: Header): void | Promise<void>;
-  /** Whether the view itself keeps what was before and scrolls back. */
+  /** Whether the view keeps its past and can scroll back. */
   readonly keepsPast?: boolean;
-  /** Whether it takes messages while nobody sees it: sound is heard. */
+  /** Whether it takes messages while invisible, as sound does. */
   readonly runsUnseen?: boolean;
-  /** Of a view that keeps its past: stops or continues with the present. */
+  /** For a view that keeps its past: pauses or continues. */
   setPaused?(paused: boolean): void;
-  /** What is shown now, as a message that can be shown again without others. */
+  /** The current contents as a message that can be shown without earlier ones. */
   snapshot?(): Promise<Arrival | undefined>;
   close?(): void;
 }

@@ -9,9 +9,9 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"bidder", "Bids for the focus as a script says, and commands."};
-  auto bid = module.output("bid", hc::table<double>(), "1 x 1: salience; 0 withdraws");
+  auto bid = module.output("bid", hc::table(), "1 x 1: salience; 0 withdraws");
   auto command =
-      module.output("command", hc::table<double>(), "1 x 1: the salience, while it is not 0");
+      module.output("command", hc::table(), "1 x 1: the salience, while it is not 0");
   auto text = module.parameter("script", "0:0.5", "",
                                "SECONDS:SALIENCE …, at the end SECONDS:end or SECONDS:again",
                                {.positional = true, .fixed = true});
@@ -31,14 +31,13 @@ int main(int argc, char** argv) {
     module.keep_rate(*rate);
     std::chrono::duration<double> passed = clock.monotonic() - started;
     auto salience = script.at(passed.count());
-    if (!salience) return false;
-    auto message = hc::table({*salience});
+    if (!salience) return module.stop();
+    auto message = hc::table().message({*salience});
     message.header.time = module.now();
     bid.send(message);
-    if (*salience == 0) return true;
+    if (*salience == 0) return;
     message.header.ttl = static_cast<std::uint8_t>(*ttl);
     command.send(message);
-    return true;
   });
   return module.run(argc, argv);
 }

@@ -8,13 +8,13 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"delay", "Multiplies numbers, and takes its time."};
-  auto in = module.input("in", hc::table<double>(), "a number");
-  auto out = module.output("out", hc::table<double>(), "the number times the factor");
+  auto in = module.input("in", hc::table(), "a number");
+  auto out = module.output("out", hc::table(), "the number times the factor");
   auto seconds = module.parameter("seconds", 0.0, "s", "taken for each", {.min = 0, .max = 60});
   auto factor = module.parameter("factor", 1.0, "", "of the number");
   module.on(in, [&](const auto& message) {
     std::this_thread::sleep_for(hc::duration(*seconds));
-    out.send(hc::table({*factor * message.matrix().at(0, 0)}));
+    out.send({*factor * message.matrix().at(0, 0)});
   });
   return module.run(argc, argv);
 }

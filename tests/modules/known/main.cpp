@@ -56,13 +56,13 @@ std::vector<std::int16_t> samples() {
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"known", "Sends streams whose contents are known."};
-  auto image = module.output("image", hc::rgb_image<std::uint8_t>(), "four colours");
+  auto image = module.output("image", hc::rgb_image(), "four colours");
   auto depth = module.output("depth", hc::intensity_image<float>().in(hc::Coord::kDepth),
                              "1.5 m, 3.5 m and unknown");
-  auto number = module.output("number", hc::table<double>(), "42.5");
-  auto grid = module.output("grid", hc::table<double>(), "1 to 6 in two rows");
+  auto number = module.output("number", hc::table(), "42.5");
+  auto grid = module.output("grid", hc::table(), "1 to 6 in two rows");
   auto text = module.output("text", hc::string(), "a sentence");
-  auto sound = module.output("sound", hc::sound<std::int16_t>(2).in(hc::Coord::kSound16k),
+  auto sound = module.output("sound", hc::sound(2).in(hc::Coord::kSound16k),
                              "a square wave of -6 dB and -12 dB");
   auto words = module.input("words", hc::string(), "any words");
   auto heard = module.output("heard", hc::string(), "the same");
@@ -74,13 +74,13 @@ int main(int argc, char** argv) {
   module.every(std::chrono::milliseconds(50), [&] {
     const auto now = module.now();
     image.send(
-        hc::rgb_image<std::uint8_t>(kWidth, kHeight, pixels).at(now).in(hc::Coord::kLeftImage));
-    depth.send(hc::intensity_image<float>(kWidth, kHeight, metres).at(now).in(hc::Coord::kDepth));
-    number.send(hc::table({42.5}).at(now));
+        hc::rgb_image().message(kHeight, kWidth, pixels), now, hc::Coord::kLeftImage);
+    depth.send(hc::intensity_image<float>().message(kHeight, kWidth, metres), now, hc::Coord::kDepth);
+    number.send({42.5}, now);
     constexpr std::array<double, 6> kGrid = {1, 2, 3, 4, 5, 6};
-    grid.send(hc::make_message(hc::table<double>(), 3, 2, std::span<const double>(kGrid)).at(now));
-    text.send(hc::string("red green blue grey").at(now));
-    sound.send(hc::sound<std::int16_t>(2, wave).at(now).in(hc::Coord::kSound16k));
+    grid.send(hc::table().message(2, 3, kGrid), now);
+    text.send("red green blue grey", now);
+    sound.send(wave, now);
   });
   return module.run(argc, argv);
 }

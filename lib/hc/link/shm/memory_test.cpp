@@ -82,7 +82,7 @@ TEST(SharedMemory, OfAnotherSizeIsRefused) {
   for (auto bytes : {kBytes - 1, kBytes + 1, kBytes + kPageBytes}) {
     EXPECT_EQ(
         refused(SharedMemory::map(std::move(*memory.read_only()), bytes)).text(),
-        "Malformed: the memory that was handed over has 32768 bytes, not " + std::to_string(bytes));
+        "Malformed: the received shared memory has 32768 bytes, not " + std::to_string(bytes));
   }
 }
 
@@ -121,7 +121,7 @@ class NoPages : public ::testing::Test {
     std::thread publisher([&] {
       refused = refuse_pages();
       Message message =
-          Draft::make({MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary}, 100'000, 1)
+          Draft::make({MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary}, 1, 100'000)
               .finish();
       for (int i = 0; sent && i < count; ++i) sent = sink_->send(message);
     });

@@ -25,11 +25,11 @@ TEST_F(ShmRoom, ASlotIsUsedAgainOnlyWhenNobodyHoldsIt) {
     ASSERT_TRUE(sink_->send(numbered(i, kLarge)));
     const Message message = next(*source_);
     EXPECT_NE(message.elements.data(), held.elements.data());
-    EXPECT_EQ(message.characters(), numbered(i, kLarge).characters());
+    EXPECT_EQ(message.text(), numbered(i, kLarge).text());
   }
-  EXPECT_EQ(held.characters(), numbered(1, kLarge).characters());
+  EXPECT_EQ(held.text(), numbered(1, kLarge).text());
   source_.reset();
-  EXPECT_EQ(held.characters(), numbered(1, kLarge).characters());
+  EXPECT_EQ(held.text(), numbered(1, kLarge).text());
 }
 
 TEST_F(ShmRoom, WhoKeepsTheLatestGetsItAndLosesTheOthers) {
@@ -40,7 +40,7 @@ TEST_F(ShmRoom, WhoKeepsTheLatestGetsItAndLosesTheOthers) {
     Message message;
     ASSERT_EQ(drain(*source_, message), 1);
     ASSERT_TRUE(sink_->send(numbered(kCount, size)));
-    EXPECT_EQ(next(*source_).characters(), numbered(kCount, size).characters());
+    EXPECT_EQ(next(*source_).text(), numbered(kCount, size).text());
     EXPECT_EQ(source_->traffic().dropped_newer, static_cast<std::uint64_t>(kCount) - 1);
     EXPECT_EQ(source_->traffic().messages, 2U);
   }
@@ -93,7 +93,7 @@ TEST_F(ShmRoom, AReaderThatHoldsTooManyGetsCopiesWhichIsLogged) {
   }
   EXPECT_EQ(told, 1);
   for (int i = 0; i < 100; ++i)
-    EXPECT_EQ(held[static_cast<std::size_t>(i)].characters(), numbered(i, kLarge).characters());
+    EXPECT_EQ(held[static_cast<std::size_t>(i)].text(), numbered(i, kLarge).text());
 }
 
 TEST_F(ShmRoom, AReaderThatHoldsAllDoesNotStallAPublisherThatDrops) {

@@ -58,7 +58,7 @@ TEST_F(Shm, LargeElementsAreReadWhereTheyWereWritten) {
   ASSERT_TRUE(sink_->send(sent));  // once more, without a copy
   const Message first = next(*source_);
   EXPECT_EQ(first.elements.data(), next(*source_).elements.data());
-  EXPECT_EQ(first.characters(), sent.characters());
+  EXPECT_EQ(first.text(), sent.text());
   EXPECT_EQ(sent.elements.data(), written);
 }
 
@@ -77,7 +77,7 @@ TEST_F(Shm, EverySizeArrivesWhole) {
       ASSERT_TRUE(sink_->send(sent));
       const Message message = next(*source_);
       ASSERT_EQ(message.header, sent.header);
-      ASSERT_EQ(message.characters(), sent.characters()) << size;
+      ASSERT_EQ(message.text(), sent.text()) << size;
     }
 }
 

@@ -27,7 +27,7 @@ TEST(File, HoldsTheBytesOfTheWire) {
   auto source = source_of(folder / "eyes.mtp");
   Message message;
   EXPECT_TRUE(*receive(*source, message));
-  EXPECT_EQ(next(*source).characters(), numbered(2, 100000).characters());
+  EXPECT_EQ(next(*source).text(), numbered(2, 100000).text());
   EXPECT_FALSE(*receive(*source, message));
   EXPECT_EQ(source->traffic().bytes, bytes.size());
 }

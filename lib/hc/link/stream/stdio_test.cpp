@@ -45,7 +45,7 @@ TEST_F(Stdio, CarriesMessages) {
   });
   Message message;
   for (int i = 0; i < 50; ++i) {
-    EXPECT_EQ(next(*source).characters(), numbered(i, 100'000).characters());
+    EXPECT_EQ(next(*source).text(), numbered(i, 100'000).text());
   }
   EXPECT_FALSE(*receive(*source, message));
   sender.join();
@@ -103,7 +103,7 @@ TEST_F(Stdio, AMessageThatWasBegunIsFinishedBeforeItStops) {
   auto sink = sink_of("-", stop.options());
   auto source = source_of("-");
   std::thread reader(
-      [&] { EXPECT_EQ(next(*source).characters(), numbered(0, 4'000'000).characters()); });
+      [&] { EXPECT_EQ(next(*source).text(), numbered(0, 4'000'000).text()); });
   EXPECT_TRUE(sink->send(numbered(0, 4'000'000)));
   reader.join();
 }
