@@ -44,10 +44,7 @@ Module::Loop::Loop(Module& served, const internal::Arguments& arguments, int sto
     inlets.set_route(link, route);
     outlets.set_route(link, route);
   }
-  if (arguments.clock)
-    schedule_ = Schedule::replay(*this, *arguments.clock);
-  else
-    schedule_ = module.message_time_ ? Schedule::by_messages(*this) : Schedule::live(*this);
+  schedule_ = Schedule::make(*this, arguments.clock);
   module.loop_ = this;
 }
 

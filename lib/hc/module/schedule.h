@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include <hc/base/uri.h>
 #include <hc/module/module.h>
@@ -20,13 +21,8 @@ class Module::Schedule {
   /// Waits until a time that `due` gives, which may change meanwhile, as commands are obeyed.
   virtual void pause(const std::function<MonotonicTime()>& due) = 0;
 
-  /// By the machine's clock: messages as they arrive, timers when they are due.
-  static std::unique_ptr<Schedule> live(Loop& loop);
-  /// By the messages' clock: messages in the order of their times, and timers between them. The
-  /// result depends on the messages, and not on when they arrive.
-  static std::unique_ptr<Schedule> by_messages(Loop& loop);
-  /// By the trace of an earlier run: the same at the same moments.
-  static std::unique_ptr<Schedule> replay(Loop& loop, const Uri& trace);
+  /// The schedule by the module's clock. @param trace  to be replayed.
+  static std::unique_ptr<Schedule> make(Loop& loop, const std::optional<Uri>& trace);
 
  private:
   class Live;

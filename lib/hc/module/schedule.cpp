@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <hc/module/schedule.h>
+
 #include <algorithm>
 #include <deque>
 #include <utility>
@@ -17,13 +19,59 @@ constexpr MonotonicTime kLongestGap = std::chrono::hours(1);
 
 }  // namespace
 
+/// By the machine's clock: messages as they arrive, timers when they are due.
+class Module::Schedule::Live final : public Schedule {
+ public:
+  explicit Live(Loop& loop) : loop_(loop) {}
+
+  void begin() override { attend(); }
+
+  bool turn() override {
+    if (!std::exchange(was_wait_short_, false)) loop_.now.read();
+    loop_.inlets.receive_focus();
+    const bool any = loop_.inlets.take_each();
+    loop_.work_between_messages();
+    if (any) return true;
+    if (loop_.module.generate_) {
+      loop_.generate();
+      return true;
+    }
+    if (!loop_.module.options_.keep_running && loop_.inlets.all_ended()) return false;
+    was_wait_short_ = loop_.wait(true, loop_.timers.next());
+    return true;
+  }
+
+  void pause(const std::function<MonotonicTime()>& due) override {
+    for (loop_.now.read(); loop_.now.machine < due(); loop_.now.read()) {
+      loop_.wait(false, due());
+      attend();
+    }
+  }
+
+ private:
+  /// The work during a pause, which takes no messages.
+  void attend() {
+    loop_.now.read();
+    loop_.inlets.receive_focus();
+    loop_.serve();
+  }
+
+  Loop& loop_;
+  bool was_wait_short_ = false;  // the clock need not be read again
+};
+
+/// By the messages' clock: messages in the order of their times, and timers between them. The
+/// result depends on the messages, and not on when they arrive.
 class Module::Schedule::ByMessages : public Schedule {
  public:
   explicit ByMessages(Loop& loop) : loop_(loop) {}
 
   /// The clock begins with the first message that has a time.
   void begin() override {
-    for (loop_.now.read(), loop_.serve(); !take_heads(); loop_.now.read(), loop_.serve()) {
+    while (true) {
+      loop_.now.read();
+      loop_.serve();
+      if (take_heads()) break;
       if (stop_requested()) throw internal::Stopped();
       loop_.wait(true, MonotonicTime::max());
     }
@@ -120,6 +168,7 @@ class Module::Schedule::ByMessages : public Schedule {
   bool has_ended_ = false;      // all messages have been handled
 };
 
+/// The work of an earlier run again, at the same moments, by its trace.
 class Module::Schedule::Replay final : public ByMessages {
  public:
   Replay(Loop& loop, const Uri& trace) : ByMessages(loop) {
@@ -188,12 +237,11 @@ class Module::Schedule::Replay final : public ByMessages {
   std::deque<TraceEvent> events_;
 };
 
-std::unique_ptr<Module::Schedule> Module::Schedule::by_messages(Loop& loop) {
-  return std::make_unique<ByMessages>(loop);
-}
-
-std::unique_ptr<Module::Schedule> Module::Schedule::replay(Loop& loop, const Uri& trace) {
-  return std::make_unique<Replay>(loop, trace);
+std::unique_ptr<Module::Schedule> Module::Schedule::make(Loop& loop,
+                                                         const std::optional<Uri>& trace) {
+  if (trace) return std::make_unique<Replay>(loop, *trace);
+  if (loop.module.message_time_) return std::make_unique<ByMessages>(loop);
+  return std::make_unique<Live>(loop);
 }
 
 }  // namespace hc
