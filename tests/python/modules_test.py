@@ -247,7 +247,7 @@ def begin():
 module.run()
 """
         self.shell(self.write_module("source", text), 1)
-        self.assertEqual(self.err, "source: IndexError: list index out of range (source, line 7)\n")
+        self.assertEqual(self.err, "source: IndexError: list index out of range (source, line 8)\n")
 
     def test_an_error_ends_it_with_a_line(self):
         self.echo("table()", "raise hc.Error('no face in sight')", status=1)
