@@ -12,6 +12,16 @@ hc::ModuleError module_error(const std::string& text, std::string_view code) {
   return error;
 }
 
+/// Where an exception was raised: " (redness, line 12)".
+std::string place_of(const py::error_already_set& raised) {
+  py::object trace = raised.trace();
+  if (!trace) return "";
+  while (!trace.attr("tb_next").is_none()) trace = trace.attr("tb_next");
+  const Line line{trace.attr("tb_frame").attr("f_code").attr("co_filename"),
+                  trace.attr("tb_lineno").cast<int>()};
+  return " (" + line.file_name() + ", line " + std::to_string(line.number) + ")";
+}
+
 }  // namespace
 
 Function hold(const py::object& function) {
@@ -60,6 +70,8 @@ void Program::end_by_error() {
   py::error_already_set raised;
   const auto text = py::str(raised.value()).cast<std::string>();
   if (raised.matches(bad_message_type())) throw hc::BadMessage(text);
+  if (raised.matches(PyExc_IndexError))  // as std::out_of_range in C++
+    throw hc::BadMessage("IndexError: " + text + place_of(raised));
   if (raised.matches(error_type())) {
     const py::object code = py::getattr(raised.value(), "code", py::str(""));
     throw module_error(text, py::str(code).cast<std::string>());

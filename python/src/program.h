@@ -56,9 +56,9 @@ class Program {
   /// ended the interpreter.
   int run(const std::vector<std::string>& words);
 
-  /// Calls a handler from the loop, with the GIL. A hypercolumn.BadMessage drops the message. Any
-  /// other exception ends the module, with the text of a hypercolumn.Error, or with the name and
-  /// text of another exception, whose traceback goes to standard error.
+  /// Calls a handler from the loop, with the GIL. A hypercolumn.BadMessage or an IndexError drops
+  /// the message. Any other exception ends the module, with the text of a hypercolumn.Error, or
+  /// with the name and text of another exception, whose traceback goes to standard error.
   template <typename... Arguments>
   py::object call(PyObject* handler, Arguments... arguments) {
     PyObject* const all[] = {nullptr, arguments...};

@@ -219,6 +219,36 @@ class Ended(Modules):
         self.assertIn("echo: numbers: dropped: it is one", self.err)
         self.assertIn("echo: total: 1 bad at numbers", self.err)
 
+    def test_an_index_that_is_not_there_drops_the_message(self):
+        empty = b"1 7 0 0 8 55 120190 0 0 0 0\n\n"
+        for body, text in (
+            ("out.send(message.numbers[2])", "tuple index out of range"),
+            ("out.send(message.matrix[0, 0])", "index 0 is out of bounds for axis 0 with size 0"),
+        ):
+            with self.subTest(body):
+                out = self.echo("table()", body, "", empty + IN, status=1)
+                self.assertEqual(len(out.splitlines()), 2)
+                dropped, total = self.err.splitlines()
+                self.assertEqual(
+                    dropped.split(" (further")[0],
+                    "echo: numbers: dropped: IndexError: %s (module, line 10)" % text,
+                )
+                self.assertEqual(total, "echo: total: 1 bad at numbers")
+
+    def test_an_index_error_without_a_message_ends_it(self):
+        text = """
+import hypercolumn as hc
+module = hc.Module("source", "Sends nothing.")
+
+@module.on_start
+def begin():
+    [][0]
+
+module.run()
+"""
+        self.shell(self.write_module("source", text), 1)
+        self.assertEqual(self.err, "source: IndexError: list index out of range (source, line 8)\n")
+
     def test_an_error_ends_it_with_a_line(self):
         self.echo("table()", "raise hc.Error('no face in sight')", status=1)
         self.assertEqual(self.err, "echo: no face in sight\n")
