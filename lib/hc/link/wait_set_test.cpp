@@ -98,8 +98,11 @@ TEST_F(WaitSetTest, MessagesAndDescriptorsWakeAlike) {
   Message message;
   for (int i = 0; i < 100; ++i) {
     ASSERT_EQ(must(source->take(message)), Got::Nothing);
-    if (i % 3 == 0) first_.raise();
-    if (i % 3 > 0) EXPECT_TRUE(sink->send(numbered(i, kSmall)));
+    if (i % 3 == 0) {
+      first_.raise();
+    } else {
+      ASSERT_TRUE(sink->send(numbered(i, kSmall)));
+    }
     ASSERT_TRUE(must(waits_.wait(sources, descriptors, kLong)));
     EXPECT_EQ(was_first(), i % 3 == 0);
     EXPECT_EQ(must(source->take(message)), i % 3 == 0 ? Got::Nothing : Got::Message);
