@@ -9,7 +9,8 @@ import unittest
 from harness import Pipes, ROOT
 from recordings import read_messages
 
-GRAPH = """version = 1
+GRAPH = (
+    """version = 1
 [graphs.head]
 file = "%s/graphs/clocked_track.toml"
 modules.eyes.parameters = { count = 61, width = 400, height = 300, focal = 300, seed = SEED }
@@ -19,7 +20,9 @@ modules.track.parameters = { focal = 300, cx = 199.5, cy = 149.5 }
 modules.track.outputs.command = "file:command.mtp"
 modules.track_score.parameters.duration = 3
 modules.track_score.outputs.score = "file:score.mtp"
-""" % ROOT
+"""
+    % ROOT
+)
 FILES = ["left.mtp", "area.mtp", "command.mtp", "score.mtp"]
 
 

@@ -141,7 +141,9 @@ class Watching(Graphs):
         name, _ = self.run_named("ports")
         self.environment["HC_GRAPH"] = name
         self.shell("hc record camera.left", 2)
-        self.assertIn("camera.left is a port of a running graph: to record it, add an output FILE", self.err)
+        self.assertIn(
+            "camera.left is a port of a running graph: to record it, add an output FILE", self.err
+        )
         self.assertFalse(os.path.exists(self.path("camera.left")))
         self.shell("hc record brightness.mean y.mtp --count 3")
         self.assertEqual(self.shell("hc cat y.mtp").count("table"), 3)
