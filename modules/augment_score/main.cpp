@@ -131,6 +131,19 @@ int main(int argc, char** argv) {
     cube.set_size(*size);
     cube.T_world_body = Eigen::Translation3d(*x, *y, *z);
   });
+  auto finish = [&] {
+    const double error = median(samples.errors), share = median(samples.right);
+    const double worst = *std::ranges::max_element(samples.errors);
+    const double least = *std::ranges::min_element(samples.right);
+    result.send(
+        {error, worst, share, least, samples.fastest, static_cast<double>(samples.right.size())});
+    module.log(
+        hc::format("corners off by {:.2f} px median, {:.2f} px at most, pixels right {:.1f} % "
+                   "median, {:.1f} % at least, the head turning at up to {:.0f}°/s",
+                   error, worst, 100 * share, 100 * least, samples.fastest * 57.29578),
+        hc::Level::Result);
+    module.stop();
+  };
   module.on(hc::together(left_pose, right_pose, depth, corners, mask),
             [&](const auto& left, const auto& right, const auto& scene, const auto& found_corners,
                 const auto& found_mask) {
@@ -147,22 +160,11 @@ int main(int argc, char** argv) {
               camera.cy = (camera.height - 1) / 2.0;
               compare_corners(eyes, found_corners.numbers());
               compare_mask(eyes[0], hc::as_mat(scene), hc::as_mat(found_mask));
+              if (static_cast<std::int64_t>(samples.right.size()) >= *images) finish();
             });
   constexpr std::chrono::milliseconds kLook{50};
   module.every(kLook, [&] {
     if (++waits * kLook > hc::duration(*timeout)) throw hc::ModuleError("no image within timeout");
-    if (static_cast<std::int64_t>(samples.right.size()) < *images) return;
-    const double error = median(samples.errors), share = median(samples.right);
-    const double worst = *std::ranges::max_element(samples.errors);
-    const double least = *std::ranges::min_element(samples.right);
-    result.send(
-        {error, worst, share, least, samples.fastest, static_cast<double>(samples.right.size())});
-    module.log(
-        hc::format("corners off by {:.2f} px median, {:.2f} px at most, pixels right {:.1f} % "
-                   "median, {:.1f} % at least, the head turning at up to {:.0f}°/s",
-                   error, worst, 100 * share, 100 * least, samples.fastest * 57.29578),
-        hc::Level::Result);
-    module.stop();
   });
   return module.run(argc, argv);
 }

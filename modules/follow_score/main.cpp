@@ -34,13 +34,7 @@ int main(int argc, char** argv) {
     if (samples.empty() || time > samples.back().time)
       samples.push_back({time, hc::gaze::angles_of(q)});
   };
-  module.on(setpoint, [&](const auto& message) { take(wanted, waits[0], message); });
-  module.on(motion, [&](const auto& message) { take(turned, waits[1], message); });
-  constexpr std::chrono::milliseconds kLook{50};
-  module.every(kLook, [&] {
-    for (auto& wait : waits)
-      if (++wait * kLook > hc::duration(*timeout))
-        throw hc::ModuleError("no gaze of both within timeout");
+  auto score_if_done = [&] {
     if (wanted.empty() || turned.empty()) return;
     const double begin = std::max(wanted.front().time, turned.front().time) + *settle;
     const double end = begin + *duration;
@@ -49,6 +43,20 @@ int main(int argc, char** argv) {
     result.send(score.numbers());
     module.log(score.text(), hc::Level::Result);
     module.stop();
+  };
+  module.on(setpoint, [&](const auto& message) {
+    take(wanted, waits[0], message);
+    score_if_done();
+  });
+  module.on(motion, [&](const auto& message) {
+    take(turned, waits[1], message);
+    score_if_done();
+  });
+  constexpr std::chrono::milliseconds kLook{50};
+  module.every(kLook, [&] {
+    for (auto& wait : waits)
+      if (++wait * kLook > hc::duration(*timeout))
+        throw hc::ModuleError("no gaze of both within timeout");
   });
   return module.run(argc, argv);
 }

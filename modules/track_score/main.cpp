@@ -44,15 +44,15 @@ int main(int argc, char** argv) {
         waits = 0;
         track.add({hc::seconds(pose.header.time), std::atan2(to.head<2>().norm(), to.z()),
                    share.numbers()[3]});
+        if (track.duration() < *duration) return;
+        const auto score = track.score(*within);
+        result.send(score.numbers());
+        module.log(score.text(), hc::Level::Result);
+        module.stop();
       });
   constexpr std::chrono::milliseconds kLook{20};
   module.every(kLook, [&] {
     if (++waits * kLook > hc::duration(*timeout)) throw hc::ModuleError("no image within timeout");
-    if (track.duration() < *duration) return;
-    const auto score = track.score(*within);
-    result.send(score.numbers());
-    module.log(score.text(), hc::Level::Result);
-    module.stop();
   });
   return module.run(argc, argv);
 }
