@@ -36,8 +36,10 @@ int main(int argc, char** argv) {
                hc::Level::Result);
     module.stop();
   });
-  auto late = module.after(std::chrono::hours(1),
-                           [&] { throw hc::ModuleError("no result within timeout"); });
-  module.on_start([&] { late.restart(hc::duration(*timeout)); });
+  constexpr std::chrono::milliseconds kLook{50};
+  std::int64_t looks = 0;
+  module.every(kLook, [&] {
+    if (++looks * kLook > hc::duration(*timeout)) throw hc::ModuleError("no result within timeout");
+  });
   return module.run(argc, argv);
 }

@@ -4,8 +4,10 @@
 
 void send(hc::Output<hc::PositionKind<float>>& output) {
 #ifdef HC_WRONG
-  output.send({1.0, 2.0, 3.0});
+  const double numbers[] = {1, 2, 3};
+  output.send(numbers);
 #else
-  output.send({1.0F, 2.0F, 3.0F});
+  const float numbers[] = {1, 2, 3};
+  output.send(numbers);
 #endif
 }

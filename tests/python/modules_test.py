@@ -348,7 +348,7 @@ uses = [
         text = (ECHO % ("table()", body)).replace("\n@module.on(numbers)\n", uses)
         self.assertEqual(self.run_module(text, "--in numbers=/dev/stdin", IN), "")
         lines = self.err.splitlines()
-        self.assertEqual(len(lines), 18)
+        self.assertEqual(len(lines), 17)
         for line in lines:
             self.assertIn(
                 "Invalid: a module, its ports and parameters may only be used on the thread", line
