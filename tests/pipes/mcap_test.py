@@ -307,7 +307,7 @@ class Recordings(Graphs):
         self.assertIn(" in ", self.shell("hc info kept/x.mcap"))
         self.shell("rm -r kept")
         self.assertEqual(self.on_a_small_disk("hc record noise.mtp disk/x.mtp"), 1, self.err)
-        self.assertIn("disk/x.mtp: write(): No space left on device; what was", self.err)
+        self.assertIn("disk/x.mtp: write(): No space left on device; the recording is intact", self.err)
         self.assertGreater(len(self.seqs("kept/x.mtp")), 100)  # status 0: they are whole
 
     def test_the_last_time_is_saved_on_a_signal_and_on_a_condition(self):
@@ -433,7 +433,7 @@ class Recordings(Graphs):
         self.write("x.mcap", "1 7 0 0 8 0 10390 1 3 1 1\n1 2 3\n")
         for command in ("hc cat x.mcap", "hc info x.mcap", "hc play x.mcap"):
             self.shell(command, 1)
-            self.assertIn("no MCAP file", self.err)
+            self.assertIn("not an MCAP file", self.err)
             self.assertEqual(self.err.count("\n"), 1)
         self.shell("hc send 1 | hc record y.mtp --split 1G", 2)
         self.shell("hc send 1 | hc record y.mcap --split x", 2)
