@@ -620,8 +620,8 @@ class Recordings(Page):
         with held(self.threads(graph) - before):
             graph.send("record end")
             self.assertGreater(len(self.command(graph, "describe camera")), 1)
-            self.assertIn("ending", self.command(graph, "record end")[0])
-            self.assertIn("ending", self.command(graph, "record two camera.left")[0])
+            self.assertIn("being started or ended", self.command(graph, "record end")[0])
+            self.assertIn("being started or ended", self.command(graph, "record two camera.left")[0])
             self.hear(graph, 3, lambda text: json.loads(text)["recording"]["name"] == "one")
         self.assertEqual(self.hear(graph, 4), "ok")
         self.hear(graph, 3, lambda text: json.loads(text)["recording"] is None)
