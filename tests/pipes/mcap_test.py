@@ -307,7 +307,9 @@ class Recordings(Graphs):
         self.assertIn(" in ", self.shell("hc info kept/x.mcap"))
         self.shell("rm -r kept")
         self.assertEqual(self.on_a_small_disk("hc record noise.mtp disk/x.mtp"), 1, self.err)
-        self.assertIn("disk/x.mtp: write(): No space left on device; the recording is intact", self.err)
+        self.assertIn(
+            "disk/x.mtp: write(): No space left on device; the recording is intact", self.err
+        )
         self.assertGreater(len(self.seqs("kept/x.mtp")), 100)  # status 0: they are whole
 
     def test_the_last_time_is_saved_on_a_signal_and_on_a_condition(self):

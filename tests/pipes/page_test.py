@@ -621,7 +621,9 @@ class Recordings(Page):
             graph.send("record end")
             self.assertGreater(len(self.command(graph, "describe camera")), 1)
             self.assertIn("being started or ended", self.command(graph, "record end")[0])
-            self.assertIn("being started or ended", self.command(graph, "record two camera.left")[0])
+            self.assertIn(
+                "being started or ended", self.command(graph, "record two camera.left")[0]
+            )
             self.hear(graph, 3, lambda text: json.loads(text)["recording"]["name"] == "one")
         self.assertEqual(self.hear(graph, 4), "ok")
         self.hear(graph, 3, lambda text: json.loads(text)["recording"] is None)
