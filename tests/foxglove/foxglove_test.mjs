@@ -247,7 +247,7 @@ test("parameters go both ways, and only for who may operate", async () => {
   assert.deepEqual(set.parameters, [{ name: "blob.min_area", value: 75, type: "float64" }]);
 
   other.client.setParameters([{ name: "blob.min_area", value: 1 }], "no");
-  await until("the refusal", () => other.statuses.some(({ message }) => /may view/.test(message)));
+  await until("the refusal", () => other.statuses.some(({ message }) => /view only/.test(message)));
   client.client.setParameters([{ name: "blob.min_area", value: -1 }], "wrong");
   await until("why", () => client.statuses.some(({ message }) => /min_area.*not/.test(message)));
   client.client.getParameters(["blob.min_area"], "again");

@@ -135,7 +135,7 @@ class Frames(Pipes):
             self.addCleanup(ends[-1].close)
         name = "seen_%d" % os.getpid()
         self.shell("hc frames graph.toml left_eye world --of " + name, status=1)
-        self.assertRegex(self.err, 'no graph "%s" is running.*; from left_eye to world' % name)
+        self.assertRegex(self.err, 'no graph "%s" is running.*; left_eye to world' % name)
         self.assertIn("depends on neck.out: run the graph", self.err)
         self.start("exec hc run graph.toml --as " + name)
         wait_until(lambda: name in self.shell("hc ps"))
