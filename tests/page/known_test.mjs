@@ -383,7 +383,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     await page.evaluate(() => {
       window.seen = [];
       new MutationObserver(() => {
-        const lost = document.querySelector(".trouble")?.textContent.includes("not known");
+        const lost = document.querySelector(".trouble")?.textContent.includes("unknown");
         if (lost) window.seen.push(document.querySelector(".stopped-bar").hidden);
       }).observe(document.body, { subtree: true, childList: true, characterData: true });
     });
