@@ -358,9 +358,8 @@ class Stop(Page):
         graph = self.socket("/graph", self.session())
         self.hear(graph, 3, lambda text: '"stopped":false' in text)
         pid = self.freeze(graph, "workspace")
-        self.assertEqual(
-            self.command(graph, "estop"), ["stop NOT confirmed: the workspace does not answer"]
-        )
+        # The last report before it was frozen may still be on its way.
+        self.assertIn("stop NOT confirmed: the workspace", self.command(graph, "estop")[0])
         self.hear(graph, 3, lambda text: '"stopped":null' in text)
         # Answers of other commands do not wait for it, and say whose they are.
         graph.send("estop"), graph.send("describe camera")
