@@ -21,12 +21,11 @@ struct Parameters {
       module.parameter("count", 0, "", "pairs to send, 0: all", {.min = 0});
   hc::Parameter<bool> paced = module.parameter(
       "paced", true, "", "in real time; false: as fast as images are drawn", {.fixed = true});
-  hc::Parameter<double> neck_delay =
-      module.parameter("neck_delay", 0.0, "s",
-                       "over 0, and not paced: the head takes each pose of `gaze` so long after "
-                       "the pose's time, and "
-                       "an image waits for all poses that the head takes until then",
-                       {.min = 0, .max = 10, .fixed = true});
+  hc::Parameter<double> neck_delay = module.parameter(
+      "neck_delay", 0.0, "s",
+      "if above 0, and not paced: delay from the time of a pose of `gaze` to the head's "
+      "motion; an image waits for all poses up to its time",
+      {.min = 0, .max = 10, .fixed = true});
   hc::Parameter<std::int64_t> start = module.parameter(
       "start", 0, "ns", "time of the first image, 0: now", {.min = 0, .fixed = true});
 

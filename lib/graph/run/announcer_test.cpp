@@ -52,7 +52,7 @@ class AnnouncerTest : public ::testing::Test {
 
 TEST_F(AnnouncerTest, AllHearAndWhoComesIsWelcomed) {
   make([&] { return std::vector{line("welcome")}; });
-  announcer_->send(line("to nobody"));
+  announcer_->send(line("without a peer"));
   auto first = listen(), second = listen();
   EXPECT_EQ(hear(*first), "welcome");
   EXPECT_EQ(hear(*second), "welcome");
