@@ -4,6 +4,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <utility>
 
 #include <hc/os/program.h>
 
@@ -12,6 +13,9 @@ namespace {
 
 /// How often a busy module looks for commands; an idle one is woken by them.
 constexpr std::chrono::milliseconds kHousekeepingPeriod{10};
+
+/// How often a busy module polls its own descriptors.
+constexpr std::chrono::milliseconds kLookPeriod{1};
 
 }  // namespace
 
@@ -114,11 +118,16 @@ void Module::Loop::generate() {
   trace.note(TraceEvent::What::Ended, TraceEvent::kGenerator);
 }
 
-/// Calls the handlers of the module's own descriptors that are readable.
+/// Calls the handlers of the module's own descriptors that are readable: the wait before has said
+/// which, unless messages kept the module from waiting.
 void Module::Loop::read_watched() {
+  const bool is_known = std::exchange(has_waited_, false) && waits_.has_looked();
+  if (!is_known && now.machine - looked_ < kLookPeriod) return;
+  looked_ = now.machine;
   for (auto& watch : module.watches_) {
     pollfd watched{watch.descriptor(), POLLIN, 0};
-    if (watched.fd < 0 || ::poll(&watched, 1, 0) <= 0) continue;
+    if (watched.fd < 0) continue;
+    if (is_known ? !waits_.was_readable(watched.fd) : ::poll(&watched, 1, 0) <= 0) continue;
     watch.handler();
     now.read();
   }
@@ -141,6 +150,7 @@ bool Module::Loop::wait(bool for_messages, MonotonicTime until) {
   auto& waits = for_messages ? waits_ : pauses_;
   if (module.before_waiting_) module.before_waiting_();
   const auto ready = waits.wait(waited_for_, watched_, timeout);
+  has_waited_ = for_messages;
   if (!ready) internal::fail("wait", ready.error());
   if (remote.commands() != nullptr && waits.was_woken_by(*remote.commands())) served_ = {};
   return waits.was_short();

@@ -68,7 +68,8 @@ struct Module::Loop {
   WaitSet waits_, pauses_;  // for messages; between two calls of a generator
   std::vector<Source*> waited_for_;
   std::vector<int> watched_;
-  MonotonicTime served_{0};
+  MonotonicTime served_{0}, looked_{0};  // when commands were, and own descriptors
+  bool has_waited_ = false;              // for messages, in this turn
 };
 
 }  // namespace hc
