@@ -57,20 +57,50 @@ Module::Loop::~Loop() {
   module.loop_ = nullptr;
 }
 
-void Module::Loop::run() {
+void Module::Loop::begin() {
   inlets.sets().end_unlinked(opener.is_in_graph());
   inlets.end_unneeded();
   schedule_->begin();
   timers.start();
   if (module.start_) module.start_();
-  while (!module.is_done_ && schedule_->turn())
-    if (stop_requested()) throw internal::Stopped();
+}
+
+bool Module::Loop::turn() {
+  if (module.is_done_ || !schedule_->turn()) return false;
+  if (stop_requested()) throw internal::Stopped();
+  return true;
+}
+
+void Module::Loop::work() {
+  while (turn()) continue;
+}
+
+std::optional<Message> Module::Loop::next(internal::InputState& input) {
+  end_pulled();
+  while (input.waiting.empty())
+    if (inlets.have_ended(input) || !turn()) return std::nullopt;
+  auto [message, inlet] = std::move(input.waiting.front());
+  input.waiting.pop_front();
+  module.handled_ = internal::Handled(message.header);
+  trace.note(TraceEvent::What::Began, input.name, message.header, inlet);
+  note_end_ = [this, &input, inlet = inlet, header = message.header] {
+    trace.note(TraceEvent::What::Ended, input.name, header, inlet);
+  };
+  return std::move(message);
+}
+
+void Module::Loop::end_pulled() {
+  if (const auto note = std::exchange(note_end_, {})) note();
+  module.handled_ = {};
+}
+
+void Module::Loop::finish() {
   inlets.sets().end_all();
   end();
 }
 
 void Module::Loop::end() {
-  module.handled_ = {};
+  end_pulled();
   if (module.end_) module.end_();
 }
 
