@@ -45,6 +45,13 @@ class Clocked(Pipes):
         again = self.sent(1, "taskset -c 0 hc run")
         self.assertEqual([name for name in FILES if first[name] != again[name]], [])
 
+    def test_a_replay_of_its_modules_sends_the_same(self):
+        self.write("g.toml", GRAPH.replace("SEED", "1"))
+        self.shell("hc run g.toml --quiet --record kept")
+        out = self.shell("hc replay kept --graph g.toml --check")
+        for name in ("ball.target", "track.command"):
+            self.assertRegex(out, "head_%s: [0-9]{2,} messages, the same" % name)
+
     def test_the_loop_is_closed(self):
         self.write("g.toml", GRAPH.replace("SEED", "1"))
         self.shell("hc run g.toml --quiet")

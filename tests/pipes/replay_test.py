@@ -84,6 +84,16 @@ class Replay(Pipes):
         self.assertRegex(out, "DIFFERS first.out: [0-9]+ messages, [0-9]+ more; first: ")
         self.assertRegex(out, "\nsecond.out: [0-9]+ messages, the same\n")
 
+    def test_what_was_dropped_as_bad_is_dropped_again(self):
+        text = graph("0:1 1:0.2 2:end").replace("seconds = 0.2", "most = 0.5")
+        self.record(text)
+        given, handled = (
+            len(read_messages(self.path("kept/%s.mtp" % name)))
+            for name in ("source.command", "first.out")
+        )
+        self.assertGreater(given, handled)
+        self.assertRegex(self.shell("hc replay kept" + OPTIONS), "first.out: [1-9].*, the same")
+
     def replay_task(self, task, settings, outputs, timed="", options="", kept="kept"):
         """
         Records a task of the head and replays it, without its device. `timed` looks at its clock

@@ -137,9 +137,11 @@ class Head(Page):
         prefix = prefix.replace("FOLDER", self.folder.name)
         os.mkdir(self.path("disk"))
         command = "exec %s hc run %s %s %s >out 2>said" % (prefix, HEAD, words, options)
+        begun = time.monotonic()
         self.process = self.start(command, stdout=-3, stderr=-3)
         wait_until(lambda: self.process.poll() is not None or self.is_whole() and self.has_page())
         assert self.process.poll() is None, self.said()
+        self.start_took = time.monotonic() - begun  # a measure of this machine [s]
         self.motion = self.stream(Motion, "head_unit.motion", "1024")
         self.line = self.stream(Line, "head_unit.received", "4096")
         self.focused = self.stream(Focus, "workspace.focus", "4096")

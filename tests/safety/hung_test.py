@@ -161,7 +161,7 @@ class Hung(Safety):
 
         try:
             wait_until(are_anew)
-            self.note("back", max(back.values()))
+            self.note("back", max(back.values()) / self.head.start_took)
             self.hold()
         finally:
             for pid in before.values():

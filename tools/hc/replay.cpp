@@ -301,7 +301,9 @@ class Replay {
     for (const auto& [key, value] : module.parameters) words.push_back("--" + key + "=" + value);
     const auto events = read_events(recording_, module.name);
     auto steps = steps_of(events);
-    const bool is_known = !steps.empty();
+    // A trace has the machine's moments, which say nothing of a module in the messages' time.
+    const bool is_in_their_time = std::ranges::find(words, "--clock") != words.end();
+    const bool is_known = !steps.empty() && !is_in_their_time;
     if (is_known)
       for (const auto& port : recorded_outputs(module)) last_[module.name + "." + port] = -1;
     for (const auto& event : std::span(events).first(whole_steps(events)))
@@ -331,7 +333,8 @@ class Replay {
     }
     const fs::path clock = folder_ / (module.name + ".clock");
     if (is_known) write_steps(steps, clock);
-    words.insert(words.end(), {"--clock", is_known ? "file:" + clock.string() : "messages"});
+    if (!is_in_their_time)
+      words.insert(words.end(), {"--clock", is_known ? "file:" + clock.string() : "messages"});
     return words;
   }
 
