@@ -146,6 +146,9 @@ class Documents(Pipes):
     def test_modules(self):
         self.run_document("doc/modules.md")
 
+    def test_links(self):
+        self.run_document("doc/links.md")
+
     def test_module_contract(self):
         self.run_document("spec/module.md")
 

@@ -57,6 +57,10 @@ class Graphs(Pipes):
         self.await_lines(process, last)
         return process
 
+    def listed(self):
+        """What hc ps prints, also if a graph of another test does not answer."""
+        return self.shell("hc ps || true")
+
     def hc(self, words, status=0):
         """What a verb of hc says, and where it is to fail, why."""
         out = self.shell("exec hc " + words, status)

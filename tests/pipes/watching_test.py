@@ -17,7 +17,7 @@ from harness import DATA, ROOT, WATCHDOG, free_port, wait_until
 class Watching(Graphs):
     def test_a_graph_is_listed_shown_and_drawn(self):
         name, process = self.run_named("seen")
-        wait_until(lambda: re.search(name + " .* 2/2 .* running", self.hc("ps")))
+        wait_until(lambda: re.search(name + " .* 2/2 .* running", self.listed()))
 
         def running():
             top = self.hc("top " + name)
@@ -45,7 +45,7 @@ class Watching(Graphs):
         for word in ("camera", "brightness", "left", "image"):
             self.assertIn(">%s</text>" % word, image)
         self.stop(process)
-        self.assertNotIn(name, self.hc("ps"))
+        self.assertNotIn(name, self.listed())
 
     def test_a_name_that_is_given_is_refused_when_taken(self):
         name, process = self.run_named("taken")
@@ -127,11 +127,11 @@ class Watching(Graphs):
 
     def test_graphs_of_one_name_are_listed_as_of_takes_them(self):
         name, one = self.run_named("twin")
-        self.assertRegex(self.hc("ps"), "\n%s +%d " % (name, one.pid))
+        self.assertRegex(self.listed(), "\n%s +%d " % (name, one.pid))
         self.shell("mv g.toml %s.toml" % name)
         two = self.start("exec hc run %s.toml" % name)
         self.await_lines(two, "brightness: started")
-        listed = self.hc("ps")
+        listed = self.listed()
         for process in (one, two):
             self.assertRegex(listed, r"\n%s\.%d +%d " % (name, process.pid, process.pid))
             self.hc("graph stop --of %s.%d" % (name, process.pid))
@@ -262,7 +262,7 @@ class Watching(Graphs):
         wait_until(lambda: re.search(waits, self.hc("top " + name)))
         waiting = r"camera  \(has waited [0-9]+ s for %s\)\n" % end
         wait_until(lambda: re.search(waiting, self.hc("graph --of " + name)))
-        self.assertRegex(self.hc("ps"), name + " .* 1/1 .* running\n")
+        self.assertRegex(self.listed(), name + " .* 1/1 .* running\n")
         camera = self.module(self.state_of(process, name), "camera")
         os.kill(camera["pid"], signal.SIGSTOP)
         wait_until(lambda: "stalled: stopped by a signal" in self.hc("top " + name))

@@ -148,8 +148,7 @@ struct LinkOptions {
   std::function<void(bool awaits)> awaits_reader = {};
 };
 
-/// Opens the receiving or the sending end of a link. doc/modules.md, "Links", lists the URIs and
-/// their options.
+/// Opens the receiving or the sending end of a link. doc/links.md lists the URIs and their options.
 ///
 /// Errors: Invalid (an unknown scheme or option, or a bad value), NotFound (no such file or host),
 /// Closed (connection refused), Stopped, System (name in use, …).
