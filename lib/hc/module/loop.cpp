@@ -77,8 +77,8 @@ void Module::Loop::work() {
 
 std::optional<Message> Module::Loop::next(internal::InputState& input) {
   end_pulled();
-  while (input.waiting.empty())
-    if (inlets.have_ended(input) || !turn()) return std::nullopt;
+  for (asked_ = &input; input.waiting.empty();)
+    if (has_asked_ended() || !turn()) return std::nullopt;
   auto [message, inlet] = std::move(input.waiting.front());
   input.waiting.pop_front();
   module.handled_ = internal::Handled(message.header);
@@ -164,6 +164,7 @@ void Module::Loop::read_watched() {
 }
 
 bool Module::Loop::wait(bool for_messages, MonotonicTime until) {
+  if (for_messages && has_asked_ended()) return false;
   waited_for_.clear();
   watched_.clear();
   inlets.for_each([&](internal::Inlet& inlet) {

@@ -68,6 +68,9 @@ struct Module::Loop {
 
  private:
   bool turn();
+  [[nodiscard]] bool has_asked_ended() const {
+    return asked_ != nullptr && inlets.have_ended(*asked_);
+  }
   void end_pulled();
   void read_watched();
   void end();
@@ -76,8 +79,9 @@ struct Module::Loop {
   WaitSet waits_, pauses_;  // for messages; between two calls of a generator
   std::vector<Source*> waited_for_;
   std::vector<int> watched_;
-  MonotonicTime served_{0}, looked_{0};  // when commands were, and own descriptors
-  bool has_waited_ = false;              // for messages, in this turn
+  MonotonicTime served_{0}, looked_{0};          // when commands were, and own descriptors
+  bool has_waited_ = false;                      // for messages, in this turn
+  const internal::InputState* asked_ = nullptr;  // for its next message
   std::function<void()> note_end_;  // of the message that was pulled last; its handling ends then
 };
 

@@ -51,10 +51,10 @@ void Module::Run::begin(const std::vector<std::string>& words) {
   arguments_ = std::make_unique<internal::Arguments>(std::move(*arguments));
   using Task = internal::Arguments::Task;
   if (arguments_->task != Task::Run) {
-    const auto printed = write_all(
-        STDOUT_FILENO, arguments_->task == Task::Help
-                           ? internal::help(module_)
-                           : to_json(internal::description_of(module_)) + "\n");
+    const auto printed =
+        write_all(STDOUT_FILENO, arguments_->task == Task::Help
+                                     ? internal::help(module_)
+                                     : to_json(internal::description_of(module_)) + "\n");
     if (!printed && printed.error().code != Code::Closed) throw ModuleError(printed.error());
     status_ = kDone;
     return;
