@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Modules: programs with inputs, outputs and parameters."""
 
+import atexit
+import os
 import sys
 from typing import Any, Callable, List, Optional, Sequence, TypeVar, Union
 
 from hypercolumn import _hypercolumn
-from hypercolumn._hypercolumn import Input, Kind, Output, Parameter, Timeout
+from hypercolumn._hypercolumn import Input, Kind, Messages, Output, Parameter, Timeout
 from hypercolumn.errors import Error
 
 Handler = TypeVar("Handler", bound=Callable[..., Any])
@@ -30,7 +32,8 @@ class Module(_hypercolumn.Module):
     """A program with input ports, output ports and parameters, declared once.
 
     Its handlers run one after another on the thread that calls run(). It has all options of a
-    module in C++, such as --help, --describe, --in and --out (doc/modules.md).
+    module in C++, such as --help, --describe, --in and --out (doc/modules.md). A script needs
+    neither: `for message in input:` runs the module while it waits for the next message.
     """
 
     def __init__(
@@ -61,7 +64,9 @@ class Module(_hypercolumn.Module):
         that number of the newest messages, so that a link in a graph does not block its writer
         unless the link has another `keep`.
         """
-        return self._input(name, kind, doc, actor, keep)
+        port = self._input(name, kind, doc, actor, keep)
+        port.module = self
+        return port
 
     def output(
         self, name: str, kind: Kind, doc: str, *, on_demand: bool = False, keep: int = 0
@@ -173,3 +178,20 @@ class Module(_hypercolumn.Module):
             sys.stdout = outside
         if status != 0:
             sys.exit(status)
+
+    def _pull(self, port: Input) -> Messages:
+        """The messages of an input that has no handler. The first call begins the module, which
+        ends with the interpreter, so that a script can still send after its loop."""
+        if port.name in self._handled:
+            raise Error("Invalid: input %s has a handler" % port.name, "Invalid")
+        if not self._is_pulled:
+            sys.stdout = sys.stderr
+            atexit.register(self._end_script)
+            self._begin(sys.argv[1:])
+        return Messages(self, port)
+
+    def _end_script(self) -> None:
+        status = self._end()
+        if status != 0:  # at exit nothing else can tell it
+            sys.stderr.flush()
+            os._exit(status)

@@ -213,13 +213,40 @@ class Frames {
   Program& program_;
 };
 
+/// The messages of an input in a script.
+class Messages {
+ public:
+  Messages(Program& program, const PyInput& input)
+      : program_(program), keeper_(std::make_shared<Keeper>(Keeper{input.name})) {}
+
+  py::object next() {
+    auto message = program_.next(keeper_->name);
+    if (!message) throw py::stop_iteration();
+    auto object = py::reinterpret_steal<py::object>(wrap(std::move(*message), keeper_));
+    if (!object) throw py::error_already_set();
+    return object;
+  }
+
+ private:
+  Program& program_;
+  std::shared_ptr<Keeper> keeper_;
+};
+
 void keep_rate(Program& program, double rate) {
   program.work("keep_rate()", [&] { program.module().keep_rate(rate); });
 }
 
 void add_ports(py::module_& extension) {
-  py::class_<PyInput>(extension, "Input", "An input port.")
-      .def_readonly("name", &PyInput::name, "Its name.");
+  py::class_<PyInput>(extension, "Input",
+                      "An input port. In a script, `for message in input:` takes its messages.",
+                      py::dynamic_attr())
+      .def_readonly("name", &PyInput::name, "Its name.")
+      .def("__iter__",
+           [](const py::object& self) { return self.attr("module").attr("_pull")(self); });
+  py::class_<Messages>(extension, "Messages", "The messages of an input in a script.")
+      .def(py::init<Program&, const PyInput&>(), py::keep_alive<1, 2>())
+      .def("__iter__", [](py::object self) { return self; })
+      .def("__next__", &Messages::next);
   py::class_<PyParameter>(extension, "Parameter", "A parameter of the module.")
       .def_property_readonly("value", &PyParameter::value, "The current value.")
       .def_property_readonly(
@@ -275,6 +302,9 @@ void add_modules(py::module_& extension) {
              self.module().on_end(action(self, function));
            })
       .def("_run", &Program::run)
+      .def("_begin", &Program::begin)
+      .def("_end", &Program::end)
+      .def_property_readonly("_is_pulled", &Program::is_pulled)
       .def("keep_rate", keep_rate, py::arg("rate"),
            "For generators: waits until the next period of a rate begins [Hz].")
       .def(

@@ -54,11 +54,48 @@ int Program::run(const std::vector<std::string>& words) {
   is_running_ = false;
   failure_ = nullptr;
   if (thrown) std::rethrow_exception(thrown);
-  if (exit_) {
-    auto error = *std::exchange(exit_, std::nullopt);
-    throw py::error_already_set(error);
-  }
+  raise_exit();
   return status;
+}
+
+void Program::begin(const std::vector<std::string>& words) {
+  if (is_running_) raise({hc::Code::Invalid, "the module is already running"});
+  is_running_ = true;
+  thread_ = std::this_thread::get_id();
+  for (const auto& input : hc::ModuleAccess::inputs(module_)) input->is_pulled = !input->handler;
+  work("begin()", [&] { run_ = std::make_unique<hc::ModuleAccess::Run>(module_, words); });
+  raise_exit();
+}
+
+std::optional<hc::Message> Program::next(const std::string& input) {
+  const auto& inputs = hc::ModuleAccess::inputs(module_);
+  const auto named = [&](const auto& each) { return each->name == input; };
+  auto& state = **std::find_if(inputs.begin(), inputs.end(), named);
+  std::optional<hc::Message> message;
+  is_in_script_ = false;
+  work("next()", [&] { message = run_->next(state); });
+  is_in_script_ = true;
+  raise_exit();
+  if (!run_->has_status()) return message;
+  PyErr_SetObject(PyExc_SystemExit, py::int_(end()).ptr());
+  throw py::error_already_set();
+}
+
+int Program::end() {
+  if (run_ == nullptr) return 0;
+  int status = 0;
+  is_in_script_ = false;
+  work("end()", [&] { status = run_->end(); });
+  run_.reset();
+  is_running_ = false;
+  return status;
+}
+
+/// Raises the exception with which a handler has ended the interpreter.
+void Program::raise_exit() {
+  if (!exit_) return;
+  auto error = *std::exchange(exit_, std::nullopt);
+  throw py::error_already_set(error);
 }
 
 void Program::end_by_error() {
@@ -93,10 +130,17 @@ void Program::refuse_thread() {
          "thread pass its data, and use them in a handler, e.g. of every()"});
 }
 
-/// Raises the failure. One that ends the module cleanly is kept for end_by_error().
+/// Raises the failure. One that ends the module cleanly is kept for end_by_error(); a script goes
+/// on, and gets no further message.
 void Program::raise_failure() {
   try {
     std::rethrow_exception(failure_);
+  } catch (const hc::internal::Stopped&) {
+    if (is_in_script_) {
+      failure_ = nullptr;
+      return run_->stop();
+    }
+    set_current_exception();
   } catch (...) {
     set_current_exception();
   }

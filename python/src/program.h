@@ -13,6 +13,7 @@
 
 #include <frames/module_frames.h>
 #include <hc/module/module.h>
+#include <hc/module/run.h>
 
 #include "python.h"
 
@@ -55,6 +56,15 @@ class Program {
   /// Runs the module; only its handlers hold the GIL. Raises an exception with which a handler
   /// ended the interpreter.
   int run(const std::vector<std::string>& words);
+
+  /// Begins a run in which the inputs without a handler are pulled: next().
+  void begin(const std::vector<std::string>& words);
+  /// The next message of an input, while the handlers of others are called; none at its end. The
+  /// interpreter ends where the module has failed.
+  std::optional<hc::Message> next(const std::string& input);
+  /// Ends the run that begin() has begun, if there is one. @returns  the exit status.
+  int end();
+  [[nodiscard]] bool is_pulled() const { return run_ != nullptr; }
 
   /// Calls a handler from the loop, with the GIL. A hypercolumn.BadMessage or an IndexError drops
   /// the message. Any other exception ends the module, with the text of a hypercolumn.Error, or
@@ -116,13 +126,16 @@ class Program {
     if (thread_state_ == nullptr) thread_state_ = PyEval_SaveThread();
   }
   [[noreturn]] static void refuse_thread();
-  [[noreturn]] void raise_failure();
+  void raise_failure();
+  void raise_exit();
 
   hc::Module module_;
-  std::optional<hc::ModuleFrames> frames_;  // used by the module's handlers
-  PyThreadState* thread_state_ = nullptr;   // of the running thread; null: it holds the GIL
+  std::unique_ptr<hc::ModuleAccess::Run> run_;  // of a script
+  std::optional<hc::ModuleFrames> frames_;      // used by the module's handlers
+  PyThreadState* thread_state_ = nullptr;       // of the running thread; null: it holds the GIL
   std::thread::id thread_;
   bool is_running_ = false;
+  bool is_in_script_ = false;                  // rather than in the loop
   std::exception_ptr failure_;                 // passes through Python, then ends the module
   std::optional<py::error_already_set> exit_;  // with which a handler ends the interpreter
 };

@@ -102,6 +102,7 @@ Status WaitSet::watch(std::span<const int> descriptors) {
 
 /// Waits for the watched descriptors.
 Result<bool> WaitSet::sleep(nanoseconds timeout) {
+  has_looked_ = true;
   std::array<epoll_event, 8> events;
   const int count = HC_TRY(system_call(
       "epoll_pwait2", "", [&] { return wait_for_events(poll_.get(), events, timeout); }));
@@ -116,7 +117,7 @@ Result<bool> WaitSet::sleep(nanoseconds timeout) {
 Result<bool> WaitSet::wait(std::span<Source* const> sources, std::span<const int> descriptors,
                            nanoseconds timeout) {
   woken_by_.clear();
-  was_short_ = false;
+  was_short_ = has_looked_ = false;
   if (sources.size() == 1 && descriptors.empty() && sources[0]->wake_descriptor() < 0) {
     woken_by_.push_back(sources[0]->number_);
     return wait_for(sources[0]->descriptor(), POLLIN, stop_,

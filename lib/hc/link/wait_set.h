@@ -48,8 +48,9 @@ class WaitSet {
 
   /// Whether the last wait slept, and a descriptor of this source ended it.
   [[nodiscard]] bool was_woken_by(const Source& source) const { return was_woken(source.number_); }
-  /// Whether the last wait found this one of its `descriptors` readable, or failed. A caller whose
-  /// sources keep it from waiting has to wait for 0 s now and then.
+  /// Whether the last wait looked at descriptors: not if it found a message in memory.
+  [[nodiscard]] bool has_looked() const { return has_looked_; }
+  /// Whether the last wait found this one of its `descriptors` readable, or failed; if it looked.
   [[nodiscard]] bool was_readable(int descriptor) const { return was_woken(number_of(descriptor)); }
 
   /// Whether the last wait took no more than about a microsecond, since a message was in memory. A
@@ -81,7 +82,7 @@ class WaitSet {
   std::vector<std::uint64_t> files_;      // not in it: they are always readable
   std::vector<std::uint64_t> woken_by_;   // numbers of sources and descriptors
   std::unique_ptr<internal::Spin> spin_;  // before it sleeps
-  bool was_short_ = false;
+  bool was_short_ = false, has_looked_ = false;
 };
 
 }  // namespace hc

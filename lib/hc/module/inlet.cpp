@@ -69,7 +69,7 @@ void Module::Delivery::handle(Inlet& inlet, Message& message) {
                     [&](const PortType& type) { return fits(message.header, type); });
     if (!fits_any) continue;
     trace_.note(TraceEvent::What::Took, input->name, message.header, inlet.number);
-    if (!input->handler) return;
+    if (!input->handler && !input->is_pulled) return;
     if (!module_.focus_.admits(input->is_exclusive, message.header.mode)) {
       ++inlet.ignored;
       return;
@@ -87,11 +87,12 @@ void Module::Delivery::handle(Inlet& inlet, internal::TogetherState& together) {
   call_or_drop(inlet, inlet.port(), [&] { module_.handle(together); });
 }
 
-void Module::Delivery::call(Inlet& inlet, const internal::InputState& input, Message& message) {
+void Module::Delivery::call(Inlet& inlet, internal::InputState& input, Message& message) {
   if (input.is_finite && !finite(message)) {
     ++inlet.ignored;
     return module_.log_once("not finite", input.name + ": dropped: NaN or infinity");
   }
+  if (input.is_pulled) return keep_waiting(inlet, input, message);
   module_.handled_ = internal::Handled(message.header, &inlet.route.peer);
   call_or_drop(inlet, input.name, [&] {
     if (!trace_.is_linked() || input.together != nullptr) [[likely]]
@@ -102,6 +103,15 @@ void Module::Delivery::call(Inlet& inlet, const internal::InputState& input, Mes
     trace_.note(TraceEvent::What::Ended, input.name, header, inlet.number);
   });
   module_.handled_ = {};
+}
+
+/// Only standard input has messages of several inputs, of which one may never be asked for.
+void Module::Delivery::keep_waiting(Inlet& inlet, internal::InputState& input, Message& message) {
+  constexpr std::size_t kMost = 16;
+  input.waiting.push_back({std::move(message).keep(), inlet.number});
+  if (input.waiting.size() <= kMost) return;
+  input.waiting.pop_front();
+  module_.log_once("not pulled", input.name + ": dropped: no one asks for its messages");
 }
 
 /// Calls a handler. Any exception except ModuleError means a bad message: also those of libraries

@@ -36,7 +36,9 @@ struct Inlet {
   MonotonicTime last_taken{0};           ///< 0: never
 
   /// Whether its next message is to be taken.
-  [[nodiscard]] bool is_open() const { return source != nullptr && !head; }
+  [[nodiscard]] bool is_open() const { return source != nullptr && !head && !is_full(); }
+  /// Whether its message waits to be pulled. Those of several inputs queue up: see Delivery.
+  [[nodiscard]] bool is_full() const { return inputs.size() == 1 && !inputs[0]->waiting.empty(); }
   /// When its head is due.
   [[nodiscard]] MonotonicTime time() const { return MonotonicTime(head->header.time); }
   [[nodiscard]] bool is_same(const Inlet& other) const {
@@ -76,7 +78,8 @@ class Module::Delivery {
 
  private:
   void set_focus(internal::Inlet& inlet, const Message& message);
-  void call(internal::Inlet& inlet, const internal::InputState& input, Message& message);
+  void call(internal::Inlet& inlet, internal::InputState& input, Message& message);
+  void keep_waiting(internal::Inlet& inlet, internal::InputState& input, Message& message);
   template <typename Handle>
   void call_or_drop(internal::Inlet& inlet, const std::string& who, const Handle& handle);
   void drop(internal::Inlet& inlet, const std::string& who, std::string_view why);

@@ -126,6 +126,16 @@ bool Module::Inlets::all_ended() const {
   return std::ranges::all_of(inlets_, [](const Inlet& inlet) { return inlet.source == nullptr; });
 }
 
+bool Module::Inlets::have_ended(const internal::InputState& input) const {
+  bool any = false;
+  for (const auto& inlet : inlets_)
+    if (std::ranges::count(inlet.inputs, &input) != 0) {
+      if (inlet.source != nullptr) return false;
+      any = true;
+    }
+  return any;
+}
+
 Got Module::Inlets::take(Inlet& inlet, Message& message) {
   auto got = inlet.source->take(message);
   if (!got && inlet.inputs.empty()) got = Got::End;  // the focus expires
@@ -158,7 +168,7 @@ bool Module::Inlets::take_each() {
       // To find the newest set, all messages that have arrived are taken.
       const int most = inlet.together() != nullptr && inlet.together()->is_latest ? kMostAtOnce : 1;
       for (int i = 0; i < most; ++i) {
-        if (inlet.source == nullptr || is_crowded(inlet) != crowded) break;
+        if (!inlet.is_open() || is_crowded(inlet) != crowded) break;
         if (any) now_.read();  // handling the messages before took time
         if (!take_one(inlet)) break;
         any = true;

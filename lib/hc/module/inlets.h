@@ -36,6 +36,8 @@ class Module::Inlets {
   /// Whether no message can arrive any more. False without links if a command may add one, or if
   /// the module has only timers.
   [[nodiscard]] bool all_ended() const;
+  /// Whether an input had links, and all have ended.
+  [[nodiscard]] bool have_ended(const internal::InputState& input) const;
 
   /// Takes and handles a message of each link; false if there is none. Links with a crowded queue
   /// of messages that wait for partners are read only if no other link has a message.

@@ -4,6 +4,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <utility>
 
 #include <hc/os/program.h>
 
@@ -12,6 +13,9 @@ namespace {
 
 /// How often a busy module looks for commands; an idle one is woken by them.
 constexpr std::chrono::milliseconds kHousekeepingPeriod{10};
+
+/// How often a busy module polls its own descriptors.
+constexpr std::chrono::milliseconds kLookPeriod{1};
 
 }  // namespace
 
@@ -53,20 +57,50 @@ Module::Loop::~Loop() {
   module.loop_ = nullptr;
 }
 
-void Module::Loop::run() {
+void Module::Loop::begin() {
   inlets.sets().end_unlinked(opener.is_in_graph());
   inlets.end_unneeded();
   schedule_->begin();
   timers.start();
   if (module.start_) module.start_();
-  while (!module.is_done_ && schedule_->turn())
-    if (stop_requested()) throw internal::Stopped();
+}
+
+bool Module::Loop::turn() {
+  if (module.is_done_ || !schedule_->turn()) return false;
+  if (stop_requested()) throw internal::Stopped();
+  return true;
+}
+
+void Module::Loop::work() {
+  while (turn()) continue;
+}
+
+std::optional<Message> Module::Loop::next(internal::InputState& input) {
+  end_pulled();
+  for (asked_ = &input; input.waiting.empty();)
+    if (has_asked_ended() || !turn()) return std::nullopt;
+  auto [message, inlet] = std::move(input.waiting.front());
+  input.waiting.pop_front();
+  module.handled_ = internal::Handled(message.header);
+  trace.note(TraceEvent::What::Began, input.name, message.header, inlet);
+  note_end_ = [this, &input, inlet = inlet, header = message.header] {
+    trace.note(TraceEvent::What::Ended, input.name, header, inlet);
+  };
+  return std::move(message);
+}
+
+void Module::Loop::end_pulled() {
+  if (const auto note = std::exchange(note_end_, {})) note();
+  module.handled_ = {};
+}
+
+void Module::Loop::finish() {
   inlets.sets().end_all();
   end();
 }
 
 void Module::Loop::end() {
-  module.handled_ = {};
+  end_pulled();
   if (module.end_) module.end_();
 }
 
@@ -114,17 +148,23 @@ void Module::Loop::generate() {
   trace.note(TraceEvent::What::Ended, TraceEvent::kGenerator);
 }
 
-/// Calls the handlers of the module's own descriptors that are readable.
+/// Calls the handlers of the module's own descriptors that are readable: the wait before has said
+/// which, unless messages kept the module from waiting.
 void Module::Loop::read_watched() {
+  const bool is_known = std::exchange(has_waited_, false) && waits_.has_looked();
+  if (!is_known && now.machine - looked_ < kLookPeriod) return;
+  looked_ = now.machine;
   for (auto& watch : module.watches_) {
     pollfd watched{watch.descriptor(), POLLIN, 0};
-    if (watched.fd < 0 || ::poll(&watched, 1, 0) <= 0) continue;
+    if (watched.fd < 0) continue;
+    if (is_known ? !waits_.was_readable(watched.fd) : ::poll(&watched, 1, 0) <= 0) continue;
     watch.handler();
     now.read();
   }
 }
 
 bool Module::Loop::wait(bool for_messages, MonotonicTime until) {
+  if (for_messages && has_asked_ended()) return false;
   waited_for_.clear();
   watched_.clear();
   inlets.for_each([&](internal::Inlet& inlet) {
@@ -141,6 +181,7 @@ bool Module::Loop::wait(bool for_messages, MonotonicTime until) {
   auto& waits = for_messages ? waits_ : pauses_;
   if (module.before_waiting_) module.before_waiting_();
   const auto ready = waits.wait(waited_for_, watched_, timeout);
+  has_waited_ = for_messages;
   if (!ready) internal::fail("wait", ready.error());
   if (remote.commands() != nullptr && waits.was_woken_by(*remote.commands())) served_ = {};
   return waits.was_short();

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,10 +27,15 @@ struct Module::Loop {
   Loop(const Loop&) = delete;
   Loop& operator=(const Loop&) = delete;
 
-  /// Runs until all inputs have ended, or Module::stop().
-  void run();
-  /// See Module::finish_when_stopped().
+  void begin();
+  /// Works until all inputs have ended, or Module::stop().
+  void work();
+  /// The next message of a pulled input, which is then being handled; none at its end.
+  std::optional<Message> next(internal::InputState& input);
+  /// See ModuleOptions::finish_when_stopped.
   void take_rest();
+  /// All inputs have ended.
+  void finish();
   /// See Schedule::pause().
   void pause(const std::function<MonotonicTime()>& due) { schedule_->pause(due); }
   void close();
@@ -61,6 +67,11 @@ struct Module::Loop {
   Remote remote;
 
  private:
+  bool turn();
+  [[nodiscard]] bool has_asked_ended() const {
+    return asked_ != nullptr && inlets.have_ended(*asked_);
+  }
+  void end_pulled();
   void read_watched();
   void end();
 
@@ -68,7 +79,10 @@ struct Module::Loop {
   WaitSet waits_, pauses_;  // for messages; between two calls of a generator
   std::vector<Source*> waited_for_;
   std::vector<int> watched_;
-  MonotonicTime served_{0};
+  MonotonicTime served_{0}, looked_{0};          // when commands were, and own descriptors
+  bool has_waited_ = false;                      // for messages, in this turn
+  const internal::InputState* asked_ = nullptr;  // for its next message
+  std::function<void()> note_end_;  // of the message that was pulled last; its handling ends then
 };
 
 }  // namespace hc

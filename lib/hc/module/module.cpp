@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/module/module.h>
 
-#include <sched.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,13 +9,11 @@
 
 #include <hc/base/visible.h>
 #include <hc/module/loop.h>
+#include <hc/module/run.h>
 #include <hc/os/program.h>
 
 namespace hc {
 namespace {
-
-constexpr int kDone = 0, kFailure = 1, kUsage = 2;
-constexpr int kBackgroundNice = 10;
 
 const SystemClock kSystemClock;
 
@@ -209,55 +205,9 @@ bool Module::is_read() const {
 }
 
 int Module::run(int argc, char** argv) {
-  auto arguments = internal::parse_arguments(*this, {argv + 1, argv + argc});
-  if (!arguments) {
-    log(arguments.error().text());
-    return kUsage;
-  }
-  using Task = internal::Arguments::Task;
-  if (arguments->task != Task::Run) {
-    auto printed = write_all(STDOUT_FILENO, arguments->task == Task::Help
-                                                ? internal::help(*this)
-                                                : to_json(internal::description_of(*this)) + "\n");
-    if (printed || printed.error().code == Code::Closed) return kDone;
-    log(printed.error().text());
-    return kFailure;
-  }
-  if (!arguments->instance.empty()) instance_ = arguments->instance;
-  message_time_.reset();
-  if (arguments->by_messages) message_time_ = 0;
-  if (options_.background) {  // what is refused changes nothing but the speed
-    static_cast<void>(::setpriority(PRIO_PROCESS, 0, kBackgroundNice));
-    const sched_param none{};
-    static_cast<void>(::sched_setscheduler(0, SCHED_BATCH, &none));
-  }
-  const int status = run_loop(*arguments);
-  log_counts();
-  return status;
-}
-
-int Module::run_loop(const internal::Arguments& arguments) {
-  try {
-    Loop loop(*this, arguments, stop_descriptor());
-    try {
-      loop.run();
-    } catch (const internal::Stopped&) {
-      // No reader is left, or it was stopped: a clean end.
-      if (options_.finish_when_stopped) loop.take_rest();
-    }
-    loop.close();
-    // As has been logged. What is dropped in a replay was dropped when it was recorded.
-    if (loop.has_failed_input() && !arguments.clock) return kFailure;
-  } catch (const internal::Stopped&) {
-    // Stopped while its links opened or closed.
-  } catch (const ModuleError& error) {
-    log(error.what());
-    return error.is_usage ? kUsage : kFailure;
-  } catch (const std::exception& error) {
-    log(internal::thrown_in_words(error));
-    return kFailure;
-  }
-  return kDone;
+  Run run(*this, {argv + 1, argv + argc});
+  run.work();
+  return run.end();
 }
 
 }  // namespace hc

@@ -286,6 +286,7 @@ class Module {
   friend void internal::send(internal::OutputState&, Message&&);
   friend std::size_t internal::forward(internal::OutputState&, const Message&);
   friend class Timeout;
+  class Run;
   struct Loop;  // and its parts
   class Delivery;
   class Inlets;
@@ -328,7 +329,6 @@ class Module {
   /// Logs the first unmatched message of each input.
   void log_unmatched(const internal::TogetherState& together);
   void log_counts() const;
-  int run_loop(const internal::Arguments& arguments);
 
   std::string name_, summary_;
   std::string instance_;  // its name in the graph
@@ -361,6 +361,7 @@ struct ModuleAccess {
   static const auto& together(const Module& module) { return module.together_; }
   static const std::string& summary(const Module& module) { return module.summary_; }
   static bool routes(const Module& module) { return module.options_.routes; }
+  using Run = Module::Run;
 
   /// For the arbiter itself, which has no focus: reports which mode has it, and who holds it back,
   /// as `hc ps` shows it. Its next process gets `stops` back, in the parameter kStops.

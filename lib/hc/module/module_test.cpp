@@ -308,7 +308,8 @@ TEST(Module, ATimeoutFiresOnceEachTimeItIsStarted) {
 }
 
 TEST(Module, ADescriptorIsReadWhenItIsReadable) {
-  Module module{"device", "Reads a device."};
+  ManualClock clock;
+  Module module{"device", "Reads a device.", {.clock = &clock}};
   int pipe[2];
   ASSERT_EQ(::pipe(pipe), 0);
   std::vector<int> read_at;
@@ -325,10 +326,13 @@ TEST(Module, ADescriptorIsReadWhenItIsReadable) {
     if (turns == 2) {
       EXPECT_EQ(::write(pipe[1], "ab", 2), 2);
     }
+    if (turns != 3)
+      clock.advance(
+          std::chrono::milliseconds(1));  // a module that never waits looks once a millisecond
     if (turns >= 6) module.stop();
   });
   EXPECT_EQ(run(module, {}), 0);
-  EXPECT_EQ(read_at, (std::vector<int>{2, 3}));
+  EXPECT_EQ(read_at, (std::vector<int>{2, 4}));
   ::close(pipe[0]);
   ::close(pipe[1]);
 }

@@ -3,6 +3,7 @@
 // Ports: where a module's messages come in and go out.
 
 #include <algorithm>
+#include <deque>
 #include <functional>
 #include <initializer_list>
 #include <memory>
@@ -63,6 +64,12 @@ struct Outlet {
   }
 };
 
+/// A message that waits to be pulled. @see Inlet::number
+struct Waiting {
+  Message message;
+  std::int32_t inlet = 0;
+};
+
 struct InputState {
   std::string name, doc;
   std::vector<PortType> types;            ///< what it takes; empty: anything
@@ -73,6 +80,8 @@ struct InputState {
   bool is_raw = false;        ///< the handler gets messages as they came, compressed ones too
   bool is_exclusive = false;  ///< takes messages of the mode in focus alone
   bool is_finite = false;     ///< drops messages with NaN or infinity
+  bool is_pulled = false;     ///< messages wait until they are asked for: Run::next()
+  std::deque<Waiting> waiting;
   InputOptions options;
 };
 
