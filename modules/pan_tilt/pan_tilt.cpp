@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pan_tilt.h"
+
+PanTilt::PanTilt(hc::Module& module) : module_(module) {
+  module.on_start([this] { pass(); });
+  module.every(hc::pan_tilt::Neck::kTick, [this] { pass(); });
+  module.every(parameters_.rate, [this] { neck_.look(now()); });
+  module.on_readable([this] { return neck_.descriptor(); }, [this] { read(); });
+  module.on(device_input_, [this](const auto& name) { neck_.set_device(now(), name.text()); });
+  module.on(command_, [this](const auto& message) { turn(message); });
+}
+
+void PanTilt::pass() {
+  neck_.set_focus(now(), module_.focus());
+  neck_.pass(now(), parameters_.settings());
+}
+
+void PanTilt::read() {
+  neck_.set_focus(now(), module_.focus());
+  neck_.read(now());
+}
+
+void PanTilt::turn(const hc::MessageOf<hc::RotationKind<double>>& message) {
+  neck_.set_focus(now(), module_.focus());
+  const auto angles = message.numbers();
+  const auto& header = message.header;
+  neck_.command(now(), module_.now(), {angles[2], angles[1], header.time, header.mode, header.src});
+}
+
+void PanTilt::send(const hc::pan_tilt::Gaze& seen) {
+  const std::int64_t time = module_.now() - (now() - seen.time).count();
+  gaze_.send({0.0, seen.tilt, seen.pan}, time);
+  const Eigen::Isometry3d T_robot_head(hc::frames::rotation(0, seen.tilt, seen.pan));
+  if (pose_.linked()) pose_.send(hc::numbers_of(T_robot_head), time);
+}

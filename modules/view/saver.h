@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Saves images as PNG files: all into a folder, or the latest into one file, once a second.
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+
+#include <hc/module/module.h>
+#include <opencv2/core.hpp>
+
+class Saver {
+ public:
+  /// @param module  must outlive it.
+  explicit Saver(hc::Module& module) : module_(module) {}
+
+  /// Saves an image, (H, W, 3) u8 blue, green, red.
+  /// @param to  a file, or folder/.
+  void save(const std::string& to, const hc::Header& header, const cv::Mat& bgr);
+  /// Saves the latest image that is not in the file yet.
+  void save_latest();
+
+  /// Whether an image could not be saved.
+  [[nodiscard]] bool has_failed() const { return has_failed_; }
+  /// Where the last image was saved; empty: none was.
+  [[nodiscard]] const std::filesystem::path& last() const { return last_; }
+
+ private:
+  struct Picture {
+    std::filesystem::path path;
+    cv::Mat bgr;
+  };
+  void write(const Picture& picture);
+  void end_pause();
+
+  hc::Module& module_;
+  std::filesystem::path last_;
+  Picture unsaved_;  // the latest, while the file has an older one
+  bool has_failed_ = false;
+  bool is_fresh_ = false;  // the file was replaced less than a pause ago
+  // Compressing an image takes longer than computing most.
+  hc::Timeout pause_ = module_.after(std::chrono::seconds(1), [this] { end_pause(); });
+};
