@@ -20,7 +20,7 @@ class Watching(Graphs):
         wait_until(lambda: re.search(name + " .* 2/2 .* running", self.listed()))
 
         def running():
-            top = self.hc("top " + name)
+            top = self.hc("top --of " + name)
             is_so = re.search(r"camera +[0-9.]+% +[0-9.]+ MB +0 +running", top)
             return (
                 is_so
@@ -90,7 +90,7 @@ class Watching(Graphs):
         self.assertIn('no parameter "rat", did you mean', self.hc("graph get camera.rat" + of, 2))
         self.shell("hc graph set camera.reopen=false" + of)
         self.assertIn("restarting camera", self.err)
-        wait_until(lambda: re.search(r"camera .* 1 +running", self.hc("top " + name)))
+        wait_until(lambda: re.search(r"camera .* 1 +running", self.hc("top --of " + name)))
         self.hc("graph restart camera second" + of)
         restarts = lambda state, each: self.module(state, each)["restarts"]
         self.state(
@@ -99,9 +99,9 @@ class Watching(Graphs):
         )
         self.shell("hc graph set camera.source=nosuch.ppm" + of)
         self.assertIn("restarting camera", self.err)
-        wait_until(lambda: "given up" in self.hc("top " + name))
+        wait_until(lambda: "given up" in self.hc("top --of " + name))
         self.shell("hc graph set camera.source=%s/aloeR.jpg" % DATA + of)
-        wait_until(lambda: re.search(r"camera .* running", self.hc("top " + name)))
+        wait_until(lambda: re.search(r"camera .* running", self.hc("top --of " + name)))
 
     def test_no_word_is_ignored(self):
         name, _ = self.run_named("words")
@@ -194,7 +194,7 @@ class Watching(Graphs):
         end = "tcp:%d?reconnect=60" % port
         text = GRAPH.partition("[modules.brightness]")[0] + 'outputs.left = "%s"\n' % end
         name, _ = self.run_named("alone", text, "nobody|no peer|retrying|waiting")
-        top = lambda: self.hc("top " + name)
+        top = lambda: self.hc("top --of " + name)
         wait_until(
             lambda: re.search("camera.left → tcp:%d.* nobody is there|no peer" % port, top())
         )
@@ -205,7 +205,7 @@ class Watching(Graphs):
         text = GRAPH.partition("[modules.brightness]")[0] + 'outputs.left = "%s"\n' % end
         name, _ = self.run_named("unread", text, "camera: started")
         lost = r"camera.left → tcp-listen:%d.* [1-9]\d* lost without a reader" % port
-        wait_until(lambda: re.search(lost, self.hc("top " + name)))
+        wait_until(lambda: re.search(lost, self.hc("top --of " + name)))
 
     def test_a_link_that_is_back_is_no_trouble(self):
         port = free_port()
@@ -224,7 +224,7 @@ class Watching(Graphs):
         os.kill(writer.pid, signal.SIGSTOP)  # what the link has said last is shown when it is still
         state = link(lambda link: link["per_second"] == 0)
         self.assertEqual(state["links"][0]["status"], "")
-        self.assertRegex(self.hc("top " + name), r"brightness .* running \| .*: reconnected")
+        self.assertRegex(self.hc("top --of " + name), r"brightness .* running \| .*: reconnected")
 
     def test_an_observer_outlives_restarts_and_ends_with_the_graph(self):
         name, process = self.run_named("restarted")
@@ -259,15 +259,15 @@ class Watching(Graphs):
         text = GRAPH.partition("[modules.brightness]")[0] + 'outputs.left = "%s"\n' % end
         name, process = self.run_named("waits", text, "camera: started")
         waits = "camera .* has waited [0-9]+ s for %s\n" % end
-        wait_until(lambda: re.search(waits, self.hc("top " + name)))
+        wait_until(lambda: re.search(waits, self.hc("top --of " + name)))
         waiting = r"camera  \(has waited [0-9]+ s for %s\)\n" % end
         wait_until(lambda: re.search(waiting, self.hc("graph --of " + name)))
         self.assertRegex(self.listed(), name + " .* 1/1 .* running\n")
         camera = self.module(self.state_of(process, name), "camera")
         os.kill(camera["pid"], signal.SIGSTOP)
-        wait_until(lambda: "stalled: stopped by a signal" in self.hc("top " + name))
+        wait_until(lambda: "stalled: stopped by a signal" in self.hc("top --of " + name))
         os.kill(camera["pid"], signal.SIGCONT)
-        wait_until(lambda: re.search(waits, self.hc("top " + name)))
+        wait_until(lambda: re.search(waits, self.hc("top --of " + name)))
 
     def test_help_says_what_each_word_is(self):
         for verb, words in (
@@ -309,7 +309,7 @@ class Watching(Graphs):
     def test_what_does_not_run_is_reported(self):
         name, process = self.run_named("here")
         self.assertIn(
-            'did you mean "%s"?' % name, self.hc("top " + name.replace("here", "hree"), 1)
+            'did you mean "%s"?' % name, self.hc("top --of " + name.replace("here", "hree"), 1)
         )
         self.stop(process)
         self.assertIn("NotFound: no graph", self.hc("graph set a.b=1 --of nowhere", 1))
@@ -349,7 +349,7 @@ class Watching(Graphs):
             return True
 
         wait_until(is_bold)
-        wait_until(lambda: "focus track" in self.hc("top " + name))
+        wait_until(lambda: "focus track" in self.hc("top --of " + name))
 
 
 if __name__ == "__main__":

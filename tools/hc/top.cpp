@@ -157,7 +157,7 @@ void top(const TopOptions& options) {
 void add_top(CLI::App& app) {
   auto options = std::make_shared<TopOptions>();
   auto* verb = app.add_subcommand("top", "Show a running graph live: modules, links, focus");
-  verb->add_option("graph,--of", options->graph, "name of the running graph, if there are several");
+  add_of(*verb, options->graph);
   verb->add_flag("--once", options->once, "print once, as without a terminal");
   verb->add_flag("--json", options->json, "print states as lines of JSON, twice a second");
   verb->callback([options] { top(*options); });
