@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -16,7 +15,7 @@
 namespace tool {
 namespace {
 
-constexpr std::int64_t kDisorder = 1'000'000'000;  // [ns]
+constexpr std::chrono::seconds kDisorder{1};
 
 template <typename T>
 std::string both(std::string_view field, const T& recorded, const T& replayed) {
@@ -47,12 +46,12 @@ struct KeptMessage {
   hc::Message message;
   bool is_matched = false;
 };
-using Messages = std::multimap<std::int64_t, KeptMessage>;  // by time
+using Messages = std::multimap<hc::Time, KeptMessage>;  // by time
 
 /// Takes the next message. A message without a time gets that of the previous one.
-bool take(const NextMessage& next, std::int64_t& time, hc::Message& message) {
+bool take(const NextMessage& next, hc::Time& time, hc::Message& message) {
   if (!next(message)) return false;
-  if (message.header.time != 0) time = message.header.time;
+  if (message.header.time != hc::Time()) time = message.header.time;
   return true;
 }
 
@@ -98,13 +97,13 @@ Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
                    const Tolerance& tolerance, std::int64_t last) {
   Comparison result;
   Messages held;  // of the replay, within 1 s of the current recorded message
-  std::int64_t time = 0, again_time = 0;
-  std::optional<std::int64_t> begin;
+  hc::Time time, again_time;
+  std::optional<hc::Time> begin;
   hc::Message message;
-  auto note = [&](const hc::Header& header, std::int64_t at, const std::string& what) {
+  auto note = [&](const hc::Header& header, hc::Time at, const std::string& what) {
     if (result.first.empty())
       result.first = hc::format("seq {}, {:.3f} s after the first: {}", header.seq,
-                                static_cast<double>(at - begin.value_or(at)) * 1e-9, what);
+                                hc::seconds(at - begin.value_or(at)), what);
   };
   auto hold_next = [&] {
     hc::Message other;
@@ -123,27 +122,27 @@ Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
   for (bool has_more = true; take(recorded, time, message);) {
     begin = begin.value_or(time);
     ++result.recorded;
-    const auto reach = time + tolerance.time + kDisorder;
+    const auto reach = hc::later(time, tolerance.time + kDisorder);
     while (has_more && (held.empty() || std::prev(held.end())->first <= reach))
       has_more = hold_next();
     drop_until(held.lower_bound(time - tolerance.time - kDisorder));
     bool is_found = false;
     std::string what;
     KeptMessage* nearest = nullptr;
-    std::int64_t distance = 0;
-    const auto end = held.upper_bound(time + tolerance.time);
+    std::chrono::nanoseconds distance{0};
+    const auto end = held.upper_bound(hc::later(time, tolerance.time));
     for (auto each = held.lower_bound(time - tolerance.time); each != end; ++each) {
       auto& candidate = each->second;
       // Without a tolerance of time, match one to one; otherwise a message may match several.
-      if (tolerance.time == 0 && candidate.is_matched) continue;
+      if (tolerance.time.count() == 0 && candidate.is_matched) continue;
       const auto differs = difference(message, candidate.message, tolerance);
       if (differs.empty()) {
         is_found = candidate.is_matched = true;
-        if (tolerance.time == 0) break;
+        if (tolerance.time.count() == 0) break;
       } else if (!candidate.is_matched &&
-                 (nearest == nullptr || std::abs(each->first - time) < distance)) {
+                 (nearest == nullptr || std::chrono::abs(each->first - time) < distance)) {
         nearest = &candidate;
-        distance = std::abs(each->first - time);
+        distance = std::chrono::abs(each->first - time);
         what = differs;
       }
     }

@@ -225,7 +225,7 @@ int Module::run(int argc, char** argv) {
   }
   if (!arguments->instance.empty()) instance_ = arguments->instance;
   message_time_.reset();
-  if (arguments->by_messages) message_time_ = 0;
+  if (arguments->by_messages) message_time_.emplace();
   if (options_.background) {  // what is refused changes nothing but the speed
     static_cast<void>(::setpriority(PRIO_PROCESS, 0, kBackgroundNice));
     const sched_param none{};
