@@ -10,6 +10,7 @@
 #include <string>
 
 #include <hc/base/result.h>
+#include <hc/base/time.h>
 #include <opencv2/core.hpp>
 
 namespace hc::aravis {

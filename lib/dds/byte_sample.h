@@ -18,6 +18,47 @@
 
 namespace hc::dds {
 
+/// A sample of what has been received in fragments, which may overlap.
+template <class S>
+ddsi_serdata* sample_of_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind,
+                                  const nn_rdata* fragment, std::size_t size) {
+  auto sample = std::make_unique<S>(*type, kind);
+  const auto payload_of = [](const nn_rdata* each) {
+    return reinterpret_cast<const std::byte*>(
+        NN_RMSG_PAYLOADOFF(each->rmsg, NN_RDATA_PAYLOAD_OFF(each)));
+  };
+  if (fragment == nullptr) return sample.release();
+  std::byte* room = sample->allocate(size, {payload_of(fragment), fragment->maxp1 - fragment->min});
+  std::uint32_t at = 0;
+  for (; room != nullptr && fragment != nullptr; fragment = fragment->nextfrag) {
+    const auto end = std::min<std::uint32_t>(fragment->maxp1, static_cast<std::uint32_t>(size));
+    if (end <= at) continue;
+    std::memcpy(room + at, payload_of(fragment) + at - fragment->min, end - at);
+    at = end;
+  }
+  return sample.release();
+}
+
+/// A sample of consecutive pieces.
+template <class S>
+ddsi_serdata* sample_of_pieces(const ddsi_sertype* type, ddsi_serdata_kind kind,
+                               ddsrt_msg_iovlen_t count, const ddsrt_iovec_t* pieces,
+                               std::size_t size) {
+  auto sample = std::make_unique<S>(*type, kind);
+  if (count == 0) return sample.release();
+  const std::span all(pieces, static_cast<std::size_t>(count));
+  std::byte* room = sample->allocate(
+      size, {static_cast<const std::byte*>(all[0].iov_base), std::size_t{all[0].iov_len}});
+  std::size_t at = 0;
+  for (const auto& piece : all) {
+    if (room == nullptr || at >= size) break;
+    const std::size_t length = std::min<std::size_t>(piece.iov_len, size - at);
+    std::memcpy(room + at, piece.iov_base, length);
+    at += length;
+  }
+  return sample.release();
+}
+
 /// Cyclone DDS's operations for samples of class S, which derives from ddsi_serdata and has
 ///
 ///     S(const ddsi_sertype& type, ddsi_serdata_kind kind);
@@ -38,41 +79,8 @@ ddsi_serdata_ops byte_sample_ops() {
   ops.get_size = [](const ddsi_serdata* data) {
     return static_cast<std::uint32_t>(static_cast<const S*>(data)->size);
   };
-  ops.from_ser = [](const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragment,
-                    std::size_t size) -> ddsi_serdata* {
-    auto sample = std::make_unique<S>(*type, kind);
-    const auto payload_of = [](const nn_rdata* each) {
-      return reinterpret_cast<const std::byte*>(
-          NN_RMSG_PAYLOADOFF(each->rmsg, NN_RDATA_PAYLOAD_OFF(each)));
-    };
-    if (fragment == nullptr) return sample.release();
-    std::byte* room =
-        sample->allocate(size, {payload_of(fragment), fragment->maxp1 - fragment->min});
-    std::uint32_t at = 0;  // fragments may overlap
-    for (; room != nullptr && fragment != nullptr; fragment = fragment->nextfrag) {
-      const auto end = std::min<std::uint32_t>(fragment->maxp1, static_cast<std::uint32_t>(size));
-      if (end <= at) continue;
-      std::memcpy(room + at, payload_of(fragment) + at - fragment->min, end - at);
-      at = end;
-    }
-    return sample.release();
-  };
-  ops.from_ser_iov = [](const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
-                        const ddsrt_iovec_t* pieces, std::size_t size) -> ddsi_serdata* {
-    auto sample = std::make_unique<S>(*type, kind);
-    if (count == 0) return sample.release();
-    const std::span all(pieces, static_cast<std::size_t>(count));
-    std::byte* room = sample->allocate(
-        size, {static_cast<const std::byte*>(all[0].iov_base), std::size_t{all[0].iov_len}});
-    std::size_t at = 0;
-    for (const auto& piece : all) {
-      if (room == nullptr || at >= size) break;
-      const std::size_t length = std::min<std::size_t>(piece.iov_len, size - at);
-      std::memcpy(room + at, piece.iov_base, length);
-      at += length;
-    }
-    return sample.release();
-  };
+  ops.from_ser = sample_of_fragments<S>;
+  ops.from_ser_iov = sample_of_pieces<S>;
   ops.from_keyhash = [](const ddsi_sertype* type, const ddsi_keyhash*) {
     return kWithoutBytes(type);
   };

@@ -40,7 +40,7 @@ TEST(Pose, IsATransformationOfFourByFour) {
     auto pose = must(pose_of(message_of(bytes)));
     EXPECT_EQ(pose.to, 2);
     EXPECT_EQ(pose.from, 3);
-    EXPECT_EQ(pose.time, 1763683200123456789);
+    EXPECT_EQ(pose.time, unix_time(1763683200123456789));
     Eigen::Vector3d p_robot = pose.T_to_from * Eigen::Vector3d(1, 0, 0);
     EXPECT_LT((p_robot - Eigen::Vector3d(0, 1, 0.3)).norm(), 1e-7);
   }

@@ -86,9 +86,7 @@ TEST(Tree, ExtrapolatesNothing) {
     EXPECT_TRUE(refusal(tree.lookup("world", "head", kTime - std::chrono::nanoseconds(away)))
                     .ends_with(text + " too early"));
   }
-  for (auto time :
-       {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()})
-    EXPECT_FALSE(tree.lookup("world", "head", time));
+  for (auto time : {Time::min(), Time::max()}) EXPECT_FALSE(tree.lookup("world", "head", time));
 }
 
 TEST(Tree, KnownIsWhenAllJointsAre) {

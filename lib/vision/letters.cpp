@@ -2,6 +2,7 @@
 #include <vision/letters.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -181,24 +182,83 @@ double spread_of(const std::vector<cv::Point2d>& points, const Slant& line) {
   return sum / static_cast<double>(points.size());
 }
 
+/// A line of letters between its top and its base line.
+struct Outline {
+  Slant top, base;
+  double left = 1e9, right = -1e9, height = 0;
+  double ink = 0, ground = 0;  // median grey
+};
+
+/// Slopes of the top and the base line.
+std::pair<double, double> slopes_of(const std::vector<cv::Point2d>& tops,
+                                    const std::vector<cv::Point2d>& bottoms, double height) {
+  const double top = slope_of(tops), base = slope_of(bottoms);
+  // Few letters do not determine the perspective, nor do tops of mixed small and capital letters.
+  if (tops.size() < 5) return {(top + base) / 2, (top + base) / 2};
+  const bool is_mixed = spread_of(tops, slant_of(tops, top)) > 0.08 * height;
+  return {is_mixed ? base : top, base};
+}
+
+/// Nothing if they are not a line of letters.
+std::optional<Outline> outline_of(const std::vector<Piece>& letters) {
+  // Slots, books and stripes form rows of bars; few letters are bars.
+  const auto bars = std::count_if(letters.begin(), letters.end(),
+                                  [](const auto& letter) { return letter.is_bar; });
+  if (4 * static_cast<std::size_t>(bars) > 3 * letters.size()) return {};
+  std::vector<double> heights;
+  heights.reserve(letters.size());
+  for (const auto& letter : letters) heights.push_back(letter.height());
+  const double usual = median(heights);
+  Outline line;
+  std::vector<cv::Point2d> tops, bottoms;
+  std::vector<double> inks, grounds;
+  for (const auto& letter : letters) {
+    line.left = std::min<double>(line.left, letter.left());
+    line.right = std::max<double>(line.right, letter.right());
+    if (letter.height() < 0.75 * usual) continue;
+    tops.emplace_back(letter.middle_x(), letter.top());
+    bottoms.emplace_back(letter.middle_x(), letter.bottom());
+    inks.push_back(letter.ink);
+    grounds.push_back(letter.ground);
+  }
+  const auto [top_slope, base_slope] = slopes_of(tops, bottoms, usual);
+  if (std::max(std::abs(top_slope), std::abs(base_slope)) > 0.36) return {};
+  line.top = slant_of(tops, top_slope);
+  line.base = slant_of(bottoms, base_slope);
+  const double middle_x = (line.left + line.right) / 2;
+  line.height = line.base.at(middle_x) - line.top.at(middle_x);
+  if (line.height < kLeastHeight - 1) return {};
+  line.ink = median(inks);
+  line.ground = median(grounds);
+  return line;
+}
+
+/// Mean distance of letters from the base line or the top line, to which they are aligned [px].
+double unevenness_of(const std::vector<Piece>& letters, const Outline& line) {
+  double sum = 0;
+  for (const auto& letter : letters)
+    sum += std::min(std::abs(letter.bottom() - line.base.at(letter.middle_x())),
+                    std::abs(letter.top() - line.top.at(letter.middle_x())));
+  return sum / static_cast<double>(letters.size());
+}
+
 /// Extends a line by the punctuation beyond its letters.
-void reach_for_stops(const std::vector<Piece>& pieces, const cv::Mat& dark, const Slant& top,
-                     const Slant& base, double height, double ground, double& left, double& right) {
+void reach_for_stops(const std::vector<Piece>& pieces, const cv::Mat& dark, Outline& line) {
   bool any = true;
   while (any) {
     any = false;
     for (const auto& piece : pieces) {
-      const double x = piece.middle_x();
-      if (piece.top() < top.at(x) - 0.15 * height || piece.bottom() > base.at(x) + 0.4 * height)
-        continue;
-      if (std::abs(piece.ground - ground) > 0.25 * ground) continue;
+      const double x = piece.middle_x(), height = line.height;
+      const double top = line.top.at(x), base = line.base.at(x);
+      if (piece.top() < top - 0.15 * height || piece.bottom() > base + 0.4 * height) continue;
+      if (std::abs(piece.ground - line.ground) > 0.25 * line.ground) continue;
       if (piece.box.area() < 0.008 * height * height) continue;
-      if (piece.left() < left && piece.right() > left - 0.9 * height &&
-          !is_parted(dark, piece.right(), left, top.at(x), base.at(x)))
-        left = piece.left(), any = true;
-      if (piece.right() > right && piece.left() < right + 0.9 * height &&
-          !is_parted(dark, right, piece.left(), top.at(x), base.at(x)))
-        right = piece.right(), any = true;
+      if (piece.left() < line.left && piece.right() > line.left - 0.9 * height &&
+          !is_parted(dark, piece.right(), line.left, top, base))
+        line.left = piece.left(), any = true;
+      if (piece.right() > line.right && piece.left() < line.right + 0.9 * height &&
+          !is_parted(dark, line.right, piece.left(), top, base))
+        line.right = piece.right(), any = true;
     }
   }
 }
@@ -212,59 +272,29 @@ std::pair<double, double> ground_of(const cv::Mat& grey, const cv::Mat& dark, co
   return {mean.at<double>(0), deviation.at<double>(0)};
 }
 
-std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::vector<Piece>& pieces,
-                                const cv::Mat& grey, const cv::Mat& dark, double noise) {
-  // Slots, books and stripes form rows of bars; few letters are bars.
-  const auto bars = std::count_if(letters.begin(), letters.end(),
-                                  [](const auto& letter) { return letter.is_bar; });
-  if (4 * static_cast<std::size_t>(bars) > 3 * letters.size()) return {};
-  std::vector<double> heights;
-  heights.reserve(letters.size());
-  for (const auto& letter : letters) heights.push_back(letter.height());
-  const double usual = median(heights);
-  std::vector<cv::Point2d> tops, bottoms;
-  std::vector<double> inks, grounds;
-  double left = 1e9, right = -1e9;
-  for (const auto& letter : letters) {
-    left = std::min<double>(left, letter.left());
-    right = std::max<double>(right, letter.right());
-    if (letter.height() < 0.75 * usual) continue;
-    tops.emplace_back(letter.middle_x(), letter.top());
-    bottoms.emplace_back(letter.middle_x(), letter.bottom());
-    inks.push_back(letter.ink);
-    grounds.push_back(letter.ground);
-  }
-  // Few letters do not determine the perspective, nor do tops of mixed small and capital letters.
-  double top_slope = slope_of(tops), base_slope = slope_of(bottoms);
-  if (tops.size() < 5)
-    top_slope = base_slope = (top_slope + base_slope) / 2;
-  else if (spread_of(tops, slant_of(tops, top_slope)) > 0.08 * usual)
-    top_slope = base_slope;
-  if (std::max(std::abs(top_slope), std::abs(base_slope)) > 0.36) return {};
-  const Slant top = slant_of(tops, top_slope), base = slant_of(bottoms, base_slope);
-  const double middle_x = (left + right) / 2, height = base.at(middle_x) - top.at(middle_x);
-  if (height < kLeastHeight - 1) return {};
-  const double ink = median(inks), ground = median(grounds);
-  std::vector<double> unevenness;  // letters are aligned to the base line or the top line
-  unevenness.reserve(letters.size());
-  for (const auto& letter : letters)
-    unevenness.push_back(std::min(std::abs(letter.bottom() - base.at(letter.middle_x())),
-                                  std::abs(letter.top() - top.at(letter.middle_x()))));
-  reach_for_stops(pieces, dark, top, base, height, ground, left, right);
-
-  TextLine line;
+/// The corners of a line, clockwise from the top left.
+std::array<cv::Point2f, 4> corners_of(const Outline& line) {
   auto corner = [](double x, double y) {
     // Pixels are squares around their middles.
     return cv::Point2f(static_cast<float>(x - 0.5), static_cast<float>(y - 0.5));
   };
-  line.corners = {corner(left, top.at(left)), corner(right, top.at(right)),
-                  corner(right, base.at(right)), corner(left, base.at(left))};
+  return {corner(line.left, line.top.at(line.left)), corner(line.right, line.top.at(line.right)),
+          corner(line.right, line.base.at(line.right)), corner(line.left, line.base.at(line.left))};
+}
+
+std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::vector<Piece>& pieces,
+                                const cv::Mat& grey, const cv::Mat& dark, double noise) {
+  auto outline = outline_of(letters);
+  if (!outline) return {};
+  reach_for_stops(pieces, dark, *outline);
+  TextLine line;
+  line.corners = corners_of(*outline);
+  line.height = outline->height;
   // Touching letters are one wide piece.
   for (const auto& letter : letters)
-    line.letters += std::max(1, static_cast<int>(letter.box.width / height));
-  line.height = height;
+    line.letters += std::max(1, static_cast<int>(letter.box.width / line.height));
   // A margin of a third of the height must be clean too.
-  const int margin = static_cast<int>(height / 3);
+  const int margin = static_cast<int>(line.height / 3);
   cv::Rect box =
       cv::boundingRect(std::vector<cv::Point2f>(line.corners.begin(), line.corners.end()));
   box = cv::Rect(box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin);
@@ -272,10 +302,9 @@ std::optional<TextLine> line_of(const std::vector<Piece>& letters, const std::ve
   box &= cv::Rect({}, grey.size());
   if (box.empty()) return {};
   const auto [mean, deviation] = ground_of(grey, dark, box);
-  const double contrast = std::max(1.0, ground - ink);
+  const double contrast = std::max(1.0, outline->ground - outline->ink);
   const double rough = std::max(0.0, deviation - noise) / contrast;
-  const double uneven = std::accumulate(unevenness.begin(), unevenness.end(), 0.0) /
-                        static_cast<double>(letters.size()) / height;
+  const double uneven = unevenness_of(letters, *outline) / line.height;
   line.score = contrast / (contrast + 20) * std::exp(-5 * rough) * std::exp(-5 * uneven) *
                (1 - std::exp(-line.letters / 3.5));
   return line;

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
@@ -28,63 +31,94 @@ struct Line {
   cv::Point2d at, along;
 };
 
-/// The edge near a side: a line through the steepest points of rays across it.
-std::optional<Line> edge_near(const cv::Mat& grey, cv::Point2d from, cv::Point2d to,
-                              double farthest) {
-  const cv::Point2d side = to - from;
-  const double length = cv::norm(side);
-  const cv::Point2d along = side / length, across(-along.y, along.x);
-  // Short of anything drawn beside the rim.
-  const double reach = std::clamp(0.15 * length, 1.5, farthest);
-  const int rays = std::clamp(static_cast<int>(length / 2), 6, 40);
-  constexpr double kStep = 0.5;  // along a ray [px]
-  const auto steps = static_cast<std::ptrdiff_t>(std::ceil(reach / kStep));
-  std::vector<double> slopes(static_cast<std::size_t>(2 * steps + 1));
-  double direction = 0;  // of all slopes: the rim is darker or lighter everywhere
-  std::vector<std::pair<double, double>> found;  // positions along the side and across it
-  for (int pass : {0, 1}) {
-    for (int ray = 0; ray < rays; ++ray) {
-      // Edges are rounded near the corners.
-      const double share = 0.12 + 0.76 * (ray + 0.5) / rays;
-      const cv::Point2d middle = from + share * side;
-      for (auto i = -steps; i <= steps; ++i) {
-        const cv::Point2d out = middle + (static_cast<double>(i) * kStep + 1) * across,
-                          in = out - 2 * across;
-        slopes[static_cast<std::size_t>(i + steps)] =
-            level(grey, out.x, out.y) - level(grey, in.x, in.y);
-      }
-      if (pass == 0) {
-        const auto [least, most] = std::minmax_element(slopes.begin(), slopes.end());
-        direction += *most > -*least ? *most : *least;
-        continue;
-      }
-      for (auto& slope : slopes) slope *= direction;
-      const auto best = std::max_element(slopes.begin(), slopes.end()) - slopes.begin();
-      constexpr double kLeastSlope = 8;  // grey levels over two pixels
-      if (best == 0 || best == 2 * steps || slopes[static_cast<std::size_t>(best)] < kLeastSlope)
-        continue;
-      // The centroid of the peak, which is less sensitive to noise than its maximum.
-      const double half = slopes[static_cast<std::size_t>(best)] / 2;
-      double sum = 0, moment = 0;
-      for (auto i = best; i >= 0 && slopes[static_cast<std::size_t>(i)] > half; --i) {
-        sum += slopes[static_cast<std::size_t>(i)] - half;
-        moment += (slopes[static_cast<std::size_t>(i)] - half) * static_cast<double>(i);
-      }
-      for (auto i = best + 1; i <= 2 * steps && slopes[static_cast<std::size_t>(i)] > half; ++i) {
-        sum += slopes[static_cast<std::size_t>(i)] - half;
-        moment += (slopes[static_cast<std::size_t>(i)] - half) * static_cast<double>(i);
-      }
-      found.emplace_back(share * length, (moment / sum - static_cast<double>(steps)) * kStep);
-    }
-    if (pass == 0) direction = direction > 0 ? 1 : -1;
+/// Rays across a side, on which its edge is searched.
+class Rays {
+ public:
+  /// @param farthest  from the side [px].
+  Rays(const cv::Mat& grey, cv::Point2d from, cv::Point2d to, double farthest)
+      : grey_(grey), from_(from), side_(to - from), length_(cv::norm(side_)) {
+    // Short of anything drawn beside the rim.
+    const double reach = std::clamp(0.15 * length_, 1.5, farthest);
+    steps_ = static_cast<std::ptrdiff_t>(std::ceil(reach / kStep));
+    slopes_.resize(static_cast<std::size_t>(2 * steps_ + 1));
   }
-  if (found.size() < 4) return std::nullopt;
-  // A line fitted with Huber weights; distant points are of another edge.
+
+  [[nodiscard]] cv::Point2d along() const { return side_ / length_; }
+  [[nodiscard]] cv::Point2d across() const { return {-along().y, along().x}; }
+
+  /// Points of the edge: positions along the side and across it [px].
+  std::vector<std::pair<double, double>> find_edge() {
+    const int rays = std::clamp(static_cast<int>(length_ / 2), 6, 40);
+    // Edges are rounded near the corners.
+    const auto share = [rays](int ray) { return 0.12 + 0.76 * (ray + 0.5) / rays; };
+    double direction = 0;  // of all slopes: the rim is darker or lighter everywhere
+    for (int ray = 0; ray < rays; ++ray) {
+      measure(share(ray));
+      const auto [least, most] = std::minmax_element(slopes_.begin(), slopes_.end());
+      direction += *most > -*least ? *most : *least;
+    }
+    std::vector<std::pair<double, double>> found;
+    for (int ray = 0; ray < rays; ++ray) {
+      measure(share(ray));
+      for (auto& slope : slopes_) slope *= direction > 0 ? 1 : -1;
+      if (const auto at = peak()) found.emplace_back(share(ray) * length_, *at);
+    }
+    return found;
+  }
+
+ private:
+  static constexpr double kStep = 0.5;  // along a ray [px]
+
+  /// The slopes along the ray at a share of the side.
+  void measure(double share) {
+    const cv::Point2d middle = from_ + share * side_, over = across();
+    for (auto i = -steps_; i <= steps_; ++i) {
+      const cv::Point2d out = middle + (static_cast<double>(i) * kStep + 1) * over,
+                        in = out - 2 * over;
+      slopes_[static_cast<std::size_t>(i + steps_)] =
+          level(grey_, out.x, out.y) - level(grey_, in.x, in.y);
+    }
+  }
+
+  /// Where the ray is steepest, across the side [px]; nothing if it is not steep.
+  [[nodiscard]] std::optional<double> peak() const {
+    const auto best = std::max_element(slopes_.begin(), slopes_.end());
+    constexpr double kLeastSlope = 8;  // grey levels over two pixels
+    if (best == slopes_.begin() || best == slopes_.end() - 1 || *best < kLeastSlope) return {};
+    // The centroid of the peak, which is less sensitive to noise than its maximum.
+    const double half = *best / 2;
+    double sum = 0, moment = 0;
+    const auto add = [&](auto each) {
+      sum += *each - half;
+      moment += (*each - half) * static_cast<double>(each - slopes_.begin());
+    };
+    for (auto each = best; *each > half; --each) {
+      add(each);
+      if (each == slopes_.begin()) break;
+    }
+    for (auto each = best + 1; each != slopes_.end() && *each > half; ++each) add(each);
+    return (moment / sum - static_cast<double>(steps_)) * kStep;
+  }
+
+  const cv::Mat& grey_;
+  const cv::Point2d from_, side_;
+  const double length_;
+  std::ptrdiff_t steps_ = 0;    // of a ray to either side
+  std::vector<double> slopes_;  // of one ray
+};
+
+/// y = slope · x + offset
+struct Fit {
   double slope = 0, offset = 0;
+};
+
+/// A line fitted with Huber weights; distant points are of another edge.
+std::optional<Fit> fit_line(const std::vector<std::pair<double, double>>& points) {
+  Fit line;
   for (int iteration = 0; iteration < 5; ++iteration) {
     double w = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (const auto& [s, d] : found) {
-      const double off = std::abs(d - offset - slope * s);
+    for (const auto& [s, d] : points) {
+      const double off = std::abs(d - line.offset - line.slope * s);
       const double weight = iteration == 0 ? 1 : 1 / std::max(0.15, off);
       w += weight;
       x += weight * s;
@@ -94,10 +128,21 @@ std::optional<Line> edge_near(const cv::Mat& grey, cv::Point2d from, cv::Point2d
     }
     const double scatter = xx * w - x * x;
     if (!(scatter > 0)) return std::nullopt;
-    slope = (xy * w - x * y) / scatter;
-    offset = (y - slope * x) / w;
+    line.slope = (xy * w - x * y) / scatter;
+    line.offset = (y - line.slope * x) / w;
   }
-  return Line{from + offset * across, along + slope * across};
+  return line;
+}
+
+/// The edge near a side: a line through the steepest points of rays across it.
+std::optional<Line> edge_near(const cv::Mat& grey, cv::Point2d from, cv::Point2d to,
+                              double farthest) {
+  Rays rays(grey, from, to, farthest);
+  const auto points = rays.find_edge();
+  if (points.size() < 4) return std::nullopt;
+  const auto line = fit_line(points);
+  if (!line) return std::nullopt;
+  return Line{from + line->offset * rays.across(), rays.along() + line->slope * rays.across()};
 }
 
 std::optional<cv::Point2d> meet(const Line& a, const Line& b) {

@@ -2,8 +2,10 @@
 #include <vision/letters.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <vector>
 
 #include <opencv2/imgproc.hpp>
 
@@ -56,50 +58,34 @@ double unevenness_of_columns(const cv::Mat& line) {
   return deviation.at<double>(0);
 }
 
-}  // namespace
-
-cv::Mat straighten(const cv::Mat& image, const TextLine& line, int letter_height) {
-  const double scale = letter_height / line.height;
-  // Room for parts above and below; less at the sides, where the edge of the board may be near.
-  const auto room = 0.6F * static_cast<float>(letter_height);
-  const auto margin = 0.4F * static_cast<float>(letter_height);
-  const auto wide = static_cast<float>(line.width() * scale);
-  const auto high = static_cast<float>(letter_height);
-  const cv::Size size(cvRound(wide + 2 * margin), cvRound(high + 2 * room));
-  // Only the part of the image that is needed.
-  cv::Rect2f around = line.box();
+/// The part of an image that is needed to straighten a line.
+cv::Rect part_around(const TextLine& line, const cv::Size& image) {
+  const cv::Rect2f around = line.box();
   const auto wider = static_cast<float>(line.height) + 4;
-  const cv::Rect part = cv::Rect(cv::Rect2f(around.x - wider, around.y - wider,
-                                            around.width + 2 * wider, around.height + 2 * wider)) &
-                        cv::Rect({}, image.size());
-  if (part.empty()) return {};
-  cv::Mat grey = mean_of_channels(image(part));
-  if (line.is_bright) grey = 255 - grey;
-  const double noise = noise_of(grey);
-  if (noise > 4) {
-    cv::Mat smooth;
-    cv::GaussianBlur(grey, smooth, {}, 0.7);
-    grey = smooth;
-  }
-  if (scale < 0.7) {  // smooth before shrinking
-    cv::Mat smooth;
-    cv::GaussianBlur(grey, smooth, {}, 0.4 / scale);
-    grey = smooth;
-  }
-  // An inclined line is on a rotated board, with letters inclined by the same angle, or on one seen
-  // from the side, with upright letters.
+  return cv::Rect(cv::Rect2f(around.x - wider, around.y - wider, around.width + 2 * wider,
+                             around.height + 2 * wider)) &
+         cv::Rect({}, image);
+}
+
+cv::Mat smooth(const cv::Mat& grey, double sigma) {
+  cv::Mat result;
+  cv::GaussianBlur(grey, result, {}, sigma);
+  return result;
+}
+
+/// Warps a line to four corners. An inclined line is on a rotated board, with letters inclined by
+/// the same angle, or on one seen from the side, with upright letters: gives the one or the other,
+/// or what is between them, that has the most upright letters.
+cv::Mat warp_upright(const cv::Mat& grey, const TextLine& line, cv::Point2f shift,
+                     const std::array<cv::Point2f, 4>& to, const cv::Size& size) {
   const auto along = line.corners[1] + line.corners[2] - line.corners[0] - line.corners[3];
   const float lean = along.y / along.x * static_cast<float>(line.height) / 2;
-  const std::array<cv::Point2f, 4> to = {
-      cv::Point2f(margin, room), cv::Point2f(margin + wide, room),
-      cv::Point2f(margin + wide, room + high), cv::Point2f(margin, room + high)};
   cv::Mat straight;
   double most = 0;
   for (int quarter = 0; quarter <= (std::abs(lean) < 0.5F ? 0 : 4); ++quarter) {
     auto from = line.corners;
     for (std::size_t i = 0; i < 4; ++i)
-      from[i] += cv::Point2f((i < 2 ? lean : -lean) * static_cast<float>(quarter) / 4, 0) -
-                 cv::Point2f(part.tl());
+      from[i] += cv::Point2f((i < 2 ? lean : -lean) * static_cast<float>(quarter) / 4, 0) - shift;
     cv::Mat leaning;
     cv::warpPerspective(grey, leaning, cv::getPerspectiveTransform(from, to), size, cv::INTER_CUBIC,
                         cv::BORDER_REPLICATE);
@@ -108,7 +94,12 @@ cv::Mat straighten(const cv::Mat& image, const TextLine& line, int letter_height
       straight = leaning;
     }
   }
-  // Closing removes the narrow letters and leaves the ground, which becomes white.
+  return straight;
+}
+
+/// Makes the ground white, and the ink black.
+cv::Mat even_out(const cv::Mat& straight, int letter_height, double noise) {
+  // Closing removes the narrow letters and leaves the ground.
   cv::Mat ground;
   const int reach = letter_height | 1;
   cv::morphologyEx(straight, ground, cv::MORPH_CLOSE,
@@ -125,6 +116,29 @@ cv::Mat straighten(const cv::Mat& image, const TextLine& line, int letter_height
   const double stretch = 255 / std::max(16.0, white - ink);
   even.convertTo(even, CV_8U, stretch, -ink * stretch);
   return even;
+}
+
+}  // namespace
+
+cv::Mat straighten(const cv::Mat& image, const TextLine& line, int letter_height) {
+  const cv::Rect part = part_around(line, image.size());
+  if (part.empty()) return {};
+  cv::Mat grey = mean_of_channels(image(part));
+  if (line.is_bright) grey = 255 - grey;
+  const double noise = noise_of(grey);
+  if (noise > 4) grey = smooth(grey, 0.7);
+  const double scale = letter_height / line.height;
+  if (scale < 0.7) grey = smooth(grey, 0.4 / scale);  // before shrinking
+  // Room for parts above and below; less at the sides, where the edge of the board may be near.
+  const auto high = static_cast<float>(letter_height);
+  const auto wide = static_cast<float>(line.width() * scale);
+  const float room = 0.6F * high, margin = 0.4F * high;
+  const cv::Size size(cvRound(wide + 2 * margin), cvRound(high + 2 * room));
+  const std::array<cv::Point2f, 4> to = {
+      cv::Point2f(margin, room), cv::Point2f(margin + wide, room),
+      cv::Point2f(margin + wide, room + high), cv::Point2f(margin, room + high)};
+  const cv::Mat straight = warp_upright(grey, line, cv::Point2f(part.tl()), to, size);
+  return even_out(straight, letter_height, noise);
 }
 
 }  // namespace hc::vision

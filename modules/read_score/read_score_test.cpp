@@ -9,7 +9,7 @@
 
 namespace {
 
-hc::Time at(std::int64_t milliseconds) {
+hc::Time after(std::int64_t milliseconds) {
   return hc::Time(std::chrono::milliseconds(milliseconds));
 }
 
@@ -55,13 +55,13 @@ TEST(Edits, are_the_fewest) {
 
 TEST(Attempt, is_done_when_read_and_spoken_in_any_order) {
   for (const bool is_sound_first : {false, true}) {
-    Attempt attempt("ABC", at(1000));
-    if (is_sound_first) attempt.take_sound(at(1100), at(1300));
+    Attempt attempt("ABC", after(1000));
+    if (is_sound_first) attempt.take_sound(after(1100), after(1300));
     EXPECT_FALSE(attempt.is_done());
-    attempt.take_text("ABD", at(1100));
+    attempt.take_text("ABD", after(1100));
     if (!is_sound_first) {
       EXPECT_FALSE(attempt.is_done());
-      attempt.take_sound(at(1100), at(1300));
+      attempt.take_sound(after(1100), after(1300));
     }
     EXPECT_TRUE(attempt.is_done());
     const auto result = attempt.result();
@@ -74,19 +74,19 @@ TEST(Attempt, is_done_when_read_and_spoken_in_any_order) {
 }
 
 TEST(Attempt, what_was_seen_before_does_not_count) {
-  Attempt attempt("ABC", at(1000));
-  attempt.take_text("OLD", at(999));
-  attempt.take_sound(at(999), at(1300));
+  Attempt attempt("ABC", after(1000));
+  attempt.take_text("OLD", after(999));
+  attempt.take_sound(after(999), after(1300));
   EXPECT_EQ(attempt.result().read, "");
   EXPECT_FALSE(attempt.result().seen_to_spoken);
 }
 
 TEST(Attempt, the_first_reading_counts) {
-  Attempt attempt("ABC", at(0));
+  Attempt attempt("ABC", after(0));
   attempt.take_text("AC", hc::unix_time(1));
   attempt.take_text("ABC", hc::unix_time(2));
-  attempt.take_sound(hc::unix_time(1), at(10));
-  attempt.take_sound(hc::unix_time(2), at(20));
+  attempt.take_sound(hc::unix_time(1), after(10));
+  attempt.take_sound(hc::unix_time(2), after(20));
   EXPECT_EQ(attempt.result().read, "AC");
   EXPECT_NEAR(*attempt.result().seen_to_spoken, 0.01, 1e-9);
 }
@@ -111,16 +111,16 @@ TEST(ReadingScore, is_over_all_letters_and_all_that_were_spoken) {
 }
 
 TEST(Dictation, writes_the_next_text_after_the_speech_and_a_pause) {
-  Dictation dictation(7, at(10'000));
-  const auto write = [&](std::int64_t ms) { return dictation.write(at(ms)); };
-  const auto finish = [&](std::int64_t ms) { return dictation.finish(at(ms), 10, 0.3); };
+  Dictation dictation(7, after(10'000));
+  const auto write = [&](std::int64_t ms) { return dictation.write(after(ms)); };
+  const auto finish = [&](std::int64_t ms) { return dictation.finish(after(ms), 10, 0.3); };
   EXPECT_FALSE(write(9'999));
   const auto first = write(10'000);
   ASSERT_TRUE(first);
   EXPECT_FALSE(write(10'010)) << "one at a time";
-  dictation.take_text(*first, at(10'100), at(10'200));
+  dictation.take_text(*first, after(10'100), after(10'200));
   EXPECT_FALSE(finish(10'300));
-  dictation.take_sound(at(10'100), at(10'400), 2);
+  dictation.take_sound(after(10'100), after(10'400), 2);
   const auto ended = finish(10'400);
   ASSERT_TRUE(ended);
   EXPECT_EQ(ended->read, *first);
@@ -130,19 +130,19 @@ TEST(Dictation, writes_the_next_text_after_the_speech_and_a_pause) {
 }
 
 TEST(Dictation, begins_soon_after_something_is_read) {
-  Dictation dictation(7, at(10'000));
-  dictation.take_text("WHAT STOOD THERE", at(0), at(2'000));
-  dictation.take_text("WHAT STOOD THERE", at(0), at(2'500));
-  EXPECT_FALSE(dictation.write(at(2'999)));
-  EXPECT_TRUE(dictation.write(at(3'000))) << "after the first, not the second";
+  Dictation dictation(7, after(10'000));
+  dictation.take_text("WHAT STOOD THERE", after(0), after(2'000));
+  dictation.take_text("WHAT STOOD THERE", after(0), after(2'500));
+  EXPECT_FALSE(dictation.write(after(2'999)));
+  EXPECT_TRUE(dictation.write(after(3'000))) << "after the first, not the second";
 }
 
 TEST(Dictation, a_text_that_is_not_read_in_time_ends) {
-  Dictation dictation(7, at(0));
-  ASSERT_TRUE(dictation.write(at(0)));
+  Dictation dictation(7, after(0));
+  ASSERT_TRUE(dictation.write(after(0)));
   EXPECT_FALSE(dictation.is_done(0)) << "one is not ended";
-  EXPECT_FALSE(dictation.finish(at(4'999), 5, 0));
-  const auto ended = dictation.finish(at(5'000), 5, 0);
+  EXPECT_FALSE(dictation.finish(after(4'999), 5, 0));
+  const auto ended = dictation.finish(after(5'000), 5, 0);
   ASSERT_TRUE(ended);
   EXPECT_EQ(ended->read, "");
   EXPECT_TRUE(dictation.is_done(1));

@@ -244,13 +244,11 @@ void add_ports(py::module_& extension) {
            "Calls a function with the matrix as soon as it is known; with None if it will not be.");
 }
 
-}  // namespace
+using PyModule = py::class_<Program>;
 
-void add_modules(py::module_& extension) {
-  add_ports(extension);
-  using Self = Program;
-  py::class_<Program>(extension, "Module", "Base of hypercolumn.Module.")
-      .def(py::init<std::string, std::string, bool, bool, bool>())
+/// What hypercolumn/module.py wraps.
+void add_private(PyModule& module) {
+  module.def(py::init<std::string, std::string, bool, bool, bool>())
       .def("_input", add_input)
       .def("_output", add_output)
       .def("_parameter", add_parameter, py::keep_alive<0, 1>())
@@ -259,32 +257,36 @@ void add_modules(py::module_& extension) {
       .def("_every", every)
       .def(
           "_after",
-          [](Self& self, double seconds, const py::object& function) {
+          [](Program& self, double seconds, const py::object& function) {
             return PyTimeout{&self,
                              self.module().after(hc::duration(seconds), action(self, function))};
           },
           py::keep_alive<0, 1>())
       .def("_generate",
-           [](Self& self, const py::object& function) {
+           [](Program& self, const py::object& function) {
              self.module().generate(action(self, function));
            })
       .def("_on_start",
-           [](Self& self, const py::object& function) {
+           [](Program& self, const py::object& function) {
              self.module().on_start(action(self, function));
            })
       .def("_on_end",
-           [](Self& self, const py::object& function) {
+           [](Program& self, const py::object& function) {
              self.module().on_end(action(self, function));
            })
-      .def("_run", &Program::run)
+      .def("_run", &Program::run);
+}
+
+void add_public(PyModule& module) {
+  module
       .def("keep_rate", keep_rate, py::arg("rate"),
            "For generators: waits until the next period of a rate begins [Hz].")
       .def(
-          "stop", [](Self& self) { self.module().stop(); },
+          "stop", [](Program& self) { self.module().stop(); },
           "Ends the module when the handler that calls this has returned.")
       .def(
           "log",
-          [](const Self& self, const std::string& line, const std::string& level) {
+          [](const Program& self, const std::string& line, const std::string& level) {
             const auto known = hc::level_named(level);
             if (!known)
               throw py::value_error("level must be info, warning, error, result or notice, not " +
@@ -297,27 +299,36 @@ void add_modules(py::module_& extension) {
           "the terminal.")
       .def(
           "log_once",
-          [](Self& self, const std::string& kind, const std::string& line) {
+          [](Program& self, const std::string& kind, const std::string& line) {
             self.module().log_once(kind, line);
           },
           py::arg("kind"), py::arg("line"),
           "Logs the first problem of a kind and counts the others; the counts are logged at the "
           "end.")
       .def(
-          "now", [](Self& self) { return hc::unix_nanoseconds(self.module().now()); },
+          "now", [](Program& self) { return hc::unix_nanoseconds(self.module().now()); },
           "The time for new messages [ns since the Unix epoch]: the machine's, or with --clock "
           "messages that of the messages.")
       .def_property_readonly(
-          "focus", [](Self& self) { return self.module().focus(); },
+          "focus", [](Program& self) { return self.module().focus(); },
           "Number of the system mode in focus; 0: none.")
       .def_property_readonly(
-          "has_focus", [](Self& self) { return self.module().has_focus(); },
+          "has_focus", [](Program& self) { return self.module().has_focus(); },
           "Whether the module's mode has the focus.")
       .def_property_readonly(
-          "name", [](const Self& self) { return self.name(); }, "Its name.")
+          "name", [](const Program& self) { return self.name(); }, "Its name.")
       .def_property_readonly(
-          "instance", [](Self& self) { return self.module().instance(); },
+          "instance", [](Program& self) { return self.module().instance(); },
           "Its name in the graph.");
+}
+
+}  // namespace
+
+void add_modules(py::module_& extension) {
+  add_ports(extension);
+  PyModule module(extension, "Module", "Base of hypercolumn.Module.");
+  add_private(module);
+  add_public(module);
 }
 
 }  // namespace python

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include <hc/base/format.h>
 #include <hc/mtp/element.h>
@@ -93,75 +94,117 @@ std::string Comparison::text() const {
   return first.empty() ? text : text + "; first: " + first;
 }
 
-Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
-                   const Tolerance& tolerance, std::int64_t last) {
-  Comparison result;
-  Messages held;  // of the replay, within 1 s of the current recorded message
-  hc::Time time, again_time;
-  std::optional<hc::Time> begin;
-  hc::Message message;
-  auto note = [&](const hc::Header& header, hc::Time at, const std::string& what) {
-    if (result.first.empty())
-      result.first = hc::format("seq {}, {:.3f} s after the first: {}", header.seq,
-                                hc::seconds(at - begin.value_or(at)), what);
-  };
-  auto hold_next = [&] {
-    hc::Message other;
-    if (!take(replayed, again_time, other)) return false;
-    ++result.replayed;
-    held.emplace(again_time, KeptMessage{other.keep()});
-    return true;
-  };
-  auto drop_until = [&](Messages::iterator end) {
-    for (auto each = held.begin(); each != end; each = held.erase(each)) {
-      if (each->second.is_matched) continue;
-      ++result.extra;
-      note(each->second.message.header, each->first, "replayed but not recorded");
-    }
-  };
-  for (bool has_more = true; take(recorded, time, message);) {
-    begin = begin.value_or(time);
-    ++result.recorded;
-    const auto reach = hc::later(time, tolerance.time + kDisorder);
-    while (has_more && (held.empty() || std::prev(held.end())->first <= reach))
-      has_more = hold_next();
-    drop_until(held.lower_bound(time - tolerance.time - kDisorder));
+namespace {
+
+/// Compares two streams of messages, ordered by time but for kDisorder.
+class Comparer {
+ public:
+  Comparer(const NextMessage& replayed, const Tolerance& tolerance, std::int64_t last)
+      : replayed_(replayed), tolerance_(tolerance), last_(last) {}
+
+  /// Takes the next recorded message.
+  void compare(const hc::Message& recorded, hc::Time time) {
+    begin_ = begin_.value_or(time);
+    ++result_.recorded;
+    const auto reach = hc::later(time, tolerance_.time + kDisorder);
+    while (has_more_ && (held_.empty() || std::prev(held_.end())->first <= reach))
+      has_more_ = hold_next();
+    drop_until(held_.lower_bound(time - tolerance_.time - kDisorder));
+    count(recorded, time, match(recorded, time));
+  }
+
+  /// Takes the rest of the replay.
+  Comparison finish() {
+    while (hold_next()) drop_until(held_.lower_bound(std::prev(held_.end())->first - kDisorder));
+    drop_until(held_.end());
+    return std::move(result_);
+  }
+
+ private:
+  struct Match {
     bool is_found = false;
-    std::string what;
-    KeptMessage* nearest = nullptr;
+    KeptMessage* nearest = nullptr;  ///< if none is the same
+    std::string difference;          ///< from the nearest
+  };
+
+  /// The same message of the replay, else the nearest in time that has no match yet.
+  Match match(const hc::Message& recorded, hc::Time time) {
+    Match found;
     std::chrono::nanoseconds distance{0};
-    const auto end = held.upper_bound(hc::later(time, tolerance.time));
-    for (auto each = held.lower_bound(time - tolerance.time); each != end; ++each) {
+    const auto end = held_.upper_bound(hc::later(time, tolerance_.time));
+    for (auto each = held_.lower_bound(time - tolerance_.time); each != end; ++each) {
       auto& candidate = each->second;
       // Without a tolerance of time, match one to one; otherwise a message may match several.
-      if (tolerance.time.count() == 0 && candidate.is_matched) continue;
-      const auto differs = difference(message, candidate.message, tolerance);
+      if (tolerance_.time.count() == 0 && candidate.is_matched) continue;
+      auto differs = difference(recorded, candidate.message, tolerance_);
       if (differs.empty()) {
-        is_found = candidate.is_matched = true;
-        if (tolerance.time.count() == 0) break;
+        found.is_found = candidate.is_matched = true;
+        if (tolerance_.time.count() == 0) break;
       } else if (!candidate.is_matched &&
-                 (nearest == nullptr || std::chrono::abs(each->first - time) < distance)) {
-        nearest = &candidate;
+                 (found.nearest == nullptr || std::chrono::abs(each->first - time) < distance)) {
         distance = std::chrono::abs(each->first - time);
-        what = differs;
+        found.nearest = &candidate;
+        found.difference = std::move(differs);
       }
     }
-    if (is_found) {
-      ++result.same;
-    } else if (nearest != nullptr) {
-      nearest->is_matched = true;
-      ++result.differing;
-      note(message.header, time, what);
-    } else if (message.header.seq > last) {
-      ++result.after_end;
+    return found;
+  }
+
+  void count(const hc::Message& recorded, hc::Time time, const Match& match) {
+    if (match.is_found) {
+      ++result_.same;
+    } else if (match.nearest != nullptr) {
+      match.nearest->is_matched = true;
+      ++result_.differing;
+      note(recorded.header, time, match.difference);
+    } else if (recorded.header.seq > last_) {
+      ++result_.after_end;
     } else {
-      ++result.missing;
-      note(message.header, time, "recorded but not replayed");
+      ++result_.missing;
+      note(recorded.header, time, "recorded but not replayed");
     }
   }
-  while (hold_next()) drop_until(held.lower_bound(std::prev(held.end())->first - kDisorder));
-  drop_until(held.end());
-  return result;
+
+  bool hold_next() {
+    hc::Message message;
+    if (!take(replayed_, replayed_time_, message)) return false;
+    ++result_.replayed;
+    held_.emplace(replayed_time_, KeptMessage{message.keep()});
+    return true;
+  }
+
+  void drop_until(Messages::iterator end) {
+    for (auto each = held_.begin(); each != end; each = held_.erase(each)) {
+      if (each->second.is_matched) continue;
+      ++result_.extra;
+      note(each->second.message.header, each->first, "replayed but not recorded");
+    }
+  }
+
+  void note(const hc::Header& header, hc::Time at, const std::string& what) {
+    if (result_.first.empty())
+      result_.first = hc::format("seq {}, {:.3f} s after the first: {}", header.seq,
+                                 hc::seconds(at - begin_.value_or(at)), what);
+  }
+
+  const NextMessage& replayed_;
+  const Tolerance& tolerance_;
+  const std::int64_t last_;
+  Comparison result_;
+  Messages held_;  // of the replay, within 1 s of the current recorded message
+  bool has_more_ = true;
+  hc::Time replayed_time_;
+  std::optional<hc::Time> begin_;
+};
+
+}  // namespace
+
+Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
+                   const Tolerance& tolerance, std::int64_t last) {
+  Comparer comparer(replayed, tolerance, last);
+  hc::Time time;
+  for (hc::Message message; take(recorded, time, message);) comparer.compare(message, time);
+  return comparer.finish();
 }
 
 }  // namespace tool
