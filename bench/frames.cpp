@@ -11,8 +11,9 @@ namespace {
 
 using hc::frames::Pose;
 
-constexpr std::int64_t kBegin = 1763683200000000000, kStep = 10'000'000;  // [ns]
-constexpr int kPoses = 1000;                                              // 10 s at 100 Hz
+constexpr hc::Time kBegin{std::chrono::seconds(1763683200)};
+constexpr std::chrono::nanoseconds kStep = std::chrono::milliseconds(10);
+constexpr int kPoses = 1000;  // 10 s at 100 Hz
 
 Eigen::Isometry3d motion(int i) {
   Eigen::Isometry3d result =
@@ -32,15 +33,15 @@ hc::frames::Tree example() {
 }
 
 /// Times between poses, all over what is known.
-std::int64_t next_time(std::int64_t& state) {
-  state = (state + 7'919'000'003) % (kPoses * kStep - kStep);
+hc::Time next_time(std::chrono::nanoseconds& state) {
+  state = (state + std::chrono::nanoseconds(7'919'000'003)) % (kPoses * kStep - kStep);
   return kBegin + state;
 }
 
 template <typename Name>
 void look_up(benchmark::State& state, Name to, Name from) {
   auto tree = example();
-  std::int64_t at = 0;
+  std::chrono::nanoseconds at{0};
   for ([[maybe_unused]] auto _ : state) {
     auto found = tree.lookup(to, from, next_time(at));
     benchmark::DoNotOptimize(found);
@@ -58,19 +59,19 @@ void frames_lookup_by_number(benchmark::State& state) {
 BENCHMARK(frames_lookup_by_number);
 
 void frames_lookup_reference(benchmark::State& state) {
-  std::vector<std::int64_t> times;
+  std::vector<hc::Time> times;
   std::vector<Pose> poses;
   for (int i = 0; i < kPoses; ++i) {
     times.push_back(kBegin + i * kStep);
     poses.emplace_back(motion(i));
   }
   Eigen::Isometry3d T_world_robot = motion(1), T_head_left_eye = motion(2);
-  std::int64_t at = 0;
+  std::chrono::nanoseconds at{0};
   for ([[maybe_unused]] auto _ : state) {
-    std::int64_t time = next_time(at);
+    hc::Time time = next_time(at);
     auto i = static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), time) -
                                       times.begin());
-    double share = static_cast<double>(time - times[i - 1]) / kStep;
+    double share = hc::seconds(time - times[i - 1]) / hc::seconds(kStep);
     Eigen::Isometry3d T_robot_head =
         Eigen::Translation3d((1 - share) * poses[i - 1].p + share * poses[i].p) *
         poses[i - 1].q.slerp(share, poses[i].q);
@@ -82,7 +83,7 @@ BENCHMARK(frames_lookup_reference);
 
 void frames_feed(benchmark::State& state) {
   auto tree = example();
-  std::int64_t time = kBegin + kPoses * kStep;
+  hc::Time time = kBegin + kPoses * kStep;
   Eigen::Isometry3d pose = motion(3);
   for ([[maybe_unused]] auto _ : state) {
     auto fed = tree.feed(2, 3, time += kStep, pose);

@@ -21,7 +21,7 @@ hc::Header example() {
   hc::Header header;
   header.src = 12;
   header.seq = 1042;
-  header.time = kTime;
+  header.time = hc::unix_time(kTime);
   header.mode = 1;
   header.coord = 3;
   header.width = header.height = 1;

@@ -100,7 +100,7 @@ hc::Message message() {
   hc::Header header;
   header.src = 11;
   header.dst = kAddress;
-  header.time = 1'700'000'000'000'000'000;
+  header.time = hc::unix_time(1'700'000'000'000'000'000);
   header.info = {hc::MatrixType::Table, 1, hc::Scalar::U8, hc::Encoding::Binary};
   header.width = kElements;
   header.height = 1;

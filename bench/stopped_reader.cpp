@@ -69,7 +69,7 @@ Report publish(const Plan& plan) {
     std::this_thread::sleep_until(next);
     auto draft = sink->loan(header);
     std::memset(draft.elements().data(), static_cast<int>(header.seq), draft.elements().size());
-    draft.header.time = number(Clock::now());
+    draft.header.time = hc::unix_time(number(Clock::now()));
     must(sink->send(std::move(draft).finish()));
   }
   must(sink->close());
@@ -107,7 +107,7 @@ Report read(const Plan& plan, const std::string& keep) {
   while (true) {
     if (!must(hc::receive(*source, message))) break;
     auto now = Clock::now();
-    auto age = static_cast<double>(number(now) - message.header.time) / 1000;
+    auto age = static_cast<double>(number(now) - hc::unix_nanoseconds(message.header.time)) / 1000;
     if (now - last > longest) {
       longest = now - last;
       report.woken = number(now);

@@ -14,7 +14,7 @@ namespace {
 using bench::Setup;
 
 constexpr std::int64_t kFirst = 1'000'000;  // of as many digits as all others of a run
-constexpr std::int64_t kTime = 1'763'683'200'123'456'789;
+constexpr hc::Time kTime = hc::unix_time(1'763'683'200'123'456'789);
 
 hc::Uri uri_of(std::string text, const Setup& setup) {
   const std::pair<std::string_view, std::string> names[] = {
@@ -60,7 +60,7 @@ class Publisher final : public bench::Publisher {
 
   std::span<std::byte> loan() override {
     ++own_.header.seq;
-    own_.header.time += 1'000'000;
+    own_.header.time += std::chrono::milliseconds(1);
     if (!buffer_.empty()) return buffer_;
     draft_ = sink_->loan(own_.header);
     return draft_.elements();

@@ -15,7 +15,7 @@ constexpr std::int64_t kWarm = 10;  // a part of so many is not measured
 /// Messages a second, but for the first ones.
 class Meter {
  public:
-  void count(std::int64_t time, std::int64_t all) {
+  void count(hc::Time time, std::int64_t all) {
     if (++counted_ == all / kWarm) begin_ = time;
     if (counted_ == all)
       rate_ = static_cast<double>(all - all / kWarm) / hc::seconds(time - begin_);
@@ -23,7 +23,8 @@ class Meter {
   [[nodiscard]] std::string text() const { return std::to_string(rate_); }
 
  private:
-  std::int64_t counted_ = 0, begin_ = 0;
+  std::int64_t counted_ = 0;
+  hc::Time begin_;
   double rate_ = 0;
 };
 
@@ -52,7 +53,8 @@ int main(int argc, char** argv) {
       return made.send(std::move(draft));
     }
     const auto sum = std::accumulate(pixels.begin(), pixels.end(), std::uint64_t{0});
-    if (sum != static_cast<std::uint8_t>(~message.header.time) * pixels.size())
+    if (sum !=
+        static_cast<std::uint8_t>(~hc::unix_nanoseconds(message.header.time)) * pixels.size())
       throw hc::ModuleError("a wrong image");
     meter.count(module.now(), *count);
   });
@@ -76,7 +78,7 @@ int main(int argc, char** argv) {
         auto draft = made.loan(1, static_cast<std::int32_t>(*bytes));
         // With a rate it is the way that is measured, by the time when it begins.
         std::ranges::fill(draft.numbers(), static_cast<std::uint8_t>(sent));
-        draft.header.time = *rate > 0 ? module.now() : sent;
+        draft.header.time = *rate > 0 ? module.now() : hc::unix_time(sent);
         made.send(std::move(draft));
       }
       if (sent >= *count) module.stop();

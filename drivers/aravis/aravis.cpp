@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds kSilence{1000};
 constexpr std::chrono::milliseconds kForEver = std::chrono::hours(24 * 365 * 100);
 constexpr std::chrono::milliseconds kBeginning{2000};  // additional time for the first image
 // A camera's time that differs more is of another clock.
-constexpr std::int64_t kMostAge = 10'000'000'000;  // [ns]
+constexpr std::chrono::seconds kMostAge{10};
 
 /// Guards Aravis' global lists of cameras.
 std::mutex& search_mutex() {
@@ -52,10 +52,6 @@ class Failure {
  private:
   GError* error_ = nullptr;
 };
-
-std::int64_t wall_clock() {
-  return g_get_real_time() * 1000;
-}
 
 /// Sets the requested pixel format, or one that to_bgr() supports.
 Status choose_format(ArvCamera* camera, const std::string& wanted) {
@@ -206,10 +202,10 @@ Result<std::optional<Image>> Camera::next(std::chrono::milliseconds timeout) {
   auto bgr = to_bgr(static_cast<std::uint32_t>(arv_buffer_get_image_pixel_format(buffer)),
                     arv_buffer_get_image_width(buffer), arv_buffer_get_image_height(buffer),
                     std::span(data, bytes), padding);
-  const auto came = static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer));
+  const auto came = unix_time(static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer)));
   arv_stream_push_buffer(all.stream, buffer);
   if (!bgr) return bgr.error();
-  const std::int64_t wall = wall_clock();
+  const Time wall = std::chrono::system_clock::now();
   const bool is_sensible = came > wall - kMostAge && came <= wall;
   return std::optional<Image>(Image{*bgr, is_sensible ? came : wall});
 }

@@ -10,13 +10,14 @@
 #include <string>
 
 #include <hc/base/result.h>
+#include <hc/base/time.h>
 #include <opencv2/core.hpp>
 
 namespace hc::aravis {
 
 struct Image {
-  cv::Mat bgr;            ///< (H, W, 3) u8: blue, green, red
-  std::int64_t time = 0;  ///< arrival, wall clock [ns since the Unix epoch]
+  cv::Mat bgr;  ///< (H, W, 3) u8: blue, green, red
+  Time time;    ///< of arrival
 };
 
 class Camera {

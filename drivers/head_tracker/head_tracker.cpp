@@ -21,13 +21,13 @@ Error failed(const std::string& what) {
 }
 
 /// The kernel's time of arrival of a packet, else the current time.
-std::int64_t arrival(msghdr& message) {
+Time arrival(msghdr& message) {
   timespec time{};
   ::clock_gettime(CLOCK_REALTIME, &time);
   for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr; part = CMSG_NXTHDR(&message, part))
     if (part->cmsg_level == SOL_SOCKET && part->cmsg_type == SCM_TIMESTAMPNS)
       std::memcpy(&time, CMSG_DATA(part), sizeof time);
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+  return Time(std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec));
 }
 
 int port_of(int socket) {

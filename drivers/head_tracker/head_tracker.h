@@ -21,7 +21,7 @@ namespace hc {
 /// A pose and the arrival of its packet.
 struct TimedHeadPose {
   HeadPose pose;
-  std::int64_t time = 0;  ///< [ns since the Unix epoch]
+  Time time;
 };
 
 /// Called with problems that may be frequent; logs the first of a kind and counts the others.

@@ -66,7 +66,7 @@ TEST(HeadTracker, gives_the_newest_pose_with_its_time) {
   auto tracker = opened();
   Ignored ignored;
   const Sender sender(tracker.port());
-  const std::int64_t before = hc::SystemClock().wall();
+  const hc::Time before = hc::SystemClock().wall();
   sender.send({0, 0, -100, 0, 0, 0});
   sender.send({0, 0, -200, 0, 0, 0});
   const auto got = hc::must(tracker.receive({}, ignored.problem));

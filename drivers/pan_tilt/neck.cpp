@@ -118,8 +118,8 @@ void Neck::look(MonotonicTime now) {
   work(now);
 }
 
-void Neck::command(MonotonicTime now, std::int64_t wall, const NeckCommand& command) {
-  if (command.time == 0) return problem_("without a time", "command dropped: no time");
+void Neck::command(MonotonicTime now, Time wall, const NeckCommand& command) {
+  if (command.time == Time()) return problem_("without a time", "command dropped: no time");
   const double old = seconds(wall - command.time);
   if (std::abs(old) > settings_.age)
     return problem_("stale", hc::format("command dropped: {:.3f} s {}", std::abs(old),

@@ -31,7 +31,7 @@ struct NeckSettings {
 /// A commanded orientation.
 struct NeckCommand {
   double pan = 0, tilt = 0;           ///< finite, as in Gaze [rad]
-  std::int64_t time = 0;              ///< [ns since the Unix epoch]; 0: unknown
+  Time time;                          ///< Time{}: unknown
   std::int32_t mode = 0, source = 0;  ///< of the sender
 };
 
@@ -67,8 +67,8 @@ class Neck {
   /// Turns the head. Drops, with a call of `problem`, commands without a time, more than the
   /// settings' `age` old or in the future, for a disconnected unit, and of a second source of the
   /// same mode until the first has been silent for kTurn.
-  /// @param wall  now, on the clock of `command.time` [ns since the Unix epoch].
-  void command(MonotonicTime now, std::int64_t wall, const NeckCommand& command);
+  /// @param wall  now, on the clock of `command.time`.
+  void command(MonotonicTime now, Time wall, const NeckCommand& command);
   /// Sets the mode in focus; call before command() and read(). A change drops a command not yet
   /// sent; mode 0 halts the motion.
   void set_focus(MonotonicTime now, std::int32_t mode);

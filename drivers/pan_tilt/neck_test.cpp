@@ -37,7 +37,7 @@ class NeckTest : public ::testing::Test {
   void command(double pan, double tilt) { neck_.command(now_, kWall, {pan, tilt, kWall}); }
   [[nodiscard]] std::string path() const { return terminal_->path(); }
 
-  static constexpr std::int64_t kWall = 1'700'000'000'000'000'000;  // [ns]
+  static constexpr Time kWall{std::chrono::seconds(1'700'000'000)};
   MonotonicTime now_{milliseconds(1000)};
   std::optional<PseudoTerminal> terminal_;
   Unit unit_;
@@ -106,15 +106,15 @@ TEST_F(NeckTest, a_device_that_was_set_counts_until_the_setting_changes) {
 
 TEST_F(NeckTest, drops_commands_that_are_too_old_or_cannot_be_obeyed) {
   begin();
-  neck_.command(now_, kWall, {0.5, 0, 0});
-  neck_.command(now_, kWall, {0.5, 0, kWall - 201'000'000});
-  neck_.command(now_, kWall, {0.5, 0, kWall + 300'000'000});
+  neck_.command(now_, kWall, {0.5, 0, {}});
+  neck_.command(now_, kWall, {0.5, 0, kWall - milliseconds(201)});
+  neck_.command(now_, kWall, {0.5, 0, kWall + milliseconds(300)});
   run(milliseconds(1000));
   EXPECT_EQ(unit_.pan(9), 0);
-  neck_.command(now_, kWall, {0.5, 0, kWall - 199'000'000});
+  neck_.command(now_, kWall, {0.5, 0, kWall - milliseconds(199)});
   run(milliseconds(1000));
   EXPECT_NEAR(unit_.pan(9), 557, 0.5);
-  neck_.command(now_, kWall, {0, 0, kWall + 199'000'000});
+  neck_.command(now_, kWall, {0, 0, kWall + milliseconds(199)});
   run(milliseconds(1000));
   EXPECT_NEAR(unit_.pan(9), 0, 0.5);
   neck_.leave();
@@ -170,7 +170,8 @@ TEST_F(NeckTest, halts_when_nobody_has_the_focus_and_obeys_again) {
 TEST_F(NeckTest, a_command_that_has_waited_lives_for_the_rest_of_its_age) {
   begin();
   command(1, 0);
-  neck_.command(now_, kWall, {0.5, 0, kWall - 150'000'000});  // waits for the first one's answer
+  neck_.command(now_, kWall,
+                {0.5, 0, kWall - milliseconds(150)});  // waits for the first one's answer
   now_ += milliseconds(60);
   neck_.pass(now_, settings_);
   run(milliseconds(1000));

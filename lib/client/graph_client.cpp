@@ -11,8 +11,8 @@
 namespace hc {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using internal::Intake;
+using std::chrono::steady_clock;
 
 constexpr std::size_t kMaxWaiting = 256;        // commands
 constexpr std::chrono::seconds kCheck{10};      // a graph publishes twice a second
@@ -77,8 +77,8 @@ void GraphClient::command(std::vector<std::string> lines, Answered answered) {
     commands_.reset();
     return answered(sent.error());
   }
-  waiting_[number] = {std::move(answered), Clock::now() + kAnswerTime};
-  if (!check_) check_ = loop_.call_at(Clock::now() + kCheck, [this] { check(); });
+  waiting_[number] = {std::move(answered), steady_clock::now() + kAnswerTime};
+  if (!check_) check_ = loop_.call_at(steady_clock::now() + kCheck, [this] { check(); });
 }
 
 void GraphClient::take_answer(const Message& message) {
@@ -90,14 +90,14 @@ void GraphClient::take_answer(const Message& message) {
 /// Fails all commands if the graph has been silent since the last check, or is late with an answer.
 void GraphClient::check() {
   if (waiting_.empty()) return check_.reset();
-  const bool is_late = Clock::now() >= waiting_.begin()->second.until;
+  const bool is_late = steady_clock::now() >= waiting_.begin()->second.until;
   if (!std::exchange(is_alive_, false) && states_)
     return fail({Code::Closed, graph_.text() + " does not answer"});
   if (is_late) return fail({Code::Closed, graph_.text() + " has not answered for 2 minutes"});
   if (!states_)
     if (auto watched = watch({[](const auto&, auto) {}}); !watched)
       return fail({Code::Closed, graph_.text() + " has ended"});
-  check_ = loop_.call_at(Clock::now() + kCheck, [this] { check(); });
+  check_ = loop_.call_at(steady_clock::now() + kCheck, [this] { check(); });
 }
 
 void GraphClient::fail(const Error& error) {

@@ -39,7 +39,7 @@ Result<Eigen::Vector3d> example(const Message& report, const Message& image,
 }
 
 /// T_robot_head as the head reports it: raised by 0.3 m, looking ahead.
-Message report_at(std::int64_t time) {
+Message report_at(Time time) {
   Draft draft = Draft::make({MatrixType::Transformation, 1, Scalar::F64, Encoding::Text}, 4, 4);
   as_eigen<double>(draft) = Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0.3)).matrix();
   draft.header.coord = 2003;
@@ -47,7 +47,7 @@ Message report_at(std::int64_t time) {
   return std::move(draft).finish();
 }
 
-Result<Eigen::Vector3d> run_example(std::int64_t report_time, std::int64_t image_time) {
+Result<Eigen::Vector3d> run_example(Time report_time, Time image_time) {
   Message image;
   image.header.time = image_time;
   Eigen::Isometry3d T_world_robot(Eigen::Translation3d(1, 0, 0));
@@ -56,10 +56,10 @@ Result<Eigen::Vector3d> run_example(std::int64_t report_time, std::int64_t image
 }
 
 TEST(FramesDocument, TheExampleRuns) {
-  auto p_world = run_example(100, 100);
+  auto p_world = run_example(unix_time(100), unix_time(100));
   ASSERT_TRUE(p_world) << p_world.error().text();
   EXPECT_TRUE(p_world->isApprox(Eigen::Vector3d(1, 0.1, 2.3))) << p_world->transpose();
-  EXPECT_FALSE(run_example(100, 101));
+  EXPECT_FALSE(run_example(unix_time(100), unix_time(101)));
 }
 
 std::string text_of(const std::string& name) {
@@ -91,8 +91,8 @@ TEST(FramesDocument, TheErrorItShowsIsTheOneThatComes) {
   frames::Tree tree = frames::Tree::standard();
   ASSERT_TRUE(tree.join("robot", "head"));
   for (int time : {100, 200})
-    ASSERT_TRUE(tree.feed("robot", "head", time, Eigen::Isometry3d::Identity()));
-  std::string told = tree.lookup("robot", "head", 225).error().detail;
+    ASSERT_TRUE(tree.feed("robot", "head", unix_time(time), Eigen::Isometry3d::Identity()));
+  std::string told = tree.lookup("robot", "head", unix_time(225)).error().detail;
   std::string shown = between(text_of("doc/frames.md"), "nothing is guessed: `", "`");
   shown.replace(shown.find("\n  "), 3, " ");
   EXPECT_EQ(shown, told);

@@ -24,20 +24,20 @@ std::string refusal(std::string_view text) {
 
 TEST(GraphFrames, AreATree) {
   auto frames = must(read_frames(kHead));
-  auto T_nose_left_eye = must(frames.tree.lookup("nose", "left_eye", 0));
+  auto T_nose_left_eye = must(frames.tree.lookup("nose", "left_eye", {}));
   // Half a turn about x, 1 m ahead.
   EXPECT_TRUE((T_nose_left_eye * Eigen::Vector3d(2, 0, 0)).isApprox(Eigen::Vector3d(1, -0.5, 0)));
-  EXPECT_TRUE(frames.tree.lookup(200, 4, 0)) << "by number";
-  EXPECT_FALSE(frames.tree.lookup(2, 3, 100)) << "not fed";
-  ASSERT_TRUE(frames.tree.feed("robot", "head", 100, Eigen::Isometry3d::Identity()));
-  EXPECT_TRUE(frames.tree.lookup(2, 3, 100));
+  EXPECT_TRUE(frames.tree.lookup(200, 4, {})) << "by number";
+  EXPECT_FALSE(frames.tree.lookup(2, 3, unix_time(100))) << "not fed";
+  ASSERT_TRUE(frames.tree.feed("robot", "head", unix_time(100), Eigen::Isometry3d::Identity()));
+  EXPECT_TRUE(frames.tree.lookup(2, 3, unix_time(100)));
 }
 
 TEST(GraphFrames, AnEmptyTextHasNone) {
   for (const char* text : {"", "  "}) {
     auto frames = must(read_frames(text));
     EXPECT_TRUE(frames.movers.empty());
-    EXPECT_FALSE(frames.tree.lookup("world", "world", 0));
+    EXPECT_FALSE(frames.tree.lookup("world", "world", {}));
   }
 }
 
@@ -114,7 +114,7 @@ TEST(GraphFrames, AChainIsTheProductOfItsJoints) {
             (i == 1 ? "root" : "f" + std::to_string(i - 1)) + " " + text_of(joint);
   }
   auto frames = must(read_frames(text));
-  auto T_root_last = must(frames.tree.lookup("root", "f1000", 0));
+  auto T_root_last = must(frames.tree.lookup("root", "f1000", {}));
   EXPECT_LT((T_root_last.matrix() - product.matrix()).norm(), 1e-9) << "1000 roundings of metres";
 }
 

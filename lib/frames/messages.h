@@ -52,7 +52,7 @@ inline std::array<double, 16> numbers_of(const Eigen::Isometry3d& T_to_from) {
 struct TimedPose {
   std::int32_t to = 0;    ///< target frame, the parent of a joint; 1 … 999
   std::int32_t from = 0;  ///< source frame, the child; 1 … 999
-  std::int64_t time = 0;  ///< [ns since the Unix epoch]; 0: unknown
+  Time time;              ///< Time{}: unknown
   Eigen::Isometry3d T_to_from = Eigen::Isometry3d::Identity();  ///< translation [m]
 };
 
@@ -97,8 +97,8 @@ inline Result<TimedPose> pose_of(const Message& message) {
 
 /// Feeds a pose to the frame of a graph that its src and coord identify.
 ///
-/// Errors: as GraphFrames::mover_of() (no such frame), rigid_of(), and Tree::feed() (a time of 0);
-/// then nothing changes.
+/// Errors: as GraphFrames::mover_of() (no such frame), rigid_of(), and Tree::feed() (an unknown
+/// time); then nothing changes.
 inline Result<frames::Fed> feed(frames::GraphFrames& frames, const Message& message) {
   auto mover = HC_TRY(frames.mover_of(message.header.src, message.header.coord));
   auto pose = HC_TRY(rigid_of(message));

@@ -40,7 +40,7 @@ TEST(Pose, IsATransformationOfFourByFour) {
     auto pose = must(pose_of(message_of(bytes)));
     EXPECT_EQ(pose.to, 2);
     EXPECT_EQ(pose.from, 3);
-    EXPECT_EQ(pose.time, 1763683200123456789);
+    EXPECT_EQ(pose.time, unix_time(1763683200123456789));
     Eigen::Vector3d p_robot = pose.T_to_from * Eigen::Vector3d(1, 0, 0);
     EXPECT_LT((p_robot - Eigen::Vector3d(0, 1, 0.3)).norm(), 1e-7);
   }
@@ -58,7 +58,7 @@ TEST(Pose, FeedsATree) {
 TEST(Pose, FeedsTheFramesOfAGraph) {
   auto frames = *frames::read_frames("head 3 robot neck.pose 9; chip 0 head neck.chip 12");
   Message message = message_of(kHeadPose);
-  const std::int64_t time = message.header.time;
+  const Time time = message.header.time;
   ASSERT_TRUE(feed(frames, message));
   EXPECT_TRUE(frames.tree.lookup("robot", "head", time));
   message.header.coord = 4;
@@ -67,7 +67,7 @@ TEST(Pose, FeedsTheFramesOfAGraph) {
   message.header.src = 12;
   ASSERT_TRUE(feed(frames, message)) << "no coord is wanted of who has no number";
   EXPECT_TRUE(frames.tree.lookup("robot", "chip", time));
-  message.header.time = 0;
+  message.header.time = {};
   EXPECT_EQ(feed(frames, message).error().text(),
             "Malformed: frames: chip in head is fed without a time");
   message.header.width = 1;

@@ -11,7 +11,7 @@ namespace hc {
 namespace {
 
 constexpr std::size_t kMaxWaiting = 256;
-constexpr std::int64_t kSetBack = 1'000'000'000;  // [ns]
+constexpr std::chrono::seconds kSetBack{1};
 
 }  // namespace
 
@@ -51,7 +51,7 @@ frames::GraphFrames& ModuleFrames::known() {
 }
 
 Eigen::Isometry3d ModuleFrames::nearest(const frames::Frame& target, const frames::Frame& source,
-                                        std::int64_t time) {
+                                        Time time) {
   return value_or_end(tree().nearest(target, source, time));
 }
 
@@ -59,10 +59,10 @@ Eigen::Isometry3d ModuleFrames::fixed(const frames::Frame& target, const frames:
   const auto span = value_or_end(tree().known(target, source));
   if (span != frames::TimeSpan{})
     throw ModuleError(Error{Code::Invalid, "frames: a joint moves where a fixed one is expected"});
-  return value_or_end(lookup(target, source, 0));
+  return value_or_end(lookup(target, source, Time()));
 }
 
-Status ModuleFrames::feed(std::string_view parent, std::string_view child, std::int64_t time,
+Status ModuleFrames::feed(std::string_view parent, std::string_view child, Time time,
                           const Eigen::Isometry3d& T_parent_child) {
   auto& newest = newest_.emplace(child, time).first->second;
   if (time < newest - kSetBack) {
@@ -77,21 +77,20 @@ Status ModuleFrames::feed(std::string_view parent, std::string_view child, std::
   return {};
 }
 
-bool ModuleFrames::awaits(const frames::Frame& target, const frames::Frame& source,
-                          std::int64_t time) {
-  return fed_ > 0 && module_.now() - fed_ < options_.silence.count() &&
+bool ModuleFrames::awaits(const frames::Frame& target, const frames::Frame& source, Time time) {
+  return fed_ > Time() && module_.now() - fed_ < options_.silence &&
          tree().is_ahead(target, source, time);
 }
 
 bool ModuleFrames::is_awaited(const Waiting& waiting) {
   if (!tree().is_ahead(waiting.target, waiting.source, waiting.time)) return false;
   const auto now = module_.now();
-  const bool is_first = fed_ == 0 && now - waiting.since < options_.first.count();
+  const bool is_first = fed_ == Time() && now - waiting.since < options_.first;
   return is_first || awaits(waiting.target, waiting.source, waiting.time);
 }
 
-void ModuleFrames::when_known(const frames::Frame& target, const frames::Frame& source,
-                              std::int64_t time, Handler handler) {
+void ModuleFrames::when_known(const frames::Frame& target, const frames::Frame& source, Time time,
+                              Handler handler) {
   waiting_.push_back({Name(target), Name(source), time, module_.now(), std::move(handler)});
   answer_known();
 }

@@ -48,22 +48,21 @@ class ModuleFrames {
   [[nodiscard]] const frames::Tree& tree() { return known().tree; }
   /// T_target_source at a time; see frames::Tree::lookup().
   [[nodiscard]] Result<Eigen::Isometry3d> lookup(const frames::Frame& target,
-                                                 const frames::Frame& source, std::int64_t time) {
+                                                 const frames::Frame& source, Time time) {
     return tree().lookup(target, source, time);
   }
   /// The same with the nearest known poses: Tree::nearest(). Unknown frames end the module.
   [[nodiscard]] Eigen::Isometry3d nearest(const frames::Frame& target, const frames::Frame& source,
-                                          std::int64_t time);
+                                          Time time);
   /// The same for fixed joints; a moving one ends the module.
   [[nodiscard]] Eigen::Isometry3d fixed(const frames::Frame& target, const frames::Frame& source);
 
   /// Whether to wait for lookup() at a time after the last pose: while poses arrive.
-  [[nodiscard]] bool awaits(const frames::Frame& target, const frames::Frame& source,
-                            std::int64_t time);
+  [[nodiscard]] bool awaits(const frames::Frame& target, const frames::Frame& source, Time time);
   /// Calls a handler with the result of lookup(), as soon as there is no need to wait: at once, or
   /// between messages. Handlers are called in order; if more than 256 wait, the oldest is called.
   /// Messages sent by a handler need a time, since no message is being handled.
-  void when_known(const frames::Frame& target, const frames::Frame& source, std::int64_t time,
+  void when_known(const frames::Frame& target, const frames::Frame& source, Time time,
                   Handler handler);
   /// Calls the handlers that need not wait any more; called between messages and by feed().
   void answer_known();
@@ -72,7 +71,7 @@ class ModuleFrames {
 
   /// Takes a pose from the module itself, as Tree::feed(). A pose more than 1 s before the last of
   /// its joint means that the clock was set back: all poses are forgotten.
-  Status feed(std::string_view parent, std::string_view child, std::int64_t time,
+  Status feed(std::string_view parent, std::string_view child, Time time,
               const Eigen::Isometry3d& T_parent_child);
 
  private:
@@ -86,7 +85,7 @@ class ModuleFrames {
   };
   struct Waiting {
     Name target, source;
-    std::int64_t time, since;
+    Time time, since;
     Handler handler;
   };
   frames::GraphFrames& known();
@@ -96,8 +95,8 @@ class ModuleFrames {
   Options options_;
   Parameter<std::string> text_;
   std::optional<frames::GraphFrames> frames_;
-  std::map<std::string, std::int64_t, std::less<>> newest_;  // pose of each child [ns]
-  std::int64_t fed_ = 0;                                     // arrival of the last pose [ns]
+  std::map<std::string, Time, std::less<>> newest_;  // pose of each child
+  Time fed_;                                         // arrival of the last pose
   std::deque<Waiting> waiting_;
 };
 

@@ -10,22 +10,24 @@
 namespace hc {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000, kStart = 1'700'000'000'000'000'000;
+using namespace std::chrono_literals;
+
+constexpr Time kStart(1'700'000'000s);
 
 /// The default head, which turns to the left by 1 rad a second.
 class DefaultHead : public ::testing::Test {
  protected:
   void feed_at(std::int64_t ms) {
     const Eigen::Isometry3d T(frames::rotation(0, 0, 0.001 * static_cast<double>(ms)));
-    const auto fed = frames_.feed("robot", "head", kStart + ms * kMillisecond, T);
+    const auto fed = frames_.feed("robot", "head", kStart + ms * 1ms, T);
     EXPECT_TRUE(fed) << fed.error().text();
   }
   void ask(std::int64_t ms) {
-    frames_.when_known("robot", "head", kStart + ms * kMillisecond, [this](const auto& T) {
+    frames_.when_known("robot", "head", kStart + ms * 1ms, [this](const auto& T) {
       answers_.push_back(T ? Eigen::AngleAxisd(T->linear()).angle() : -1);
     });
   }
-  DefaultHead() { clock_.advance(std::chrono::nanoseconds(kStart)); }
+  DefaultHead() { clock_.advance(kStart.time_since_epoch()); }
   void pass(std::int64_t ms) { clock_.advance(std::chrono::milliseconds(ms)); }
 
   ManualClock clock_;
@@ -47,8 +49,8 @@ TEST_F(DefaultHead, a_time_to_come_is_waited_for_as_long_as_poses_come) {
   feed_at(0);
   ask(10);
   ask(4);
-  EXPECT_TRUE(frames_.awaits("robot", "left_eye", kStart + 1));
-  EXPECT_FALSE(frames_.awaits("head", "left_eye", kStart + 1));
+  EXPECT_TRUE(frames_.awaits("robot", "left_eye", kStart + 1ns));
+  EXPECT_FALSE(frames_.awaits("head", "left_eye", kStart + 1ns));
   feed_at(5);
   EXPECT_TRUE(answers_.empty()) << "in the order of asking";
   feed_at(20);
@@ -62,10 +64,8 @@ TEST_F(DefaultHead, a_time_to_come_is_waited_for_as_long_as_poses_come) {
   pass(1);
   frames_.answer_known();
   EXPECT_EQ(answers_.at(2), -1);
-  EXPECT_NEAR(
-      Eigen::AngleAxisd(frames_.nearest("robot", "head", kStart + 30 * kMillisecond).linear())
-          .angle(),
-      0.020, 1e-9);
+  EXPECT_NEAR(Eigen::AngleAxisd(frames_.nearest("robot", "head", kStart + 30ms).linear()).angle(),
+              0.020, 1e-9);
 }
 
 TEST_F(DefaultHead, without_any_pose_nothing_is_waited_for) {

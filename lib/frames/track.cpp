@@ -6,17 +6,17 @@
 
 namespace hc::frames {
 
-std::deque<Track::Sample>::const_iterator Track::first_from(std::int64_t time) const {
+std::deque<Track::Sample>::const_iterator Track::first_from(Time time) const {
   return std::lower_bound(samples_.begin(), samples_.end(), time,
-                          [](const Sample& sample, std::int64_t t) { return sample.time < t; });
+                          [](const Sample& sample, Time t) { return sample.time < t; });
 }
 
-Fed Track::add(std::int64_t time, const Pose& pose) {
-  HC_CHECK(time > 0, time);
+Fed Track::add(Time time, const Pose& pose) {
+  HC_CHECK(time > Time(), unix_nanoseconds(time));
   if (samples_.empty() || time > samples_.back().time) {
     samples_.push_back({time, pose});
   } else {
-    if (samples_.back().time - time > memory_.span.count()) return Fed::TooOld;
+    if (samples_.back().time - time > memory_.span) return Fed::TooOld;
     auto next = first_from(time);
     if (next->time == time) {
       samples_[static_cast<std::size_t>(next - samples_.cbegin())].pose = pose;
@@ -26,7 +26,7 @@ Fed Track::add(std::int64_t time, const Pose& pose) {
     samples_.insert(next, {time, pose});
   }
   while (samples_.size() > memory_.poses ||
-         samples_.back().time - samples_.front().time > memory_.span.count())
+         samples_.back().time - samples_.front().time > memory_.span)
     samples_.pop_front();
   return Fed::Added;
 }
@@ -36,17 +36,17 @@ TimeSpan Track::known() const {
   return {samples_.front().time, samples_.back().time};
 }
 
-std::optional<TimeSpan> Track::gap_at(std::int64_t time) const {
+std::optional<TimeSpan> Track::gap_at(Time time) const {
   auto next = first_from(time);
-  HC_CHECK(next != samples_.end(), time);
+  HC_CHECK(next != samples_.end(), unix_nanoseconds(time));
   if (next->time == time) return std::nullopt;
-  HC_CHECK(next != samples_.begin(), time);
+  HC_CHECK(next != samples_.begin(), unix_nanoseconds(time));
   auto before = std::prev(next);
   if (!is_gap(*before, *next)) return std::nullopt;
   return TimeSpan{before->time, next->time};
 }
 
-std::optional<TimeSpan> Track::known_until(std::int64_t time) const {
+std::optional<TimeSpan> Track::known_until(Time time) const {
   auto next = first_from(time);
   const bool exact = next != samples_.end() && next->time == time;
   if (!exact && next == samples_.begin()) return std::nullopt;
@@ -58,19 +58,19 @@ std::optional<TimeSpan> Track::known_until(std::int64_t time) const {
   return span;
 }
 
-Pose Track::at(std::int64_t time) const {
+Pose Track::at(Time time) const {
   auto next = first_from(time);
-  HC_CHECK(next != samples_.end(), time);
+  HC_CHECK(next != samples_.end(), unix_nanoseconds(time));
   if (next->time == time) return next->pose;
-  HC_CHECK(next != samples_.begin(), time);
+  HC_CHECK(next != samples_.begin(), unix_nanoseconds(time));
+  using Nanoseconds = std::chrono::duration<double, std::nano>;
   auto before = std::prev(next);
-  HC_CHECK(!is_gap(*before, *next), time);
-  return between(
-      before->pose, next->pose,
-      static_cast<double>(time - before->time) / static_cast<double>(next->time - before->time));
+  HC_CHECK(!is_gap(*before, *next), unix_nanoseconds(time));
+  return between(before->pose, next->pose,
+                 Nanoseconds(time - before->time) / (next->time - before->time));
 }
 
-Pose Track::nearest(std::int64_t time) const {
+Pose Track::nearest(Time time) const {
   const auto [first, last] = known();
   time = std::clamp(time, first, last);
   const auto gap = gap_at(time);

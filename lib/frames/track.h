@@ -4,12 +4,11 @@
 
 #include <chrono>
 #include <cstddef>
-#include <cstdint>
 #include <deque>
-#include <limits>
 #include <optional>
 
 #include <frames/rigid.h>
+#include <hc/base/time.h>
 
 namespace hc::frames {
 
@@ -22,10 +21,10 @@ struct Memory {
   std::chrono::nanoseconds gap = std::chrono::seconds(1);
 };
 
-/// A closed time interval [ns, as in a message's header].
+/// A closed time interval.
 struct TimeSpan {
-  std::int64_t first = 0;
-  std::int64_t last = std::numeric_limits<std::int64_t>::max();
+  Time first;
+  Time last = Time::max();
 
   bool operator==(const TimeSpan&) const = default;
 };
@@ -44,10 +43,10 @@ class Track {
 
   /// Adds a pose, in any order of time; the memory reaches back from the latest time.
   ///
-  /// @param time  > 0 [ns].
+  /// @param time  after the Unix epoch.
   /// @param pose  finite, its quaternion of length 1.
   /// Cost: constant for the latest time; linear in the poses after it for an earlier one.
-  Fed add(std::int64_t time, const Pose& pose);
+  Fed add(Time time, const Pose& pose);
 
   [[nodiscard]] bool empty() const { return samples_.empty(); }
   /// From the oldest to the latest pose, including gaps. The track must not be empty.
@@ -55,32 +54,32 @@ class Track {
 
   /// The gap at a time within known(), if any.
   /// Cost: logarithmic in the poses; no allocation.
-  [[nodiscard]] std::optional<TimeSpan> gap_at(std::int64_t time) const;
+  [[nodiscard]] std::optional<TimeSpan> gap_at(Time time) const;
 
   /// The latest known span up to `time` without a gap; nothing if all poses are later.
   /// Cost: linear in the poses of that span.
-  [[nodiscard]] std::optional<TimeSpan> known_until(std::int64_t time) const;
+  [[nodiscard]] std::optional<TimeSpan> known_until(Time time) const;
 
   /// The pose at a time, interpolated. The time must be within known(), and not in a gap.
   /// Cost: logarithmic in the poses; no allocation.
-  [[nodiscard]] Pose at(std::int64_t time) const;
+  [[nodiscard]] Pose at(Time time) const;
 
   /// The pose at any time: before known() the first, after it the last, in a gap the previous one.
   /// The track must not be empty. Cost: as at().
-  [[nodiscard]] Pose nearest(std::int64_t time) const;
+  [[nodiscard]] Pose nearest(Time time) const;
 
   void clear() { samples_.clear(); }
 
  private:
   struct Sample {
-    std::int64_t time;
+    Time time;
     Pose pose;
   };
 
-  [[nodiscard]] std::deque<Sample>::const_iterator first_from(std::int64_t time) const;
-  /// Times are > 0, so that no difference overflows.
+  [[nodiscard]] std::deque<Sample>::const_iterator first_from(Time time) const;
+  /// Times are after the epoch, so that no difference overflows.
   [[nodiscard]] bool is_gap(const Sample& before, const Sample& next) const {
-    return next.time - before.time > memory_.gap.count();
+    return next.time - before.time > memory_.gap;
   }
 
   Memory memory_;

@@ -20,60 +20,60 @@ Pose at_x(double x) {
 TEST(Track, IsLinearBetweenNeighbours) {
   Track track({});
   EXPECT_TRUE(track.empty());
-  EXPECT_EQ(track.add(1000, at_x(0)), Fed::Added);
-  EXPECT_EQ(track.known(), (TimeSpan{1000, 1000}));
-  EXPECT_EQ(track.at(1000).p.x(), 0);
-  EXPECT_EQ(track.add(2000, at_x(8)), Fed::Added);
-  EXPECT_EQ(track.add(1500, at_x(1)), Fed::Added) << "late, but within what is remembered";
-  EXPECT_EQ(track.known(), (TimeSpan{1000, 2000}));
-  EXPECT_EQ(track.at(1250).p.x(), 0.5);
-  EXPECT_EQ(track.at(1500).p.x(), 1);
-  EXPECT_EQ(track.at(1750).p.x(), 4.5);
+  EXPECT_EQ(track.add(unix_time(1000), at_x(0)), Fed::Added);
+  EXPECT_EQ(track.known(), (TimeSpan{unix_time(1000), unix_time(1000)}));
+  EXPECT_EQ(track.at(unix_time(1000)).p.x(), 0);
+  EXPECT_EQ(track.add(unix_time(2000), at_x(8)), Fed::Added);
+  EXPECT_EQ(track.add(unix_time(1500), at_x(1)), Fed::Added)
+      << "late, but within what is remembered";
+  EXPECT_EQ(track.known(), (TimeSpan{unix_time(1000), unix_time(2000)}));
+  EXPECT_EQ(track.at(unix_time(1250)).p.x(), 0.5);
+  EXPECT_EQ(track.at(unix_time(1500)).p.x(), 1);
+  EXPECT_EQ(track.at(unix_time(1750)).p.x(), 4.5);
 }
 
 TEST(Track, ARepeatedTimeReplaces) {
   Track track({});
-  track.add(1000, at_x(0));
-  track.add(2000, at_x(8));
-  EXPECT_EQ(track.add(2000, at_x(4)), Fed::Replaced);
-  EXPECT_EQ(track.at(1500).p.x(), 2);
-  EXPECT_EQ(track.add(1000, at_x(2)), Fed::Replaced);
-  EXPECT_EQ(track.at(1500).p.x(), 3);
+  track.add(unix_time(1000), at_x(0));
+  track.add(unix_time(2000), at_x(8));
+  EXPECT_EQ(track.add(unix_time(2000), at_x(4)), Fed::Replaced);
+  EXPECT_EQ(track.at(unix_time(1500)).p.x(), 2);
+  EXPECT_EQ(track.add(unix_time(1000), at_x(2)), Fed::Replaced);
+  EXPECT_EQ(track.at(unix_time(1500)).p.x(), 3);
   track.clear();
   EXPECT_TRUE(track.empty());
-  EXPECT_EQ(track.add(1, at_x(0)), Fed::Added) << "a clock that starts over";
+  EXPECT_EQ(track.add(unix_time(1), at_x(0)), Fed::Added) << "a clock that starts over";
 }
 
 TEST(Track, RemembersASpan) {
   Track track({.span = std::chrono::nanoseconds(100)});
-  for (std::int64_t time : {1, 50, 101}) EXPECT_EQ(track.add(time, at_x(0)), Fed::Added);
-  EXPECT_EQ(track.known(), (TimeSpan{1, 101}));
-  EXPECT_EQ(track.add(102, at_x(0)), Fed::Added);
-  EXPECT_EQ(track.known(), (TimeSpan{50, 102}));
-  EXPECT_EQ(track.add(1, at_x(0)), Fed::TooOld);
-  EXPECT_EQ(track.add(2, at_x(0)), Fed::Added);
-  EXPECT_EQ(track.known(), (TimeSpan{2, 102}));
-  EXPECT_EQ(track.add(10'000, at_x(0)), Fed::Added);
-  EXPECT_EQ(track.known(), (TimeSpan{10'000, 10'000}));
+  for (std::int64_t time : {1, 50, 101}) EXPECT_EQ(track.add(unix_time(time), at_x(0)), Fed::Added);
+  EXPECT_EQ(track.known(), (TimeSpan{unix_time(1), unix_time(101)}));
+  EXPECT_EQ(track.add(unix_time(102), at_x(0)), Fed::Added);
+  EXPECT_EQ(track.known(), (TimeSpan{unix_time(50), unix_time(102)}));
+  EXPECT_EQ(track.add(unix_time(1), at_x(0)), Fed::TooOld);
+  EXPECT_EQ(track.add(unix_time(2), at_x(0)), Fed::Added);
+  EXPECT_EQ(track.known(), (TimeSpan{unix_time(2), unix_time(102)}));
+  EXPECT_EQ(track.add(unix_time(10'000), at_x(0)), Fed::Added);
+  EXPECT_EQ(track.known(), (TimeSpan{unix_time(10'000), unix_time(10'000)}));
 }
 
 TEST(Track, RemembersACount) {
   Track track({.poses = 2});
-  for (std::int64_t time : {10, 20, 30}) EXPECT_EQ(track.add(time, at_x(0)), Fed::Added);
-  EXPECT_EQ(track.known(), (TimeSpan{20, 30}));
-  EXPECT_EQ(track.add(15, at_x(0)), Fed::TooOld);
-  EXPECT_EQ(track.add(20, at_x(0)), Fed::Replaced);
-  EXPECT_EQ(track.add(25, at_x(0)), Fed::Added);
-  EXPECT_EQ(track.known(), (TimeSpan{25, 30}));
+  for (std::int64_t time : {10, 20, 30}) EXPECT_EQ(track.add(unix_time(time), at_x(0)), Fed::Added);
+  EXPECT_EQ(track.known(), (TimeSpan{unix_time(20), unix_time(30)}));
+  EXPECT_EQ(track.add(unix_time(15), at_x(0)), Fed::TooOld);
+  EXPECT_EQ(track.add(unix_time(20), at_x(0)), Fed::Replaced);
+  EXPECT_EQ(track.add(unix_time(25), at_x(0)), Fed::Added);
+  EXPECT_EQ(track.known(), (TimeSpan{unix_time(25), unix_time(30)}));
 }
 
 TEST(Track, BearsTheFirstAndLastTimesThereAre) {
-  constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
   Track track({.span = std::chrono::nanoseconds::max(), .gap = std::chrono::nanoseconds::max()});
-  track.add(kLast, at_x(1));
-  track.add(1, at_x(0));
-  EXPECT_EQ(track.known(), (TimeSpan{1, kLast}));
-  EXPECT_NEAR(track.at(kLast / 2).p.x(), 0.5, 1e-15);
+  track.add(Time::max(), at_x(1));
+  track.add(unix_time(1), at_x(0));
+  EXPECT_EQ(track.known(), (TimeSpan{unix_time(1), Time::max()}));
+  EXPECT_NEAR(track.at(unix_time(unix_nanoseconds(Time::max()) / 2)).p.x(), 0.5, 1e-15);
 }
 
 TEST(Track, IsWhatASortedListWouldBe) {
@@ -87,14 +87,15 @@ TEST(Track, IsWhatASortedListWouldBe) {
     for (int i = 0; i < 100; ++i) {
       std::int64_t time = random.whole(1, 300);
       Pose pose(random.transformation());
-      Fed fed = track.add(time, pose);
+      Fed fed = track.add(unix_time(time), pose);
       bool is_new = !all.contains(time);
       all[time] = pose;
       while (all.size() > static_cast<std::size_t>(count) ||
              all.rbegin()->first - all.begin()->first > span)
         all.erase(all.begin());
       ASSERT_EQ(fed, !all.contains(time) ? Fed::TooOld : is_new ? Fed::Added : Fed::Replaced);
-      ASSERT_EQ(track.known(), (TimeSpan{all.begin()->first, all.rbegin()->first}));
+      ASSERT_EQ(track.known(),
+                (TimeSpan{unix_time(all.begin()->first), unix_time(all.rbegin()->first)}));
       std::int64_t asked =
           random.whole(static_cast<int>(all.begin()->first), static_cast<int>(all.rbegin()->first));
       auto next = all.lower_bound(asked), before = next == all.begin() ? next : std::prev(next);
@@ -106,17 +107,18 @@ TEST(Track, IsWhatASortedListWouldBe) {
       };
       std::int64_t last = asked + random.whole(-20, 20);
       std::optional<TimeSpan> expected_span;
-      auto until = track.known_until(last);
+      auto until = track.known_until(unix_time(last));
       while (last >= all.begin()->first && !is_known(last)) --last;
       if (last >= all.begin()->first) {
-        expected_span = {last, last};
-        while (is_known(expected_span->first - 1)) --expected_span->first;
+        std::int64_t first = last;
+        while (is_known(first - 1)) --first;
+        expected_span = {unix_time(first), unix_time(last)};
       }
       ASSERT_EQ(until, expected_span);
-      auto hole = track.gap_at(asked);
+      auto hole = track.gap_at(unix_time(asked));
       ASSERT_EQ(hole.has_value(), !is_known(asked));
       if (hole) {
-        ASSERT_EQ(*hole, (TimeSpan{before->first, next->first}));
+        ASSERT_EQ(*hole, (TimeSpan{unix_time(before->first), unix_time(next->first)}));
         continue;
       }
       Eigen::Matrix4d expected = next->second.transformation().matrix();
@@ -124,47 +126,47 @@ TEST(Track, IsWhatASortedListWouldBe) {
         expected = interpolated(before->second.transformation().matrix(), expected,
                                 static_cast<double>(asked - before->first) /
                                     static_cast<double>(next->first - before->first));
-      ASSERT_LT((track.at(asked).transformation().matrix() - expected).norm(), 1e-9);
+      ASSERT_LT((track.at(unix_time(asked)).transformation().matrix() - expected).norm(), 1e-9);
     }
   }
 }
 
 TEST(Track, BridgesNoGap) {
   Track track({.gap = std::chrono::nanoseconds(100)});
-  for (std::int64_t time : {100, 200, 301, 350}) track.add(time, at_x(static_cast<double>(time)));
-  EXPECT_EQ(track.at(150).p.x(), 150) << "as far apart as is bridged";
-  EXPECT_EQ(track.gap_at(150), std::nullopt);
-  EXPECT_EQ(track.gap_at(201), (TimeSpan{200, 301}));
-  for (std::int64_t time : {200, 301}) EXPECT_EQ(track.at(time).p.x(), time);
-  EXPECT_EQ(track.known(), (TimeSpan{100, 350}));
-  EXPECT_EQ(track.known_until(1000), (TimeSpan{301, 350}));
-  EXPECT_EQ(track.known_until(310), (TimeSpan{301, 310}));
-  EXPECT_EQ(track.known_until(300), (TimeSpan{100, 200}));
-  EXPECT_EQ(track.known_until(99), std::nullopt);
-  track.add(260, at_x(0));
-  EXPECT_EQ(track.gap_at(201), std::nullopt) << "a late pose closes it";
+  for (std::int64_t time : {100, 200, 301, 350})
+    track.add(unix_time(time), at_x(static_cast<double>(time)));
+  EXPECT_EQ(track.at(unix_time(150)).p.x(), 150) << "as far apart as is bridged";
+  EXPECT_EQ(track.gap_at(unix_time(150)), std::nullopt);
+  EXPECT_EQ(track.gap_at(unix_time(201)), (TimeSpan{unix_time(200), unix_time(301)}));
+  for (std::int64_t time : {200, 301}) EXPECT_EQ(track.at(unix_time(time)).p.x(), time);
+  EXPECT_EQ(track.known(), (TimeSpan{unix_time(100), unix_time(350)}));
+  EXPECT_EQ(track.known_until(unix_time(1000)), (TimeSpan{unix_time(301), unix_time(350)}));
+  EXPECT_EQ(track.known_until(unix_time(310)), (TimeSpan{unix_time(301), unix_time(310)}));
+  EXPECT_EQ(track.known_until(unix_time(300)), (TimeSpan{unix_time(100), unix_time(200)}));
+  EXPECT_EQ(track.known_until(unix_time(99)), std::nullopt);
+  track.add(unix_time(260), at_x(0));
+  EXPECT_EQ(track.gap_at(unix_time(201)), std::nullopt) << "a late pose closes it";
 }
 
 TEST(Track, TheNearestPoseIsThatOfWhatStandsStill) {
   Track track{Memory{}};
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  auto x = [&](std::int64_t time) { return track.nearest(time).p.x(); };
-  for (auto [time, place] : {std::pair{kSecond, 1.0}, {2 * kSecond, 2.0}, {5 * kSecond, 5.0}})
-    track.add(time, at_x(place));
-  EXPECT_EQ(x(1), 1);
-  EXPECT_DOUBLE_EQ(x(kSecond + kSecond / 2), 1.5);
-  EXPECT_EQ(x(4 * kSecond), 2) << "in a gap";
-  EXPECT_EQ(x(5 * kSecond), 5);
-  EXPECT_EQ(x(60 * kSecond), 5);
+  using namespace std::chrono_literals;
+  auto x = [&](std::chrono::nanoseconds time) { return track.nearest(Time(time)).p.x(); };
+  for (int place : {1, 2, 5}) track.add(Time(place * 1s), at_x(place));
+  EXPECT_EQ(x(1ns), 1);
+  EXPECT_DOUBLE_EQ(x(1500ms), 1.5);
+  EXPECT_EQ(x(4s), 2) << "in a gap";
+  EXPECT_EQ(x(5s), 5);
+  EXPECT_EQ(x(60s), 5);
 }
 
 TEST(TrackDeathTest, OutsideIsABug) {
   Track track({});
-  track.add(10, at_x(0));
-  EXPECT_DEATH(static_cast<void>(track.at(9)), "9");
-  EXPECT_DEATH(static_cast<void>(track.at(11)), "11");
-  track.add(2'000'000'000, at_x(0));
-  EXPECT_DEATH(static_cast<void>(track.at(11)), "11") << "in a gap";
+  track.add(unix_time(10), at_x(0));
+  EXPECT_DEATH(static_cast<void>(track.at(unix_time(9))), "9");
+  EXPECT_DEATH(static_cast<void>(track.at(unix_time(11))), "11");
+  track.add(unix_time(2'000'000'000), at_x(0));
+  EXPECT_DEATH(static_cast<void>(track.at(unix_time(11))), "11") << "in a gap";
 }
 
 }  // namespace

@@ -15,10 +15,12 @@ Error error(Code code, const std::string& what) {
   return Error{code, "frames: " + what};
 }
 
+constexpr auto ns = unix_nanoseconds;
+
 /// A duration as text: "12.3 ms".
-std::string duration(std::uint64_t ns) {
-  if (ns < 1000) return std::to_string(ns) + " ns";
-  double value = static_cast<double>(ns) / 1e3;
+std::string duration(std::uint64_t nanoseconds) {
+  if (nanoseconds < 1000) return std::to_string(nanoseconds) + " ns";
+  double value = static_cast<double>(nanoseconds) / 1e3;
   const char* unit = " µs";
   for (const char* next : {" ms", " s"}) {
     if (value < 999.95) break;  // more would be shown as 1000.0
@@ -29,13 +31,14 @@ std::string duration(std::uint64_t ns) {
 }
 
 /// ", asked for 25 ns: 5 ns too late", of a time outside the span.
-std::string outside(std::int64_t time, TimeSpan span) {
-  if (time == 0) return ", asked for time 0, which means unknown";
+std::string outside(Time time, TimeSpan span) {
+  if (time == Time()) return ", asked for time 0, which means unknown";
   // Unsigned, so that no difference overflows.
-  auto since = [](std::int64_t later, std::int64_t earlier) {
-    return duration(static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier));
+  auto since = [](Time later, Time earlier) {
+    return duration(static_cast<std::uint64_t>(ns(later)) -
+                    static_cast<std::uint64_t>(ns(earlier)));
   };
-  return ", asked for " + std::to_string(time) + " ns: " +
+  return ", asked for " + std::to_string(ns(time)) + " ns: " +
          (time < span.first ? since(span.first, time) + " too early"
                             : since(time, span.last) + " too late");
 }
@@ -139,7 +142,7 @@ Status Tree::join(const Frame& parent, const Frame& child, const Memory& memory)
   return attach(parent, child, Track(memory));
 }
 
-Result<Fed> Tree::feed(const Frame& parent, const Frame& child, std::int64_t time,
+Result<Fed> Tree::feed(const Frame& parent, const Frame& child, Time time,
                        const Eigen::Isometry3d& T_parent_child) {
   const auto p = HC_TRY(find(parent)), c = HC_TRY(find(child));
   Node& node = nodes_[c];
@@ -147,7 +150,7 @@ Result<Fed> Tree::feed(const Frame& parent, const Frame& child, std::int64_t tim
     return error(Code::Invalid, node.name + " in " + nodes_[p].name + " is fed, but not joined");
   auto* track = std::get_if<Track>(&node.joint);
   if (track == nullptr) return error(Code::Invalid, joint_name(c) + " is fed, but fixed");
-  if (time <= 0) return error(Code::Malformed, joint_name(c) + " is fed without a time");
+  if (time <= Time()) return error(Code::Malformed, joint_name(c) + " is fed without a time");
   auto checked = HC_TRY(rigid(T_parent_child.matrix()));
   return track->add(time, Pose(checked));
 }
@@ -175,23 +178,23 @@ Result<const Track*> Tree::track_of(std::size_t child) const {
   return track;
 }
 
-Result<Eigen::Isometry3d> Tree::joint_at(std::size_t child, std::int64_t time) const {
+Result<Eigen::Isometry3d> Tree::joint_at(std::size_t child, Time time) const {
   auto track = HC_TRY(track_of(child));
   if (track == nullptr) return std::get<Eigen::Isometry3d>(nodes_[child].joint);
   const TimeSpan span = track->known();
   if (time < span.first || time > span.last)
     return error(Code::NotFound, hc::format("{} is known from {} to {} ns{}", joint_name(child),
-                                            span.first, span.last, outside(time, span)));
+                                            ns(span.first), ns(span.last), outside(time, span)));
   if (auto gap = track->gap_at(time))
-    return error(Code::NotFound,
-                 hc::format("{} is not known between {} and {} ns, asked for {} ns: a gap of {}",
-                            joint_name(child), gap->first, gap->last, time,
-                            duration(static_cast<std::uint64_t>(gap->last) -
-                                     static_cast<std::uint64_t>(gap->first))));
+    return error(
+        Code::NotFound,
+        hc::format("{} is not known between {} and {} ns, asked for {} ns: a gap of {}",
+                   joint_name(child), ns(gap->first), ns(gap->last), ns(time),
+                   duration(static_cast<std::uint64_t>((gap->last - gap->first).count()))));
   return track->at(time).transformation();
 }
 
-Eigen::Isometry3d Tree::joint_nearest(std::size_t child, std::int64_t time) const {
+Eigen::Isometry3d Tree::joint_nearest(std::size_t child, Time time) const {
   if (const auto* fixed = std::get_if<Eigen::Isometry3d>(&nodes_[child].joint)) return *fixed;
   const auto& track = std::get<Track>(nodes_[child].joint);
   return track.empty() ? Eigen::Isometry3d::Identity() : track.nearest(time).transformation();
@@ -214,17 +217,15 @@ Result<Eigen::Isometry3d> Tree::product(const Frame& target, const Frame& source
   return T_target_source;
 }
 
-Result<Eigen::Isometry3d> Tree::lookup(const Frame& target, const Frame& source,
-                                       std::int64_t time) const {
+Result<Eigen::Isometry3d> Tree::lookup(const Frame& target, const Frame& source, Time time) const {
   return product(target, source, [&](std::size_t child) { return joint_at(child, time); });
 }
 
-Result<Eigen::Isometry3d> Tree::nearest(const Frame& target, const Frame& source,
-                                        std::int64_t time) const {
+Result<Eigen::Isometry3d> Tree::nearest(const Frame& target, const Frame& source, Time time) const {
   return product(target, source, [&](std::size_t child) { return joint_nearest(child, time); });
 }
 
-bool Tree::is_ahead(const Frame& target, const Frame& source, std::int64_t time) const {
+bool Tree::is_ahead(const Frame& target, const Frame& source, Time time) const {
   bool is_ahead = false;
   auto look = [&](std::size_t child) -> Result<Eigen::Isometry3d> {
     const auto* track = std::get_if<Track>(&nodes_[child].joint);
@@ -274,7 +275,7 @@ Result<TimeSpan> Tree::known(const Frame& target, const Frame& source) const {
   if (all.first > all.last)
     return error(Code::NotFound,
                  hc::format("{} is known to {} ns and {} from {} ns: no common time",
-                            joint_name(earliest), all.last, joint_name(latest), all.first));
+                            joint_name(earliest), ns(all.last), joint_name(latest), ns(all.first)));
   // Goes back from the end, to before each gap, until there is none.
   TimeSpan both = all;
   for (bool is_settled = false; !is_settled;) {
@@ -284,7 +285,7 @@ Result<TimeSpan> Tree::known(const Frame& target, const Frame& source) const {
       auto span = track->known_until(both.last);
       if (!span || span->last < all.first)
         return error(Code::NotFound, hc::format("between {} and {} ns some joint always has a gap",
-                                                all.first, all.last));
+                                                ns(all.first), ns(all.last)));
       is_settled = is_settled && span->last == both.last;
       both.last = span->last;
       both.first = std::max(both.first, span->first);

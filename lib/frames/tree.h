@@ -49,7 +49,7 @@ inline constexpr StandardFrame kStandardFrames[] = {
 ///     Eigen::Vector3d p_world = *T_world_left_eye * p_left_eye;
 ///
 /// T_parent_child, (4, 4) f64, transforms points from the child's frame to the parent's,
-/// translations in metres; times are nanoseconds since the Unix epoch, as in a header. Error
+/// translations in metres; times are those of headers. Error
 /// details start with "frames: " and are one line.
 class Tree {
  public:
@@ -81,23 +81,23 @@ class Tree {
   /// a known time replaces the earlier one. One older than the joint's memory is dropped, and
   /// reported as Fed::TooOld, which is not an error: after a clock was set back, call forget().
   ///
-  /// @param time  > 0 [ns].
-  /// Errors: NotFound (no such frame); Malformed (as rigid(); time <= 0); Invalid (not joined, or
-  /// fixed). Then nothing changes. Cost: constant for the latest time; see Track::add().
-  Result<Fed> feed(const Frame& parent, const Frame& child, std::int64_t time,
+  /// @param time  after the Unix epoch.
+  /// Errors: NotFound (no such frame); Malformed (as rigid(); an unknown time); Invalid (not
+  /// joined, or fixed). Then nothing changes. Cost: constant for the latest time; see Track::add().
+  Result<Fed> feed(const Frame& parent, const Frame& child, Time time,
                    const Eigen::Isometry3d& T_parent_child);
 
   /// T_target_source, which transforms points from `source` to `target`, both at `time`. Poses of a
   /// joint are interpolated with between(), in the parent's frame, but not extrapolated, nor over
   /// more than Memory::gap. Joints above the nearest common ancestor are not used.
   ///
-  /// @param time  [ns]; irrelevant if all joints between are fixed.
+  /// @param time  irrelevant if all joints between are fixed.
   /// Errors: NotFound (no such frame; frames not joined; a joint unknown at that time: "frames:
   /// head in robot is known from 10 to 20 ns, asked for 25 ns: 5 ns too late"). Cost: a product per
   /// joint between; logarithmic in the poses of a moving one and in the number of frames. No
   /// allocation unless it fails.
   [[nodiscard]] Result<Eigen::Isometry3d> lookup(const Frame& target, const Frame& source,
-                                                 std::int64_t time) const;
+                                                 Time time) const;
 
   /// The same, but a joint without a pose at `time` keeps the last one before it, or the first
   /// after it; the identity without any. For joints that rest while no poses arrive, such as a head
@@ -105,7 +105,7 @@ class Tree {
   ///
   /// Errors: NotFound (no such frame; frames not joined). Cost: as lookup().
   [[nodiscard]] Result<Eigen::Isometry3d> nearest(const Frame& target, const Frame& source,
-                                                  std::int64_t time) const;
+                                                  Time time) const;
 
   /// When lookup() of these two succeeds: the latest span without a gap, whose `last` is their
   /// latest common time. A default TimeSpan (always) if all joints between are fixed.
@@ -116,7 +116,7 @@ class Tree {
 
   /// Whether a pose for a time may still arrive: a joint between the two has none at or after it.
   /// False for unknown frames, or if all joints between are fixed.
-  [[nodiscard]] bool is_ahead(const Frame& target, const Frame& source, std::int64_t time) const;
+  [[nodiscard]] bool is_ahead(const Frame& target, const Frame& source, Time time) const;
 
   /// The names of all frames, sorted.
   [[nodiscard]] std::vector<std::string> names() const;
@@ -149,8 +149,8 @@ class Tree {
   /// The track of a moving joint; null if fixed. Errors: NotFound (no poses yet).
   [[nodiscard]] Result<const Track*> track_of(std::size_t child) const;
   /// T_parent_child at a time.
-  [[nodiscard]] Result<Eigen::Isometry3d> joint_at(std::size_t child, std::int64_t time) const;
-  [[nodiscard]] Eigen::Isometry3d joint_nearest(std::size_t child, std::int64_t time) const;
+  [[nodiscard]] Result<Eigen::Isometry3d> joint_at(std::size_t child, Time time) const;
+  [[nodiscard]] Eigen::Isometry3d joint_nearest(std::size_t child, Time time) const;
   /// T_target_source from T_parent_child of each joint between, given by `joint_of`.
   template <typename JointOf>
   Result<Eigen::Isometry3d> product(const Frame& target, const Frame& source,

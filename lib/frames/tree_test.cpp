@@ -14,7 +14,9 @@
 namespace hc::frames {
 namespace {
 
-constexpr std::int64_t kTime = 1763683200000000000;  // [ns], November 2025
+using namespace std::chrono_literals;
+
+constexpr Time kTime(1'763'683'200s);  // November 2025
 
 Eigen::Isometry3d shift(double x, double y = 0, double z = 0) {
   return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
@@ -39,25 +41,25 @@ TEST(Tree, FollowsTheHeadAtTheTimeOfAnImage) {
   Tree tree = head_tree();
   for (int i = 0; i <= 2; ++i) {
     Eigen::Isometry3d T_robot_head(rotation(0, 0, i * 0.2));
-    ASSERT_EQ(*tree.feed("robot", "head", kTime + i * 10'000'000, T_robot_head), Fed::Added);
+    ASSERT_EQ(*tree.feed("robot", "head", kTime + i * 10ms, T_robot_head), Fed::Added);
   }
-  auto T_world_left_eye = tree.lookup("world", "left_eye", kTime + 15'000'000);
+  auto T_world_left_eye = tree.lookup("world", "left_eye", kTime + 15ms);
   ASSERT_TRUE(T_world_left_eye) << T_world_left_eye.error().text();
   Eigen::Vector3d p_world = *T_world_left_eye * Eigen::Vector3d(2, 0, 0);
   Eigen::Vector3d expected(1 + 2 * std::cos(0.3) - 0.1 * std::sin(0.3),
                            2 * std::sin(0.3) + 0.1 * std::cos(0.3), 0);
   EXPECT_LT((p_world - expected).norm(), 1e-12) << "m";
-  auto by_number = tree.lookup(1, 4, kTime + 15'000'000);
+  auto by_number = tree.lookup(1, 4, kTime + 15ms);
   EXPECT_EQ(by_number->matrix(), T_world_left_eye->matrix());
 }
 
 TEST(Tree, AsksNothingThatIsNotOnTheWay) {
   Tree tree = head_tree();  // without a pose of the head
-  auto T_right_left = tree.lookup("right_eye", "left_eye", 0);
+  auto T_right_left = tree.lookup("right_eye", "left_eye", {});
   ASSERT_TRUE(T_right_left);
   EXPECT_TRUE(T_right_left->isApprox(shift(0, 0.2)));
   EXPECT_EQ(*tree.known("right_eye", "left_eye"), TimeSpan());
-  EXPECT_TRUE(tree.lookup("head", "head", 0)->isApprox(shift(0)));
+  EXPECT_TRUE(tree.lookup("head", "head", {})->isApprox(shift(0)));
 }
 
 TEST(Tree, ExtrapolatesNothing) {
@@ -66,14 +68,14 @@ TEST(Tree, ExtrapolatesNothing) {
             "NotFound: frames: head in robot has no pose yet");
   ASSERT_TRUE(tree.feed("robot", "head", kTime, shift(0)));
   EXPECT_TRUE(tree.lookup("world", "left_eye", kTime)) << "one pose is known at its own time";
-  ASSERT_TRUE(tree.feed("robot", "head", kTime + 1'000'000, shift(0)));
+  ASSERT_TRUE(tree.feed("robot", "head", kTime + 1ms, shift(0)));
   const std::string known =
       "NotFound: frames: head in robot is known from 1763683200000000000 to 1763683200001000000 ns";
-  EXPECT_EQ(refusal(tree.lookup("world", "left_eye", kTime + 13'300'000)),
+  EXPECT_EQ(refusal(tree.lookup("world", "left_eye", kTime + 13300us)),
             known + ", asked for 1763683200013300000 ns: 12.3 ms too late");
-  EXPECT_EQ(refusal(tree.lookup("left_eye", "world", kTime - 999)),
+  EXPECT_EQ(refusal(tree.lookup("left_eye", "world", kTime - 999ns)),
             known + ", asked for 1763683199999999001 ns: 999 ns too early");
-  EXPECT_EQ(refusal(tree.lookup("world", "head", 0)),
+  EXPECT_EQ(refusal(tree.lookup("world", "head", {})),
             known + ", asked for time 0, which means unknown");
   for (auto [away, text] : std::map<std::int64_t, std::string>{{1, "1 ns"},
                                                                {1000, "1.0 µs"},
@@ -81,11 +83,10 @@ TEST(Tree, ExtrapolatesNothing) {
                                                                {999'950, "1.0 ms"},
                                                                {999'999'999, "1.0 s"},
                                                                {86'400'000'000'000, "86400.0 s"}}) {
-    EXPECT_TRUE(refusal(tree.lookup("world", "head", kTime - away)).ends_with(text + " too early"));
+    EXPECT_TRUE(refusal(tree.lookup("world", "head", kTime - std::chrono::nanoseconds(away)))
+                    .ends_with(text + " too early"));
   }
-  for (auto time :
-       {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()})
-    EXPECT_FALSE(tree.lookup("world", "head", time));
+  for (auto time : {Time::min(), Time::max()}) EXPECT_FALSE(tree.lookup("world", "head", time));
 }
 
 TEST(Tree, KnownIsWhenAllJointsAre) {
@@ -93,32 +94,31 @@ TEST(Tree, KnownIsWhenAllJointsAre) {
   ASSERT_TRUE(tree.join("head", "supervisor"));
   EXPECT_EQ(refusal(tree.known("world", "supervisor")),
             "NotFound: frames: supervisor in head has no pose yet");
-  for (int time : {10, 20, 30}) ASSERT_TRUE(tree.feed("robot", "head", time, shift(0)));
-  for (int time : {40, 50}) ASSERT_TRUE(tree.feed("head", "supervisor", time, shift(0)));
+  for (int time : {10, 20, 30}) ASSERT_TRUE(tree.feed("robot", "head", unix_time(time), shift(0)));
+  for (int time : {40, 50}) ASSERT_TRUE(tree.feed("head", "supervisor", unix_time(time), shift(0)));
   EXPECT_EQ(refusal(tree.known("supervisor", "world")),
             "NotFound: frames: head in robot is known to 30 ns and supervisor in head from 40 ns: "
             "no common time");
-  ASSERT_TRUE(tree.feed("head", "supervisor", 15, shift(0)));
-  EXPECT_EQ(*tree.known("supervisor", "world"), (TimeSpan{15, 30}));
-  EXPECT_EQ(*tree.known("world", "left_eye"), (TimeSpan{10, 30}));
-  EXPECT_TRUE(tree.lookup("supervisor", "world", 30));
-  EXPECT_FALSE(tree.lookup("supervisor", "world", 31));
+  ASSERT_TRUE(tree.feed("head", "supervisor", unix_time(15), shift(0)));
+  EXPECT_EQ(*tree.known("supervisor", "world"), (TimeSpan{unix_time(15), unix_time(30)}));
+  EXPECT_EQ(*tree.known("world", "left_eye"), (TimeSpan{unix_time(10), unix_time(30)}));
+  EXPECT_TRUE(tree.lookup("supervisor", "world", unix_time(30)));
+  EXPECT_FALSE(tree.lookup("supervisor", "world", unix_time(31)));
   tree.forget();
   EXPECT_FALSE(tree.known("world", "head"));
-  EXPECT_EQ(*tree.feed("robot", "head", 5, shift(0)), Fed::Added);
+  EXPECT_EQ(*tree.feed("robot", "head", unix_time(5), shift(0)), Fed::Added);
 }
 
 TEST(Tree, BridgesNoGap) {
   Tree tree = head_tree();
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  for (std::int64_t time : {kTime, kTime + kSecond, kTime + 2 * kSecond + 1})
-    ASSERT_TRUE(tree.feed("robot", "head", time, shift(static_cast<double>(time - kTime))));
-  EXPECT_TRUE(tree.lookup("world", "left_eye", kTime + kSecond / 2)) << "1 s is bridged";
-  EXPECT_EQ(refusal(tree.lookup("world", "left_eye", kTime + kSecond + 1)),
+  for (Time time : {kTime, kTime + 1s, kTime + 2s + 1ns})
+    ASSERT_TRUE(
+        tree.feed("robot", "head", time, shift(static_cast<double>((time - kTime).count()))));
+  EXPECT_TRUE(tree.lookup("world", "left_eye", kTime + 500ms)) << "1 s is bridged";
+  EXPECT_EQ(refusal(tree.lookup("world", "left_eye", kTime + 1s + 1ns)),
             "NotFound: frames: head in robot is not known between 1763683201000000000 and "
             "1763683202000000001 ns, asked for 1763683201000000001 ns: a gap of 1.0 s");
-  EXPECT_EQ(*tree.known("world", "left_eye"),
-            (TimeSpan{kTime + 2 * kSecond + 1, kTime + 2 * kSecond + 1}));
+  EXPECT_EQ(*tree.known("world", "left_eye"), (TimeSpan{kTime + 2s + 1ns, kTime + 2s + 1ns}));
   EXPECT_EQ(refusal(tree.join("world", "supervisor", {.gap = std::chrono::nanoseconds(0)})),
             "Invalid: frames: a gap of 0 ns joins nothing");
 }
@@ -126,15 +126,17 @@ TEST(Tree, BridgesNoGap) {
 TEST(Tree, KnownIsTheLatestSpanWithoutAGapOfAnyJoint) {
   Tree tree = head_tree();
   ASSERT_TRUE(tree.join("head", "supervisor", {.gap = std::chrono::nanoseconds(10)}));
-  for (int time : {12, 40, 60}) ASSERT_TRUE(tree.feed("robot", "head", time, shift(0)));
-  for (int time : {10, 20, 25, 70}) ASSERT_TRUE(tree.feed("head", "supervisor", time, shift(0)));
+  for (int time : {12, 40, 60}) ASSERT_TRUE(tree.feed("robot", "head", unix_time(time), shift(0)));
+  for (int time : {10, 20, 25, 70})
+    ASSERT_TRUE(tree.feed("head", "supervisor", unix_time(time), shift(0)));
   // No pose of the supervisor is known for the last 60, back to 25.
-  EXPECT_EQ(*tree.known("world", "supervisor"), (TimeSpan{12, 25}));
+  EXPECT_EQ(*tree.known("world", "supervisor"), (TimeSpan{unix_time(12), unix_time(25)}));
   Tree apart = Tree::standard();
   ASSERT_TRUE(apart.join("robot", "head", {.gap = std::chrono::nanoseconds(10)}));
   ASSERT_TRUE(apart.join("head", "supervisor", {.gap = std::chrono::nanoseconds(10)}));
-  for (int time : {10, 30}) ASSERT_TRUE(apart.feed("robot", "head", time, shift(0)));
-  for (int time : {20, 25}) ASSERT_TRUE(apart.feed("head", "supervisor", time, shift(0)));
+  for (int time : {10, 30}) ASSERT_TRUE(apart.feed("robot", "head", unix_time(time), shift(0)));
+  for (int time : {20, 25})
+    ASSERT_TRUE(apart.feed("head", "supervisor", unix_time(time), shift(0)));
   EXPECT_EQ(refusal(apart.known("robot", "supervisor")),
             "NotFound: frames: between 20 and 25 ns some joint always has a gap");
 }
@@ -143,7 +145,7 @@ TEST(Tree, AFrameMayHaveANameAlone) {
   Tree tree = Tree::standard();
   ASSERT_TRUE(tree.add("chip"));
   ASSERT_TRUE(tree.fix("head", "chip", shift(3)));
-  EXPECT_TRUE(tree.lookup(3, "chip", 0)->isApprox(shift(3)));
+  EXPECT_TRUE(tree.lookup(3, "chip", {})->isApprox(shift(3)));
   EXPECT_EQ(refusal(tree.add("chip")), "Invalid: frames: there is a frame chip already");
   EXPECT_EQ(refusal(tree.add("")), "Invalid: frames: a frame has no name");
   EXPECT_EQ(refusal(tree.add("a b")), "Invalid: frames: a frame has a name with a blank");
@@ -182,9 +184,9 @@ TEST(Tree, WhatIsNotFedIsWhereItsParentIsAndWhatIsSilentWhereItWas) {
   EXPECT_TRUE(tree.nearest("base", "arm", kTime)->isApprox(shift(0)));
   EXPECT_TRUE(tree.is_ahead("base", "arm", kTime));
   ASSERT_TRUE(tree.feed("base", "arm", kTime, shift(2)));
-  EXPECT_TRUE(tree.nearest("base", "arm", kTime + 1)->isApprox(shift(2)));
+  EXPECT_TRUE(tree.nearest("base", "arm", kTime + 1ns)->isApprox(shift(2)));
   EXPECT_FALSE(tree.is_ahead("base", "arm", kTime));
-  EXPECT_TRUE(tree.is_ahead("arm", "base", kTime + 1));
+  EXPECT_TRUE(tree.is_ahead("arm", "base", kTime + 1ns));
   EXPECT_FALSE(tree.nearest("base", "leg", kTime));
 }
 
@@ -215,7 +217,7 @@ TEST(Tree, RefusesWhatCannotBeFed) {
             "Invalid: frames: robot in head is fed, but not joined");
   EXPECT_EQ(refusal(tree.feed("world", "robot", kTime, shift(0))),
             "Invalid: frames: robot in world is fed, but fixed");
-  for (std::int64_t time : {std::int64_t{0}, std::int64_t{-1}})
+  for (Time time : {unix_time(0), unix_time(-1)})
     EXPECT_EQ(refusal(tree.feed("robot", "head", time, shift(0))),
               "Malformed: frames: head in robot is fed without a time");
   Eigen::Isometry3d wrong = shift(std::numeric_limits<double>::quiet_NaN());
@@ -234,11 +236,11 @@ TEST(Tree, RefusesWhatCannotBeFed) {
 struct Reference {
   struct Edge {
     int parent, child;
-    std::map<std::int64_t, Eigen::Matrix4d> poses;  // empty: fixed
+    std::map<Time, Eigen::Matrix4d> poses;  // empty: fixed
     Eigen::Matrix4d fixed;
-    std::int64_t gap = 0;
+    std::chrono::nanoseconds gap{0};
 
-    [[nodiscard]] std::optional<Eigen::Matrix4d> at(std::int64_t time) const {
+    [[nodiscard]] std::optional<Eigen::Matrix4d> at(Time time) const {
       if (poses.empty()) return fixed;
       auto next = poses.lower_bound(time);
       if (next == poses.end()) return std::nullopt;
@@ -247,15 +249,13 @@ struct Reference {
       auto before = std::prev(next);
       if (next->first - before->first > gap) return std::nullopt;
       return interpolated(before->second, next->second,
-                          static_cast<double>(time - before->first) /
-                              static_cast<double>(next->first - before->first));
+                          seconds(time - before->first) / seconds(next->first - before->first));
     }
   };
   std::vector<Edge> edges;
 
   /// T_target_source, searched from `at`, which was reached from `from`.
-  [[nodiscard]] std::optional<Eigen::Matrix4d> find(int target, int at, int from,
-                                                    std::int64_t time) const {
+  [[nodiscard]] std::optional<Eigen::Matrix4d> find(int target, int at, int from, Time time) const {
     if (target == at) return Eigen::Matrix4d::Identity();
     for (const Edge& edge : edges) {
       int next = edge.child == at ? edge.parent : edge.parent == at ? edge.child : from;
@@ -283,11 +283,11 @@ TEST(Tree, IsWhatBruteForceFinds) {
       if (random.whole(0, 1) == 0) {
         ASSERT_TRUE(tree.fix(parent, child, Eigen::Isometry3d(edge.fixed)));
       } else {
-        edge.gap = random.whole(1, 100);
-        ASSERT_TRUE(tree.join(parent, child, {.gap = std::chrono::nanoseconds(edge.gap)}));
+        edge.gap = std::chrono::nanoseconds(random.whole(1, 100));
+        ASSERT_TRUE(tree.join(parent, child, {.gap = edge.gap}));
         for (int i = random.whole(1, 12); i > 0; --i) {
           Eigen::Isometry3d pose = random.transformation();
-          std::int64_t time = kTime + random.whole(0, 100);
+          const Time time = kTime + std::chrono::nanoseconds(random.whole(0, 100));
           edge.poses[time] = pose.matrix();
           ASSERT_TRUE(tree.feed(parent, child, time, pose));
         }
@@ -296,7 +296,7 @@ TEST(Tree, IsWhatBruteForceFinds) {
     }
     for (int i = 0; i < 200; ++i) {
       int target = random.whole(1, frames), source = random.whole(1, frames);
-      std::int64_t time = kTime + random.whole(0, 100);
+      const Time time = kTime + std::chrono::nanoseconds(random.whole(0, 100));
       auto got = tree.lookup(target, source, time);
       auto expected = reference.find(target, source, 0, time);
       ASSERT_EQ(got.has_value(), expected.has_value()) << refusal(got);

@@ -1,27 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gaze/binocular.h>
 
-#include <cstdlib>
 #include <utility>
 
 namespace hc::gaze {
 
-std::optional<Eigen::Vector3d> Binocular::see(const Eyes& eyes, Side side, std::int64_t time,
+using namespace std::chrono_literals;
+
+std::optional<Eigen::Vector3d> Binocular::see(const Eyes& eyes, Side side, Time time,
                                               const Eigen::Vector2d& pixel, double distance) {
   // Maximum time between the images of a pair.
-  constexpr std::int64_t kPair = 1'000'000;  // [ns]
+  constexpr std::chrono::nanoseconds kPair = 1ms;
   // Maximum delay of one eye.
-  constexpr std::int64_t kLate = 1'000'000'000;  // [ns]
+  constexpr std::chrono::nanoseconds kLate = 1s;
   auto& own = side == Side::Left ? left_ : right_;
   const auto& other = side == Side::Left ? right_ : left_;
   const auto before = std::exchange(own, Sighting{time, pixel});
-  if (other && std::abs(other->time - time) <= kPair) {
+  if (other && std::chrono::abs(other->time - time) <= kPair) {
     const auto p_head = eyes.place_of(left_->pixel, right_->pixel);
     if (p_head) range_ = p_head->norm();
     return p_head;
   }
-  const std::int64_t period = before ? std::abs(time - before->time) : kLate;
-  if (other && other->time < time + kLate && time - other->time < 3 * period) return std::nullopt;
+  const auto period = before ? std::chrono::abs(time - before->time) : kLate;
+  // No sums, which could overflow.
+  if (other && other->time - time < kLate && (time - other->time) / 3 < period) return std::nullopt;
   return eyes.place(side) + (range_ > 0 ? range_ : distance) * eyes.direction(side, pixel);
 }
 

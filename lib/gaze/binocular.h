@@ -2,14 +2,14 @@
 #pragma once
 // Triangulates a target that the eyes see one after the other. Pure.
 
-#include <cstdint>
 #include <optional>
 
 #include <gaze/eyes.h>
+#include <hc/base/time.h>
 
 namespace hc::gaze {
 
-/// Combines two eyes' sightings of one target. Times are in nanoseconds of any one clock.
+/// Combines two eyes' sightings of one target. Times are of any one clock.
 class Binocular {
  public:
   /// Takes a sighting of the target by one eye.
@@ -19,12 +19,12 @@ class Binocular {
   /// @param distance  assumed if both eyes have never seen a target [m].
   /// @returns  the target's position in the head's frame [m]. Nothing while waiting for the other
   ///     eye, or if both see different things.
-  std::optional<Eigen::Vector3d> see(const Eyes& eyes, Side side, std::int64_t time,
+  std::optional<Eigen::Vector3d> see(const Eyes& eyes, Side side, Time time,
                                      const Eigen::Vector2d& pixel, double distance);
 
  private:
   struct Sighting {
-    std::int64_t time;
+    Time time;
     Eigen::Vector2d pixel;  // [px]
   };
   std::optional<Sighting> left_, right_;  // last

@@ -48,8 +48,8 @@ class Host {
   virtual std::shared_ptr<void> read_in_place(const std::string& reader_uri) = 0;
   /// A reserved port of all addresses, for observers. Errors: Closed.
   virtual Result<std::shared_ptr<const HeldPort>> spare_port() = 0;
-  /// Add this to its monotonic clock to get the wall clock of this host [ns].
-  [[nodiscard]] virtual std::int64_t wall_offset() const = 0;
+  /// Add this to its monotonic clock to get the wall clock of this host.
+  [[nodiscard]] virtual std::chrono::nanoseconds wall_offset() const = 0;
 
   /// Above the exit status of any process.
   static constexpr int kHostLost = 256;

@@ -98,7 +98,7 @@ class Agent {
 
   void send_heartbeat() {
     if (++heartbeats_ % kHeartbeatsPerUsage == 0) send_usage();
-    send_times({0, 0, monotonic_now(), monotonic_to_wall()});
+    send_times({0, 0, monotonic_now().count(), monotonic_to_wall().count()});
     heartbeat_ = loop_->call_at(Clock::now() + kHeartbeat, [this] { send_heartbeat(); });
   }
 
@@ -116,15 +116,15 @@ class Agent {
     return found == children_.end() ? nullptr : found->second.process.get();
   }
 
-  /// @param taken  arrival of the order on the monotonic clock [ns].
-  void obey(const Json& order, std::int64_t taken) try {
+  /// @param taken  arrival of the order on the monotonic clock.
+  void obey(const Json& order, MonotonicTime taken) try {
     if (order.is_null()) return;
     const std::string what = order.at("what");
     const auto number = order.value("number", std::int64_t{0});
     auto* process = find(number);
     if (what == "heartbeat") {
       const auto times = order.at("times").get<Moments>();
-      send_times({times[0], taken, monotonic_now(), monotonic_to_wall()});
+      send_times({times[0], taken.count(), monotonic_now().count(), monotonic_to_wall().count()});
     } else if (what == "key") {
       auto key = make_key_file(order.at("key").get<std::string>());
       if (!key) return end(key.error());

@@ -2,18 +2,22 @@
 #pragma once
 // Estimates offset and drift of another host's clock from exchanges of four timestamps. Pure.
 
-#include <cstdint>
 #include <deque>
 #include <optional>
 
+#include <hc/base/clock.h>
+
 namespace hc::hosts {
 
-/// The timestamps of a request and its reply, each by the clock of the host named [ns].
+/// Clocks of two hosts count as at most so far from zero, so that no difference overflows.
+inline constexpr std::chrono::nanoseconds kMostApart = std::chrono::hours(95 * 365 * 24);
+
+/// The timestamps of a request and its reply, each by the clock of the host named.
 struct Exchange {
-  std::int64_t asked = 0;     ///< here
-  std::int64_t taken = 0;     ///< there
-  std::int64_t answered = 0;  ///< there
-  std::int64_t received = 0;  ///< here
+  MonotonicTime asked{0};     ///< here
+  MonotonicTime taken{0};     ///< there
+  MonotonicTime answered{0};  ///< there
+  MonotonicTime received{0};  ///< here
 };
 
 /// The difference of two monotonic clocks. Uses the exchange with the shortest delay of the last
@@ -25,19 +29,19 @@ class ClockEstimate {
 
   /// Whether there has been an exchange.
   [[nodiscard]] bool is_known() const { return !recent_.empty(); }
-  /// The other clock minus this one, at time `here` [ns].
-  [[nodiscard]] std::int64_t offset(std::int64_t here) const;
-  /// Bound on the error of offset(): half the delay, plus the drift since the exchange [ns].
-  [[nodiscard]] std::int64_t error(std::int64_t here) const;
+  /// The other clock minus this one, at time `here`.
+  [[nodiscard]] std::chrono::nanoseconds offset(MonotonicTime here) const;
+  /// Bound on the error of offset(): half the delay, plus the drift since the exchange.
+  [[nodiscard]] std::chrono::nanoseconds error(MonotonicTime here) const;
   /// Relative rate by which the other clock is faster, by least squares; nullopt until it is known
   /// within about 50 ppm, after 4 s at the earliest.
   [[nodiscard]] std::optional<double> drift() const { return drift_; }
-  /// The shortest recent round trip [ns].
-  [[nodiscard]] std::int64_t delay() const { return best_.delay; }
+  /// The shortest recent round trip.
+  [[nodiscard]] std::chrono::nanoseconds delay() const { return best_.delay; }
 
  private:
   struct Sample {
-    std::int64_t here = 0, offset = 0, delay = 0;
+    std::chrono::nanoseconds here{0}, offset{0}, delay{0};
   };
 
   void fit();

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hosts/clock_estimate.h>
 
-#include <cmath>
-#include <cstdlib>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -10,51 +8,52 @@
 namespace hc::hosts {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000, kHour = 3600'000 * kMs;
+using std::chrono::nanoseconds;
+using namespace std::chrono_literals;
 
 /// A clock that is an hour ahead and faster by `drift`.
-std::int64_t there(std::int64_t here, double drift) {
-  return here + kHour + static_cast<std::int64_t>(drift * static_cast<double>(here));
+MonotonicTime there(MonotonicTime here, double drift) {
+  return here + 1h + duration(drift * seconds(here));
 }
 
-Exchange exchange(std::int64_t at, std::int64_t out, std::int64_t back, double drift = 0) {
-  return {at, there(at + out, drift), there(at + out, drift) + kMs, at + out + kMs + back};
+Exchange exchange(MonotonicTime at, nanoseconds out, nanoseconds back, double drift = 0) {
+  return {at, there(at + out, drift), there(at + out, drift) + 1ms, at + out + 1ms + back};
 }
 
 TEST(ClockEstimate, TheExchangeWithTheShortestDelayCounts) {
   ClockEstimate estimate;
   EXPECT_FALSE(estimate.is_known());
-  estimate.add(exchange(0, 30 * kMs, kMs));
-  EXPECT_NE(estimate.offset(0), kHour);
-  EXPECT_LE(std::abs(estimate.offset(0) - kHour), estimate.error(0));
-  estimate.add(exchange(500 * kMs, kMs, kMs));
-  estimate.add(exchange(1000 * kMs, kMs, 40 * kMs));
-  EXPECT_EQ(estimate.offset(1000 * kMs), kHour);
-  EXPECT_EQ(estimate.delay(), 2 * kMs);
-  EXPECT_GE(estimate.error(1000 * kMs), kMs);
+  estimate.add(exchange(0s, 30ms, 1ms));
+  EXPECT_NE(estimate.offset(0s), 1h);
+  EXPECT_LE(std::chrono::abs(estimate.offset(0s) - 1h), estimate.error(0s));
+  estimate.add(exchange(500ms, 1ms, 1ms));
+  estimate.add(exchange(1s, 1ms, 40ms));
+  EXPECT_EQ(estimate.offset(1s), 1h);
+  EXPECT_EQ(estimate.delay(), 2ms);
+  EXPECT_GE(estimate.error(1s), 1ms);
   EXPECT_FALSE(estimate.drift());
 }
 
 TEST(ClockEstimate, OneThatIsOlderThanEightIsForgotten) {
   ClockEstimate estimate;
-  estimate.add(exchange(0, 0, 0));
-  for (int i = 1; i <= 8; ++i) estimate.add(exchange(i * 500 * kMs, 10 * kMs, 10 * kMs));
-  EXPECT_EQ(estimate.delay(), 20 * kMs);
+  estimate.add(exchange(0s, 0s, 0s));
+  for (int i = 1; i <= 8; ++i) estimate.add(exchange(i * 500ms, 10ms, 10ms));
+  EXPECT_EQ(estimate.delay(), 20ms);
 }
 
 TEST(ClockEstimate, TheDriftIsFittedAndTheErrorBoundsWhatIsWrong) {
   ClockEstimate estimate;
   constexpr double kDrift = 100e-6;
   std::mt19937 random(7);
-  std::exponential_distribution<double> late(1 / 2e6);  // on average 2 ms each way
-  std::int64_t now = 0;
-  for (int i = 0; i < 240; ++i, now += 500 * kMs) {
-    estimate.add(exchange(now, kMs / 5 + static_cast<std::int64_t>(late(random)),
-                          kMs / 5 + static_cast<std::int64_t>(late(random)), kDrift));
-    const std::int64_t wrong = std::abs(estimate.offset(now) - (there(now, kDrift) - now));
+  std::exponential_distribution<double> late(1 / 2e-3);  // on average 2 ms each way [s]
+  MonotonicTime now{0};
+  for (int i = 0; i < 240; ++i, now += 500ms) {
+    estimate.add(
+        exchange(now, 200us + duration(late(random)), 200us + duration(late(random)), kDrift));
+    const auto wrong = std::chrono::abs(estimate.offset(now) - (there(now, kDrift) - now));
     ASSERT_LE(wrong, estimate.error(now)) << i;
     if (i > 60) {
-      ASSERT_LT(wrong, kMs) << i;
+      ASSERT_LT(wrong, 1ms) << i;
     }
   }
   ASSERT_TRUE(estimate.drift());
@@ -63,16 +62,26 @@ TEST(ClockEstimate, TheDriftIsFittedAndTheErrorBoundsWhatIsWrong) {
 
 TEST(ClockEstimate, WhatTookLongIsNotTakenForADrift) {
   ClockEstimate estimate;
-  std::int64_t now = 0;
+  MonotonicTime now{0};
   // A machine that is busy at first: each request is late.
-  for (std::int64_t late = 4 * kMs; now < 40'000 * kMs; now += 500 * kMs, late = late * 3 / 4) {
-    estimate.add(exchange(now, kMs / 10 + late, kMs / 10, 100e-6));
+  for (nanoseconds late = 4ms; now < 40s; now += 500ms, late = late * 3 / 4) {
+    estimate.add(exchange(now, 100us + late, 100us, 100e-6));
     if (estimate.drift()) {
-      ASSERT_NEAR(*estimate.drift(), 100e-6, 75e-6) << now;  // unweighted, 200e-6
+      ASSERT_NEAR(*estimate.drift(), 100e-6, 75e-6) << seconds(now);  // unweighted, 200e-6
     }
-    ASSERT_LE(std::abs(estimate.offset(now) - (there(now, 100e-6) - now)), estimate.error(now));
+    ASSERT_LE(std::chrono::abs(estimate.offset(now) - (there(now, 100e-6) - now)),
+              estimate.error(now));
   }
   EXPECT_TRUE(estimate.drift());
+}
+
+TEST(ClockEstimate, DoesNotOverflow) {
+  constexpr auto kLeast = MonotonicTime::min(), kMost = MonotonicTime::max();
+  ClockEstimate estimate;
+  for (auto asked : {kLeast, kMost, 1ns})
+    for (auto taken : {kLeast, kMost, 1ns})
+      for (auto answered : {kLeast, kMost, 1ns}) estimate.add({asked, taken, answered, 5s});
+  EXPECT_LE(std::chrono::abs(estimate.offset(6s)), 2 * kMostApart);
 }
 
 }  // namespace

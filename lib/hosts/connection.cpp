@@ -306,7 +306,7 @@ void Connection::take(const Message& message) {
   if (header.src >= Report) found->second->reported(message);
 }
 
-void Connection::obey(const Json& order, std::int64_t received) try {
+void Connection::obey(const Json& order, MonotonicTime received) try {
   if (order.is_null()) return;
   const std::string what = order.at("what");
   if (what == "hello") return greet(order);
@@ -352,18 +352,20 @@ void Connection::greet(const Json& hello) {
 
 /// Handles an answer to a heartbeat. The connection counts as made after the first few, sent back
 /// to back, so that its clock is known even if one of them was late.
-void Connection::take_times(const Moments& times, std::int64_t received) {
+void Connection::take_times(const Moments& times, MonotonicTime received) {
   if (!is_greeted_) return;
-  const auto [asked, taken, answered, there] = times;
+  using std::chrono::nanoseconds;
+  const nanoseconds asked(times[0]), taken(times[1]), answered(times[2]);
+  const auto there = std::clamp(nanoseconds(times[3]), -kMostApart, kMostApart);
   check_clock(there);
-  if (asked == 0) return;
+  if (asked.count() == 0) return;
   estimate_.add({asked, taken, answered, received});
   if (!state_.is_connected && ++first_exchanges_ < kFirstExchanges &&
       Clock::now() < greeted_ + kLongestFirst)
     return ask_time();
   const auto here = monotonic_to_wall(), now = monotonic_now();
   wall_offset_ = here - estimate_.offset(now);
-  state_.offset = seconds(estimate_.offset(now) + there - here);
+  state_.offset = seconds(estimate_.offset(now)) + seconds(there - here);
   state_.error = seconds(estimate_.error(now));
   state_.drift = estimate_.drift();
   state_.latency = seconds(estimate_.delay());
@@ -392,8 +394,8 @@ void Connection::finish_connecting() {
 }
 
 /// Logs that the wall clock of the host was set.
-void Connection::check_clock(std::int64_t there_to_wall) {
-  if (there_to_wall_ && std::abs(there_to_wall - *there_to_wall_) > kClockSet)
+void Connection::check_clock(std::chrono::nanoseconds there_to_wall) {
+  if (there_to_wall_ && std::chrono::abs(there_to_wall - *there_to_wall_) > kClockSet)
     parts_.log(hc::format(
         "host {}: its clock was set by {:.3f} s; the times in its messages are not affected",
         parts_.declared.name, seconds(there_to_wall - *there_to_wall_)));
@@ -407,7 +409,7 @@ void Connection::ask_for_spare() {
 }
 
 void Connection::ask_time() {
-  send({{"what", "heartbeat"}, {"times", Moments{monotonic_now(), 0, 0, 0}}});
+  send({{"what", "heartbeat"}, {"times", Moments{monotonic_now().count(), 0, 0, 0}}});
 }
 
 void Connection::send_heartbeat() {

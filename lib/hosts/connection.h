@@ -61,7 +61,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
                                               ModuleCallbacks callbacks) override;
   std::shared_ptr<void> read_in_place(const std::string& reader_uri) override;
   Result<std::shared_ptr<const HeldPort>> spare_port() override;
-  [[nodiscard]] std::int64_t wall_offset() const override { return wall_offset_; }
+  [[nodiscard]] std::chrono::nanoseconds wall_offset() const override { return wall_offset_; }
 
  private:
   class Module;
@@ -81,11 +81,11 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   void connect();
   void read_ssh_errors();
   void take(const Message& message);
-  void obey(const Json& order, std::int64_t received);
+  void obey(const Json& order, MonotonicTime received);
   void greet(const Json& hello);
-  void take_times(const Moments& times, std::int64_t received);
+  void take_times(const Moments& times, MonotonicTime received);
   void finish_connecting();
-  void check_clock(std::int64_t there_to_wall);
+  void check_clock(std::chrono::nanoseconds there_to_wall);
   void ask_for_spare();
   void ask_time();
   void send_heartbeat();
@@ -110,8 +110,8 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   std::chrono::steady_clock::time_point connected_, greeted_;
   int first_exchanges_ = 0;  // of timestamps, before it counts as connected
   ClockEstimate estimate_;
-  std::optional<std::int64_t> there_to_wall_;
-  std::int64_t wall_offset_ = 0;
+  std::optional<std::chrono::nanoseconds> there_to_wall_;
+  std::chrono::nanoseconds wall_offset_{0};
   std::vector<std::uint16_t> spares_;
 
   std::int64_t last_question_ = 0, last_number_ = 0;

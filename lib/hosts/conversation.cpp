@@ -22,15 +22,16 @@ constexpr int kMostInATurn = 64;  // pieces, so that a busy peer does not block 
 
 }  // namespace
 
-std::int64_t monotonic_now() {
-  return SystemClock().monotonic().count();
+MonotonicTime monotonic_now() {
+  return SystemClock().monotonic();
 }
 
 /// Two clocks cannot be read at once: uses the fastest of three attempts.
-std::int64_t monotonic_to_wall() {
-  std::int64_t best = 0, best_width = std::numeric_limits<std::int64_t>::max();
+std::chrono::nanoseconds monotonic_to_wall() {
+  auto best = MonotonicTime(0), best_width = MonotonicTime::max();
   for (int i = 0; i < 3; ++i) {
-    const auto before = monotonic_now(), wall = SystemClock().wall(), after = monotonic_now();
+    const auto before = monotonic_now(), wall = SystemClock().wall().time_since_epoch(),
+               after = monotonic_now();
     if (after - before >= best_width) continue;
     best_width = after - before;
     best = wall - (before + best_width / 2);

@@ -33,8 +33,8 @@ enum MessageKind : std::int32_t { Order = 1, Commands, Log, Report = 100 };
 
 /// Period of heartbeats, and silence after which the connection is lost.
 inline constexpr std::chrono::milliseconds kHeartbeat{500}, kSilence{3000};
-/// A clock that jumps by more was set [ns].
-inline constexpr std::int64_t kClockSet = 10'000'000;
+/// A clock that jumps by more was set.
+inline constexpr std::chrono::milliseconds kClockSet{10};
 /// Unsent bytes above which counters and logs are dropped, and above which the connection is lost.
 inline constexpr std::size_t kCrowded = std::size_t{256} << 10, kTooMuch = std::size_t{16} << 20;
 
@@ -51,9 +51,9 @@ Message make_order(const Json& order);
 Json read_order(const Message& message);
 Message make_bytes(std::string_view bytes, std::int64_t process);
 
-/// The monotonic clock, and the offset from it to the wall clock [ns].
-std::int64_t monotonic_now();
-std::int64_t monotonic_to_wall();
+/// The monotonic clock, and the offset from it to the wall clock.
+MonotonicTime monotonic_now();
+std::chrono::nanoseconds monotonic_to_wall();
 
 /// One end of the conversation, on the thread of a loop.
 class Conversation {

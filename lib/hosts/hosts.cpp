@@ -104,7 +104,7 @@ class AllHosts final : public Hosts {
   /// Logs when the clock of this host was set.
   void check_clock() {
     const auto wall_offset = monotonic_to_wall();
-    if (wall_offset_ && std::abs(wall_offset - *wall_offset_) > kClockSet)
+    if (wall_offset_ && std::chrono::abs(wall_offset - *wall_offset_) > kClockSet)
       log(hc::format("graph: the clock of this host was set by {:.3f} s",
                      seconds(wall_offset - *wall_offset_)));
     wall_offset_ = wall_offset;
@@ -120,7 +120,7 @@ class AllHosts final : public Hosts {
   std::vector<std::string> events_;
   std::map<std::string, std::shared_ptr<Connection>> hosts_;
   std::set<std::shared_ptr<Connection>> opening_;
-  std::optional<std::int64_t> wall_offset_;
+  std::optional<std::chrono::nanoseconds> wall_offset_;
   Loop::Handle clock_;
 };
 

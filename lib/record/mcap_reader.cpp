@@ -34,9 +34,10 @@ std::string stream_name(const ChannelRecord& channel) {
   return name != channel.metadata.end() ? name->second : channel.topic;
 }
 
-std::int64_t signed_time(std::uint64_t time) {
-  return static_cast<std::int64_t>(
-      std::min<std::uint64_t>(time, std::numeric_limits<std::int64_t>::max()));
+/// MCAP has times until 2554.
+Time time_of(std::uint64_t nanoseconds) {
+  return unix_time(static_cast<std::int64_t>(
+      std::min<std::uint64_t>(nanoseconds, std::numeric_limits<std::int64_t>::max())));
 }
 
 /// The MTP topic of a message or of its companion; empty: it is neither.
@@ -64,7 +65,7 @@ class McapReader final : public Reader {
     if (!stored) return Got::End;
     message = HC_TRY(rebuild(*stored));
     stream_ = stream_name(*stored->message.channel);
-    log_time_ = signed_time(stored->message.record.log_time);
+    log_time_ = time_of(stored->message.record.log_time);
     ++traffic_.messages;
     return Got::Message;
   }
@@ -73,23 +74,23 @@ class McapReader final : public Reader {
     HC_TRY(next_time());
     return std::exchange(ahead_, std::nullopt);
   }
-  Result<std::optional<std::int64_t>> next_time() override {
+  Result<std::optional<Time>> next_time() override {
     while (!ahead_) {
       ahead_ = HC_TRY(read_pair());
-      if (!ahead_) return std::optional<std::int64_t>();
+      if (!ahead_) return std::optional<Time>();
       if (topics_ == Topics::Mtp && !is_mtp(ahead_->message)) ahead_.reset();
     }
-    return std::optional(signed_time(ahead_->message.record.log_time));
+    return std::optional(time_of(ahead_->message.record.log_time));
   }
 
-  [[nodiscard]] std::int64_t log_time() const override { return log_time_; }
+  [[nodiscard]] Time log_time() const override { return log_time_; }
   [[nodiscard]] std::string_view stream() const override { return stream_; }
-  void start_at(std::int64_t log_time) override {
-    reader_.start_at(static_cast<std::uint64_t>(log_time));
+  void start_at(Time log_time) override {
+    reader_.start_at(static_cast<std::uint64_t>(unix_nanoseconds(log_time)));
     std::erase_if(queue_, [&](const StoredMessage& each) {
-      return signed_time(each.record.log_time) < log_time;
+      return time_of(each.record.log_time) < log_time;
     });
-    if (ahead_ && signed_time(ahead_->message.record.log_time) < log_time) ahead_.reset();
+    if (ahead_ && time_of(ahead_->message.record.log_time) < log_time) ahead_.reset();
   }
   [[nodiscard]] int descriptor() const override { return reader_.descriptor(); }
   [[nodiscard]] Traffic traffic() const override {
@@ -199,7 +200,7 @@ class McapReader final : public Reader {
   const Topics topics_;
   Traffic traffic_;
   std::string stream_;  // of the last message
-  std::int64_t log_time_ = 0;
+  Time log_time_;
   std::optional<StoredPair> ahead_;
   std::deque<StoredMessage> queue_;  // read ahead, by log time
   std::optional<Error> failed_;      // the error after them
@@ -218,8 +219,8 @@ std::vector<StreamInfo> streams_of(const Summary& summary) {
     if (!is_matrix(channel, schema_of(summary, channel))) continue;
     by_topic.emplace(channel.topic, all.size());  // further channels of a topic are copies
     const auto count = summary.counts.find(id);
-    all.push_back(
-        {stream_name(channel), "", count != summary.counts.end() ? count->second : 0, 0, 0, {id}});
+    const auto messages = count != summary.counts.end() ? count->second : 0;
+    all.push_back({stream_name(channel), "", messages, {}, {}, {id}});
   }
   for (const auto& [id, channel] : summary.channels) {
     const auto* schema = schema_of(summary, channel);

@@ -25,13 +25,14 @@ using mcap::RecordWriter;
 using mcap::StringMap;
 
 namespace fs = std::filesystem;
+using namespace std::chrono_literals;
 
 Message message_of(const Info& info, std::int32_t width, std::int32_t height, std::int64_t seq,
                    std::mt19937& random) {
   auto draft = Draft::make(info, height, width);
   draft.header.seq = seq;
   draft.header.src = 7;
-  draft.header.time = 1'763'683'200'000'000'000 + seq;
+  draft.header.time = unix_time(1'763'683'200'000'000'000 + seq);
   for (auto& each : draft.elements()) each = static_cast<std::byte>(random());
   if (info.encoding == Encoding::Text)  // no NaN, whose bits text does not preserve
     for (auto& each : draft.elements()) each = static_cast<std::byte>(random() % 64);
@@ -61,7 +62,7 @@ std::vector<std::string> record_images(const std::string& file, int count,
   std::vector<std::string> all;
   for (int i = 0; i < count; ++i) {
     const auto message = image(i, width);
-    EXPECT_TRUE(writer->add(stream, message, i + 1));
+    EXPECT_TRUE(writer->add(stream, message, unix_time(i + 1)));
     all.push_back(encode(message));
   }
   EXPECT_TRUE(writer->close().status);
@@ -88,7 +89,7 @@ TEST_F(Mcap, EveryMessageComesOutAsItWentIn) {
             if (!check(header)) continue;
             auto message = message_of(info, width, height, static_cast<int>(random() % 9), random);
             message.header.coord = static_cast<std::int32_t>(random() % 15);
-            ASSERT_TRUE(writer->add(stream, message, 1));
+            ASSERT_TRUE(writer->add(stream, message, unix_time(1)));
             all.push_back(encode(message));
           }
         }
@@ -110,7 +111,7 @@ TEST_F(Mcap, ALargeBlankImageIsReadAgain) {
   auto draft = Draft::make({MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary}, 4000, 6000);
   std::ranges::fill(draft.elements(), std::byte(0));
   const auto blank = std::move(draft).finish();
-  ASSERT_TRUE(writer->add(*writer->add_stream("eye"), blank, 1));
+  ASSERT_TRUE(writer->add(*writer->add_stream("eye"), blank, unix_time(1)));
   ASSERT_TRUE(writer->close().status);
   EXPECT_LT(fs::file_size(in("x.mcap")), 100'000U);
   EXPECT_EQ(play(in("x.mcap")).messages.size(), 1U);
@@ -121,9 +122,9 @@ TEST_F(Mcap, AStreamIsReadAlone) {
   const auto left = *writer->add_stream("eye.left"), right = *writer->add_stream("eye.right");
   std::vector<std::string> all;
   for (int i = 0; i < 20; ++i) {
-    ASSERT_TRUE(writer->add(left, image(i), i + 1));
+    ASSERT_TRUE(writer->add(left, image(i), unix_time(i + 1)));
     if (i < 10) continue;
-    ASSERT_TRUE(writer->add(right, image(100 + i), i + 1));
+    ASSERT_TRUE(writer->add(right, image(100 + i), unix_time(i + 1)));
     all.push_back(encode(image(100 + i)));
   }
   ASSERT_TRUE(writer->close().status);
@@ -184,28 +185,26 @@ std::string without_end(const std::string& file) {
 }
 
 TEST_F(Mcap, FilesThatAreCutOffAreMergedByTimeAndSaidOnce) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
   ManualClock clock;
   for (const char* name : {"a.mcap", "b.mcap"}) {
     auto options = chunks_of(1 << 20);
     options.clock = &clock;
-    clock.set_wall(2 * kSecond);
+    clock.set_wall(Time(2s));
     auto writer = writer_of(in(name), options);
     const auto stream = *writer->add_stream(name);
-    ASSERT_TRUE(writer->add(stream, image(1), kSecond));
+    ASSERT_TRUE(writer->add(stream, image(1), Time(1s)));
     ASSERT_TRUE(writer->log({"a", Level::Info, "a line"}));  // not a message of MTP
-    ASSERT_TRUE(writer->add(stream, image(2), 4 * kSecond));
+    ASSERT_TRUE(writer->add(stream, image(2), Time(4s)));
     ASSERT_TRUE(writer->close().status);
     write(name, without_end(bytes_of(in(name))));
   }
   auto writer = writer_of(in("c.mcap"));
   const auto stream = *writer->add_stream("c");
-  for (const auto time : {3 * kSecond, 5 * kSecond})
-    ASSERT_TRUE(writer->add(stream, image(3), time));
+  for (const auto time : {Time(3s), Time(5s)}) ASSERT_TRUE(writer->add(stream, image(3), time));
   ASSERT_TRUE(writer->close().status);
   const auto played = play({in("a.mcap"), in("b.mcap"), in("c.mcap")});
-  EXPECT_EQ(played.times, (std::vector<std::int64_t>{kSecond, kSecond, 3 * kSecond, 4 * kSecond,
-                                                     4 * kSecond, 5 * kSecond}));
+  EXPECT_EQ(played.times,
+            (std::vector{Time(1s), Time(1s), Time(3s), Time(4s), Time(4s), Time(5s)}));
   ASSERT_TRUE(played.error);
   EXPECT_EQ(played.error->code, Code::Truncated);
   for (const char* name : {"a.mcap: ", "b.mcap: "})
@@ -230,7 +229,7 @@ TEST_F(Mcap, AMessageIsInTheChunkOfItsCompanion) {
   const auto live = *writer->add_stream("live");
   for (auto copied = Result<bool>(true); copied && *copied;) {
     copied = writer->copy(*reader);
-    ASSERT_TRUE(writer->add(live, image(0, 1), 1));  // ends a chunk
+    ASSERT_TRUE(writer->add(live, image(0, 1), unix_time(1)));  // ends a chunk
   }
   ASSERT_TRUE(writer->close().status);
   EXPECT_EQ(play(in("y.mcap?stream=eye.left")).messages, all);
@@ -477,8 +476,8 @@ TEST_F(Mcap, ALongRecordingOfTinyChunksIsRead) {
 TEST_F(Mcap, AChunkWhoseIndexIsCutOffIsReadForAStream) {
   auto writer = writer_of(in("x.mcap"), chunks_of(1 << 20));
   const auto left = *writer->add_stream("eye.left"), right = *writer->add_stream("eye.right");
-  ASSERT_TRUE(writer->add(left, image(1), 1));
-  ASSERT_TRUE(writer->add(right, image(2), 2));
+  ASSERT_TRUE(writer->add(left, image(1), unix_time(1)));
+  ASSERT_TRUE(writer->add(right, image(2), unix_time(2)));
   ASSERT_TRUE(writer->close().status);
   // After the indexes of the left eye's two channels.
   const std::string whole = bytes_of(in("x.mcap"));
@@ -498,7 +497,7 @@ TEST_F(Mcap, StreamsNeverShareATopic) {
   int number = 0;
   for (const char* name : {"a", "a.mtp", "a.mtp.mtp", "a", "b.mtp", "b", "tf", "b.compressed"}) {
     const auto stream = *writer->add_stream(name);
-    ASSERT_TRUE(writer->add(stream, image(++number), 1));
+    ASSERT_TRUE(writer->add(stream, image(++number), unix_time(1)));
     all.push_back(encode(image(number)));
   }
   ASSERT_TRUE(writer->close().status);
@@ -513,7 +512,7 @@ TEST_F(Mcap, TracesHaveNoTopicForViewers) {
   auto writer = writer_of(in("x.mcap"), chunks_of());
   std::vector<std::string> all;
   for (const char* name : {"eye.trace", "eye.left"}) {
-    ASSERT_TRUE(writer->add(*writer->add_stream(name), image(1), 1));
+    ASSERT_TRUE(writer->add(*writer->add_stream(name), image(1), unix_time(1)));
     all.push_back(encode(image(1)));
   }
   ASSERT_TRUE(writer->close().status);
@@ -531,13 +530,14 @@ TEST_F(Mcap, StreamsThatHaveNoRoomInAFileAreDropped) {
   const auto message = image(0, 1);
   std::size_t recorded = 0;
   for (; recorded < 40000; ++recorded) {
-    ASSERT_TRUE(writer->add(*writer->add_stream("s" + std::to_string(recorded)), message, 1));
+    ASSERT_TRUE(
+        writer->add(*writer->add_stream("s" + std::to_string(recorded)), message, unix_time(1)));
     if (!said.empty()) break;
   }
   ASSERT_EQ(said.size(), 1U);
   EXPECT_TRUE(
       said[0].starts_with("s" + std::to_string(recorded) + " dropped: MCAP: a file can have"));
-  EXPECT_TRUE(writer->add(0, message, 2));
+  EXPECT_TRUE(writer->add(0, message, unix_time(2)));
   ASSERT_TRUE(writer->close().status);
   EXPECT_EQ(writer->written().lost, 1U);
   EXPECT_EQ(writer->written().messages, recorded + 1);
@@ -555,7 +555,7 @@ TEST_F(Mcap, AFullDiskEndsTheRecordingWithAValidFile) {
   Status status;
   std::vector<std::string> all;
   for (int i = 0; i < 100000 && status; ++i) {
-    status = writer->add(stream, image(i), i + 1);
+    status = writer->add(stream, image(i), unix_time(i + 1));
     all.push_back(encode(image(i)));
   }
   const auto& closed = writer->close();
@@ -649,7 +649,7 @@ TEST_F(Mcap, OfStaticFramesWithoutEndTheLatestAreRepeatedAndThoseThatCanBeRead) 
   write("tf.mcap", file.bytes());
   auto writer = writer_of(in("x.mcap"), chunks_of());  // numbered after both
   const auto stream = *writer->add_stream("eye.left");
-  for (int i = 0; i < 20; ++i) ASSERT_TRUE(writer->add(stream, image(i), 1000 + i));
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(writer->add(stream, image(i), unix_time(1000 + i)));
   ASSERT_TRUE(writer->close().status);
   options = chunks_of();
   options.split = 20000;
@@ -670,7 +670,7 @@ Message pose(std::int32_t coord, double x) {
   auto draft = Draft::make({MatrixType::Transformation, 1, Scalar::F64, Encoding::Binary}, 4, 4);
   draft.header.src = 11;
   draft.header.coord = coord;
-  draft.header.time = 1'763'683'200'000'000'000 + coord;
+  draft.header.time = unix_time(1'763'683'200'000'000'000 + coord);
   const std::array<double, 16> T = {1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   std::ranges::copy(T, view<double>(draft).numbers().begin());
   return std::move(draft).finish();
@@ -683,10 +683,10 @@ TEST_F(Mcap, EachJointThatAnOutputMovesIsOnTf) {
   auto writer = writer_of(in("x.mcap"), options);
   const auto stream = *writer->add_stream("neck.pose");
   const auto other = *writer->add_stream("arm.pose");
-  ASSERT_TRUE(writer->add(stream, pose(2003, 0.5), 1));
-  ASSERT_TRUE(writer->add(stream, pose(3004, 0.25), 2));
-  ASSERT_TRUE(writer->add(stream, pose(7, 9), 3));    // not a joint's coord
-  ASSERT_TRUE(writer->add(other, pose(2003, 9), 4));  // of a stream without joints
+  ASSERT_TRUE(writer->add(stream, pose(2003, 0.5), unix_time(1)));
+  ASSERT_TRUE(writer->add(stream, pose(3004, 0.25), unix_time(2)));
+  ASSERT_TRUE(writer->add(stream, pose(7, 9), unix_time(3)));    // not a joint's coord
+  ASSERT_TRUE(writer->add(other, pose(2003, 9), unix_time(4)));  // of a stream without joints
   ASSERT_TRUE(writer->close().status);
   auto reader = must(mcap::Reader::open(in("x.mcap")));
   std::vector<std::string> joints;
@@ -705,7 +705,7 @@ TEST_F(Mcap, EachJointThatAnOutputMovesIsOnTf) {
 TEST_F(Mcap, TheLastMetadataOfANameIsFound) {
   auto writer = writer_of(in("x.mcap"), chunks_of());
   ASSERT_TRUE(writer->metadata("a", {{"x", "1"}}));
-  ASSERT_TRUE(writer->add(*writer->add_stream("eye"), image(1), 1));
+  ASSERT_TRUE(writer->add(*writer->add_stream("eye"), image(1), unix_time(1)));
   ASSERT_TRUE(writer->metadata("b", {{"x", "2"}}));
   ASSERT_TRUE(writer->metadata("a", {{"x", "3"}}));
   ASSERT_TRUE(writer->close().status);
@@ -721,7 +721,7 @@ TEST_F(Mcap, NumberedFilesOfBeforeStay) {
   for (int run = 0; run < 2; ++run) {
     auto writer = writer_of(in("x.mcap"), options);
     const auto stream = *writer->add_stream("eye.left");
-    ASSERT_TRUE(writer->add(stream, image(run), 1));
+    ASSERT_TRUE(writer->add(stream, image(run), unix_time(1)));
     writer->save();
     EXPECT_EQ(writer->close().files, std::vector{in("x_000" + std::to_string(8 + run) + ".mcap")});
   }
@@ -741,11 +741,10 @@ TEST_F(Mcap, WhatWasLastIsSaved) {
   options.log = [&](Level, std::string_view line) { said.emplace_back(line); };
   auto writer = writer_of(in("x.mcap"), options);
   const auto stream = *writer->add_stream("eye.left");
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  for (int i = 0; i < 60; ++i) ASSERT_TRUE(writer->add(stream, image(i), (i + 1) * kSecond));
+  for (int i = 0; i < 60; ++i) ASSERT_TRUE(writer->add(stream, image(i), Time((i + 1) * 1s)));
   writer->save();
   EXPECT_EQ(said, std::vector{"saved " + in("x_0001.mcap")});
-  for (int i = 60; i < 70; ++i) ASSERT_TRUE(writer->add(stream, image(i), (i + 1) * kSecond));
+  for (int i = 60; i < 70; ++i) ASSERT_TRUE(writer->add(stream, image(i), Time((i + 1) * 1s)));
   writer->save();
   ASSERT_TRUE(writer->close().status);
   auto played = play(in("x_0001.mcap"));
@@ -754,7 +753,7 @@ TEST_F(Mcap, WhatWasLastIsSaved) {
   EXPECT_LE(played.messages.size(), 15U);  // whole chunks
   EXPECT_EQ(played.messages.back(), encode(image(59)));
   const auto summary = summary_of(in("x_0001.mcap"));
-  EXPECT_LE(summary.end - summary.begin, 15 * kSecond);  // lasting messages get the start time
+  EXPECT_LE(summary.end - summary.begin, 15'000'000'000U);  // lasting messages get the start time
   EXPECT_EQ(topics_of(summary)["/tf_static"], 1U);
   EXPECT_EQ(play(in("x_0002.mcap")).messages.back(), encode(image(69)));
 }

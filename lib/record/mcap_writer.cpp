@@ -78,6 +78,10 @@ std::vector<std::byte> joined(const ros::Pieces& data) {
   return all;
 }
 
+std::uint64_t stamp(Time time) {
+  return static_cast<std::uint64_t>(unix_nanoseconds(time));
+}
+
 }  // namespace
 
 std::string take_name(std::set<std::string>& taken, const std::string& wanted) {
@@ -189,19 +193,17 @@ std::uint16_t McapWriter::copied_channel(const mcap::StoredMessage& message, con
   return number = add_channel(std::move(copy), schema);
 }
 
-void McapWriter::add(std::uint16_t channel, std::uint32_t sequence, std::int64_t log_time,
-                     std::int64_t publish_time, const ros::Pieces& data) {
+void McapWriter::add(std::uint16_t channel, std::uint32_t sequence, std::uint64_t log_time,
+                     std::uint64_t publish_time, const ros::Pieces& data) {
   if (chunk_.empty()) chunk_begun_ = std::chrono::steady_clock::now();
   const std::array pieces = {data.head, data.body, data.tail};
-  chunk_.add({channel, sequence, static_cast<std::uint64_t>(log_time),
-              static_cast<std::uint64_t>(publish_time)},
-             pieces);
+  chunk_.add({channel, sequence, log_time, publish_time}, pieces);
 }
 
 void McapWriter::add_copy(const mcap::StoredMessage& message, const void* from) {
   const auto& record = message.record;
-  add(copied_channel(message, from), record.sequence, static_cast<std::int64_t>(record.log_time),
-      static_cast<std::int64_t>(record.publish_time), {{}, message.data, {}});
+  add(copied_channel(message, from), record.sequence, record.log_time, record.publish_time,
+      {{}, message.data, {}});
 }
 
 Status McapWriter::copy(const StoredPair& pair, const void* from) {
@@ -226,13 +228,13 @@ Status McapWriter::copy(const StoredPair& pair, const void* from) {
   return wait_for_room();
 }
 
-Status McapWriter::write(std::size_t number, const Message& message, std::int64_t time) {
+Status McapWriter::write(std::size_t number, const Message& message, Time time) {
   const std::lock_guard lock(chunk_mutex_);
   if (!joints_.root.empty()) record_fixed_frames(time);
   const Header& header = message.header;
   Stream& stream = streams_[number];
   const auto sequence = static_cast<std::uint32_t>(header.seq);
-  const std::int64_t published = header.time != 0 ? header.time : time;
+  const Time published = header.time != Time() ? header.time : time;
   const bool is_picture =
       header.info.type == MatrixType::RgbImage || header.info.type == MatrixType::IntensityImage;
   // The size for CameraInfo: that of rectified images, or of any image until one arrives.
@@ -252,12 +254,12 @@ Status McapWriter::write(std::size_t number, const Message& message, std::int64_
   std::uint32_t offset = 0;
   if (type) {
     if (auto data = encoder_.encode(*type, message)) {
-      add(channel(stream, *type), sequence, time, published, *data);
+      add(channel(stream, *type), sequence, stamp(time), stamp(published), *data);
       if (!data->body.empty() && data->body.data() == message.elements.data())
         offset = static_cast<std::uint32_t>(data->head.size());
     }
   }
-  add(channel(stream, ros::Type::Matrix), sequence, time, published,
+  add(channel(stream, ros::Type::Matrix), sequence, stamp(time), stamp(published),
       matrix_encoder_.encode_matrix(message, offset));
   ++chunk_.messages;
   if (stream.moves_frames) {
@@ -270,12 +272,12 @@ Status McapWriter::write(std::size_t number, const Message& message, std::int64_
   return wait_for_room();
 }
 
-void McapWriter::add_other(std::string_view topic, ros::Type type, std::int64_t time,
+void McapWriter::add_other(std::string_view topic, ros::Type type, Time time,
                            const ros::Pieces& data) {
-  add(other_channel(topic, type), ++others_, time, time, data);
+  add(other_channel(topic, type), ++others_, stamp(time), stamp(time), data);
 }
 
-Status McapWriter::log(std::int64_t time, const LogLine& line) {
+Status McapWriter::log(Time time, const LogLine& line) {
   const std::lock_guard lock(chunk_mutex_);
   add_other(kLog, ros::Type::Log, time, encoder_.encode_log(time, line));
   flush_if_due();
@@ -283,7 +285,7 @@ Status McapWriter::log(std::int64_t time, const LogLine& line) {
 }
 
 /// Records the fixed frames, with the time of the first message.
-void McapWriter::record_fixed_frames(std::int64_t time) {
+void McapWriter::record_fixed_frames(Time time) {
   auto fixed = std::move(joints_.fixed);
   fixed.push_back({.parent = std::string(kRerunOrigin), .child = joints_.root, .time = time});
   joints_.root.clear();
@@ -291,8 +293,7 @@ void McapWriter::record_fixed_frames(std::int64_t time) {
   const auto number = other_channel(kStaticFrames, ros::Type::TfMessage);
   auto data = joined(encoder_.encode(fixed));
   auto frames = frames_of(data);
-  repeat(mcap::Lasting{number, ++others_, static_cast<std::uint64_t>(time), std::move(data),
-                       std::move(frames)});
+  repeat(mcap::Lasting{number, ++others_, stamp(time), std::move(data), std::move(frames)});
 }
 
 Status McapWriter::metadata(const std::string& name, const StringMap& words) {

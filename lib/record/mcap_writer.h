@@ -51,11 +51,11 @@ class McapWriter {
 
   /// Blocks while too much is waiting to be written.
   /// Errors: TooLarge (no more channels in the file; other streams can continue).
-  Status write(std::size_t stream, const Message& message, std::int64_t log_time);
+  Status write(std::size_t stream, const Message& message, Time log_time);
   /// Copies a message of another file. `from` identifies the file. Errors: as write().
   Status copy(const StoredPair& pair, const void* from);
   /// Writes a log line to /rosout, with ros::Encoder::encode_log().
-  Status log(std::int64_t time, const LogLine& line);
+  Status log(Time time, const LogLine& line);
   Status metadata(const std::string& name, const mcap::StringMap& words);
   /// As Storage::save(). Errors: also Closed.
   Result<std::string> save();
@@ -84,7 +84,7 @@ class McapWriter {
   };
 
   McapWriter(mcap::Storage storage, ros::GraphJoints joints, std::size_t chunk_bytes);
-  void record_fixed_frames(std::int64_t time);
+  void record_fixed_frames(Time time);
   std::uint16_t add_channel(mcap::ChannelRecord channel, mcap::SchemaRecord schema);
   std::uint16_t add_channel(const std::string& topic, ros::Type type, mcap::StringMap metadata);
   std::uint16_t channel(Stream& stream, ros::Type type);
@@ -92,11 +92,10 @@ class McapWriter {
   std::uint16_t other_channel(std::string_view topic, ros::Type type);
   /// The channel in this file for a channel of another file.
   std::uint16_t copied_channel(const mcap::StoredMessage& message, const void* from);
-  void add(std::uint16_t channel, std::uint32_t sequence, std::int64_t log_time,
-           std::int64_t publish_time, const ros::Pieces& data);
+  void add(std::uint16_t channel, std::uint32_t sequence, std::uint64_t log_time,
+           std::uint64_t publish_time, const ros::Pieces& data);
   /// Adds a message to a topic without a stream.
-  void add_other(std::string_view topic, ros::Type type, std::int64_t time,
-                 const ros::Pieces& data);
+  void add_other(std::string_view topic, ros::Type type, Time time, const ros::Pieces& data);
   /// Adds a message of another file to the chunk.
   void add_copy(const mcap::StoredMessage& message, const void* from);
   /// Writes a record that each file contains.

@@ -2,7 +2,6 @@
 // Files of messages as recordings, with log times derived from the messages' times.
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <utility>
 
 #include <record/reader.h>
@@ -13,14 +12,13 @@ namespace {
 /// Derives monotonic log times from the times of messages.
 class LogTimes {
  public:
-  std::int64_t last = 0;  ///< 0: unknown
+  Time last;
 
-  void add(std::int64_t time) {
-    constexpr std::int64_t kDisorder = 1'000'000'000;  // tolerated between modules [ns]
-    constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
-    if (time <= 0) return;
+  void add(Time time) {
+    constexpr std::chrono::seconds kDisorder{1};  // tolerated between modules
+    if (time <= Time()) return;
     const bool is_back = time < last - kDisorder;
-    if (is_back) time = time > kMost - shift_ ? kMost : time + shift_;
+    if (is_back) time = later(time, shift_);
     if (is_back && time < last - kDisorder) {  // the clock was set back again
       shift_ += last - time;
       time = last;
@@ -29,7 +27,7 @@ class LogTimes {
   }
 
  private:
-  std::int64_t shift_ = 0;
+  std::chrono::nanoseconds shift_{0};
 };
 
 class MessageReader final : public Reader {
@@ -43,13 +41,13 @@ class MessageReader final : public Reader {
     if (got && *got == Got::Message) message = std::move(*std::exchange(ahead_, std::nullopt));
     return got;
   }
-  Result<std::optional<std::int64_t>> next_time() override {
+  Result<std::optional<Time>> next_time() override {
     auto got = read_ahead();
     if (!got) return got.error();
     return *got == Got::Message ? std::optional(times_.last) : std::nullopt;
   }
 
-  [[nodiscard]] std::int64_t log_time() const override { return times_.last; }
+  [[nodiscard]] Time log_time() const override { return times_.last; }
   [[nodiscard]] std::string_view stream() const override { return name_; }
   [[nodiscard]] bool mixes_sources() const override { return place_.stream.empty(); }
   [[nodiscard]] int descriptor() const override { return source_->descriptor(); }
@@ -57,13 +55,14 @@ class MessageReader final : public Reader {
   bool prepare_wait() override { return !ahead_ && source_->prepare_wait(); }
   [[nodiscard]] Traffic traffic() const override { return source_->traffic(); }
   Status resume() override { return source_->resume(); }
-  void start_at(std::int64_t log_time) override {
+  void start_at(Time log_time) override {
     start_ = log_time;
     if (times_.last < start_) ahead_.reset();
   }
 
   Result<std::vector<StreamInfo>> streams(StreamDetail detail) override {
-    StreamInfo info{name_, "", 0, 0, 0, {}};
+    StreamInfo info;
+    info.name = name_;
     if (detail == StreamDetail::Names) return std::vector{std::move(info)};
     auto all = HC_TRY(read_messages(place_, options_));
     Message message;
@@ -85,29 +84,29 @@ class MessageReader final : public Reader {
       Message message;
       auto got = source_->take(message);
       if (!got || *got != Got::Message) return got;
-      if (times_.last == 0 && message.header.time == 0) times_.add(first_time());
+      if (times_.last == Time() && message.header.time == Time()) times_.add(first_time());
       times_.add(message.header.time);
       if (times_.last >= start_) ahead_ = std::move(message);
     }
     return Got::Message;
   }
 
-  /// The first non-zero time of a message near the beginning of the file, or 0. Only regular files
+  /// The first known time of a message near the beginning of the file. Only regular files
   /// can be read twice, not FIFOs and devices.
-  std::int64_t first_time() {
+  Time first_time() {
     constexpr std::uint64_t kNear = std::uint64_t{64} << 20;  // [byte]
     std::error_code unknown;
     if (std::exchange(has_looked_, true) || place_.kind == Place::Kind::Link ||
         !std::filesystem::is_regular_file(place_.path, unknown))
-      return 0;
+      return {};
     auto source = hc::open_source(place_.uri, options_);
     Message message;
     while (source && (*source)->traffic().bytes < kNear) {
       auto got = (*source)->take(message);
       if (!got || *got != Got::Message) break;
-      if (message.header.time != 0) return message.header.time;
+      if (message.header.time != Time()) return message.header.time;
     }
-    return 0;
+    return {};
   }
 
   const Place place_;
@@ -115,7 +114,7 @@ class MessageReader final : public Reader {
   const std::unique_ptr<Source> source_;
   const std::string name_;
   LogTimes times_;
-  std::int64_t start_ = 0;
+  Time start_;
   bool has_looked_ = false;
   std::optional<Message> ahead_;
 };

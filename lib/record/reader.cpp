@@ -29,12 +29,12 @@ class MergedReader final : public Reader {
     if (!next) return Got::End;
     auto got = last_->reader->take(message);
     if (!got) return failed(got.error());
-    if (last_->reader->log_time() != 0) time_ = last_->reader->log_time();
+    if (last_->reader->log_time() != Time()) time_ = last_->reader->log_time();
     return got;
   }
 
-  Result<std::optional<std::int64_t>> next_time() override {
-    std::optional<std::int64_t> least, least_known;
+  Result<std::optional<Time>> next_time() override {
+    std::optional<Time> least, least_known;
     File* first = nullptr;
     for (auto& file : files_) {
       if (file.has_ended) continue;
@@ -48,15 +48,15 @@ class MergedReader final : public Reader {
         least = *next;
         first = &file;
       }
-      if (**next != 0 && (!least_known || **next < *least_known)) least_known = *next;
+      if (**next != Time() && (!least_known || **next < *least_known)) least_known = *next;
     }
     if (first != nullptr) last_ = first;
     if (!least && truncated_) return *std::exchange(truncated_, std::nullopt);
-    if (time_ == 0) time_ = least_known.value_or(0);
+    if (time_ == Time()) time_ = least_known.value_or(Time());
     return least;
   }
 
-  [[nodiscard]] std::int64_t log_time() const override { return time_; }
+  [[nodiscard]] Time log_time() const override { return time_; }
   [[nodiscard]] std::string_view stream() const override { return last_->reader->stream(); }
   [[nodiscard]] int descriptor() const override { return last_->reader->descriptor(); }
   Status resume() override {
@@ -65,7 +65,7 @@ class MergedReader final : public Reader {
                              : Status();  // none after Truncated: the other files continue
   }
   Reader& front() override { return *last_->reader; }
-  void start_at(std::int64_t log_time) override {
+  void start_at(Time log_time) override {
     for (auto& file : files_) file.reader->start_at(log_time);
   }
   [[nodiscard]] Traffic traffic() const override {
@@ -112,7 +112,7 @@ class MergedReader final : public Reader {
   File* last_ = files_.data();      // of the last or the next message
   Reader* failed_ = nullptr;        // to be resumed
   std::optional<Error> truncated_;  // of all truncated files
-  std::int64_t time_ = 0;
+  Time time_;
 };
 
 /// The recordings in a folder, or that of one stream.

@@ -25,7 +25,7 @@ struct StreamInfo {
   std::string name;  ///< "head_eyes.left"
   std::string type;  ///< of its messages: of ROS 2 in MCAP, else of MTP; may be empty
   std::uint64_t messages = 0;
-  std::int64_t begin = 0, end = 0;      ///< first and last log time; not set for MCAP [ns]
+  Time begin, end;                      ///< first and last log time; not set for MCAP
   std::vector<std::uint16_t> channels;  ///< in MCAP
   Status status = {};                   ///< why counting stopped early
 };
@@ -72,14 +72,14 @@ class Reader : public Source {
   // after all complete messages of all files), Malformed, TooLarge, Unsupported, System; resume()
   // continues after the damage.
 
-  /// Log time and stream of the last message. [ns since the Unix epoch]; 0: unknown.
-  [[nodiscard]] virtual std::int64_t log_time() const = 0;
+  /// Log time and stream of the last message.
+  [[nodiscard]] virtual Time log_time() const = 0;
   [[nodiscard]] virtual std::string_view stream() const = 0;
 
   /// The log time of the next message; nullopt at the end. Errors: as take().
-  virtual Result<std::optional<std::int64_t>> next_time() = 0;
+  virtual Result<std::optional<Time>> next_time() = 0;
   /// Skips messages before this time. Call it before take().
-  virtual void start_at(std::int64_t log_time) = 0;
+  virtual void start_at(Time log_time) = 0;
 
   virtual Result<std::vector<StreamInfo>> streams(StreamDetail detail = StreamDetail::Names) = 0;
   /// The latest metadata of each name, for MCAP.

@@ -162,18 +162,20 @@ TEST_F(Recorded, OnAFullDiskHasWholeMessages) {
   }
 }
 
-constexpr std::int64_t kSecond = 1'000'000'000, kNow = 1'763'683'200 * kSecond;
+using namespace std::chrono_literals;
+
+constexpr Time kNow(1'763'683'200s), kNone;
 
 class InOrder : public Recorded {
  protected:
-  static Message at(std::int64_t time, std::int32_t seq, std::int32_t src = 7) {
+  static Message at(Time time, std::int32_t seq, std::int32_t src = 7) {
     auto message = sized(3);
     message.header.time = time;
     message.header.seq = seq;
     message.header.src = src;
     return message;
   }
-  std::string file(const std::string& name, const std::vector<std::int64_t>& times) const {
+  std::string file(const std::string& name, const std::vector<Time>& times) const {
     std::string bytes;
     for (std::size_t i = 0; i < times.size(); ++i)
       bytes += encode(at(times[i], static_cast<std::int32_t>(i)));
@@ -182,8 +184,8 @@ class InOrder : public Recorded {
 };
 
 TEST_F(InOrder, OfFilesAreReadByTimeWhateverTheyAreWrittenIn) {
-  file("kept/a.left.mtp", {kNow + 1, kNow + 3, kNow + 5});
-  file("kept/a.right.mtp", {kNow, kNow + 2, kNow + 6});
+  file("kept/a.left.mtp", {kNow + 1ns, kNow + 3ns, kNow + 5ns});
+  file("kept/a.right.mtp", {kNow, kNow + 2ns, kNow + 6ns});
   const std::vector<std::string> order = {"a.right", "a.left", "a.right",
                                           "a.left",  "a.left", "a.right"};
   const auto whole = play({kept});
@@ -196,20 +198,20 @@ TEST_F(InOrder, OfFilesAreReadByTimeWhateverTheyAreWrittenIn) {
     EXPECT_EQ(again.messages, whole.messages);
     EXPECT_EQ(again.times, whole.times);
   }
-  EXPECT_EQ(play({in("x.mcap")}, kNow + 3).streams.size(), 3U);
+  EXPECT_EQ(play({in("x.mcap")}, kNow + 3ns).streams.size(), 3U);
   EXPECT_EQ(play({kept + "?stream=a.left"}).messages.size(), 3U);
   const auto wrong = play({kept + "?stream=a.lft"});
   EXPECT_NE(wrong.error->detail.find("did you mean \"a.left\"?"), std::string::npos);
 }
 
 TEST_F(InOrder, AMessageWithoutATimeGoesWithTheOneBefore) {
-  const auto first = play({file("a.mtp", {0, 0, kNow, kNow + 5, 0, kNow + 7})});
-  EXPECT_EQ(first.times, (std::vector{kNow, kNow, kNow, kNow + 5, kNow + 5, kNow + 7}));
+  const auto first = play({file("a.mtp", {kNone, kNone, kNow, kNow + 5ns, kNone, kNow + 7ns})});
+  EXPECT_EQ(first.times, (std::vector{kNow, kNow, kNow, kNow + 5ns, kNow + 5ns, kNow + 7ns}));
   EXPECT_EQ(play({copy({in("a.mtp")}, "a.mcap")}).times, first.times);
   // A file without any times does not make a recording span decades.
-  const auto both = play({file("b.mtp", {0, 0, 0}), file("c.mtp", {kNow, kNow + 1})});
-  EXPECT_EQ(both.times, (std::vector{kNow, kNow, kNow, kNow, kNow + 1}));
-  EXPECT_LT(play({copy({in("b.mtp")}, "b.mcap")}).duration(), kSecond * 60);
+  const auto both = play({file("b.mtp", {kNone, kNone, kNone}), file("c.mtp", {kNow, kNow + 1ns})});
+  EXPECT_EQ(both.times, (std::vector{kNow, kNow, kNow, kNow, kNow + 1ns}));
+  EXPECT_LT(play({copy({in("b.mtp")}, "b.mcap")}).duration(), 60s);
 }
 
 TEST_F(InOrder, AFifoIsReadOnce) {
@@ -220,7 +222,7 @@ TEST_F(InOrder, AFifoIsReadOnce) {
   for (int i = 0; i < 4; ++i) {
     auto message = sized(200'000);
     message.header.seq = i;
-    message.header.time = i == 0 ? 0 : kNow;  // the first without a time
+    message.header.time = i == 0 ? kNone : kNow;  // the first without a time
     fifo << encode(message);
   }
   fifo.close();
@@ -234,15 +236,15 @@ TEST_F(InOrder, AFifoIsReadOnce) {
 }
 
 TEST_F(InOrder, AClockThatIsSetLosesNoMessageAndMakesNobodyWait) {
-  const auto hour = 3600 * kSecond;
-  const auto back = play({file("a.mtp", {kNow, kNow + kSecond, kNow + 2 * kSecond - hour,
-                                         kNow + 3 * kSecond - hour, kNow + 4 * kSecond})});
+  const auto hour = 1h;
+  const auto back =
+      play({file("a.mtp", {kNow, kNow + 1s, kNow + 2s - hour, kNow + 3s - hour, kNow + 4s})});
   EXPECT_EQ(back.times.size(), 5U);
-  EXPECT_EQ(back.duration(), 4 * kSecond);
+  EXPECT_EQ(back.duration(), 4s);
   EXPECT_TRUE(std::ranges::is_sorted(back.times));
   // After one maximal time, the following messages get the same.
-  constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
-  const auto ahead = play({file("b.mtp", {kNow, kMost, kNow + kSecond, kNow + 2 * kSecond})});
+  constexpr Time kMost = Time::max();
+  const auto ahead = play({file("b.mtp", {kNow, kMost, kNow + 1s, kNow + 2s})});
   EXPECT_EQ(ahead.times, (std::vector{kNow, kMost, kMost, kMost}));
 }
 
@@ -256,15 +258,15 @@ TEST_F(InOrder, LogTimesGoByTheMonotonicClock) {
   auto writer = writer_of(in("x.mcap"), options);
   const auto stream = *writer->add_stream("a.out");
   for (int i = 0; i < 60; ++i) {  // the wall clock is set back and forth each second
-    ASSERT_TRUE(writer->add(stream, at(0, i)));
+    ASSERT_TRUE(writer->add(stream, at({}, i)));
     clock.advance(std::chrono::seconds(1));
-    clock.set_wall(kNow + (i % 2 == 0 ? 3600 : -3600) * kSecond);
+    clock.set_wall(kNow + (i % 2 == 0 ? 1h : -1h));
   }
   writer->save();
   const auto last = play({writer->close().files.at(0)});
   EXPECT_EQ(last.times.size(), 11U);
-  EXPECT_EQ(last.duration(), 10 * kSecond);
-  EXPECT_EQ(last.times.back(), kNow + 59 * kSecond);
+  EXPECT_EQ(last.duration(), 10s);
+  EXPECT_EQ(last.times.back(), kNow + 59s);
 }
 
 TEST_F(InOrder, OneLinkMayCarrySeveralStreams) {
@@ -287,7 +289,8 @@ TEST_F(InOrder, InMcapAreCopiedWithAllThatStandsBeside) {
     fs::create_directories(fs::path(in(name)).parent_path());
     auto writer = writer_of(in(name), options);
     const auto stream = *writer->add_stream("a.out");
-    for (int i = 0; i < 9; ++i) ASSERT_TRUE(writer->add(stream, at(kNow + i, i), kNow + 100 * i));
+    for (int i = 0; i < 9; ++i)
+      ASSERT_TRUE(writer->add(stream, at(kNow + i * 1ns, i), kNow + i * 100ns));
     ASSERT_TRUE(writer->log({"a", Level::Info, "a line"}));
     ASSERT_TRUE(writer->metadata(name, {{"k", "v"}}));
   }
@@ -316,8 +319,8 @@ TEST_F(InOrder, InMcapAreCopiedWithAllThatStandsBeside) {
 }
 
 TEST_F(InOrder, AFileThatIsCutOffEndsThatStreamAlone) {
-  file("kept/a.mtp", {kNow, kNow + 2, kNow + 4});
-  const auto cut = file("kept/b.mtp", {kNow + 1, kNow + 3});
+  file("kept/a.mtp", {kNow, kNow + 2ns, kNow + 4ns});
+  const auto cut = file("kept/b.mtp", {kNow + 1ns, kNow + 3ns});
   fs::resize_file(cut, fs::file_size(cut) - 2);
   const auto whole = play({kept});
   EXPECT_EQ(whole.streams, (std::vector<std::string>{"a", "b", "a", "a"}));

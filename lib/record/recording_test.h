@@ -22,12 +22,12 @@ namespace hc::record {
 /// The contents of a recording: stream, bytes and log time of each message; and the final error.
 struct Played {
   std::vector<std::string> streams, messages;
-  std::vector<std::int64_t> times;
+  std::vector<Time> times;
   std::optional<Error> error;
-  [[nodiscard]] std::int64_t duration() const { return times.back() - times.front(); }
+  [[nodiscard]] std::chrono::nanoseconds duration() const { return times.back() - times.front(); }
 };
 
-inline Played play(const std::vector<std::string>& words, std::int64_t from = 0) {
+inline Played play(const std::vector<std::string>& words, Time from = {}) {
   Played all;
   std::vector<Place> places;
   for (const auto& word : words) places.push_back(place_of(word));

@@ -106,10 +106,10 @@ void Writer::say(Level severity, const std::string& line) const {
   if (options_.log) options_.log(severity, line);
 }
 
-std::int64_t Writer::now() {
-  const auto monotonic = clock_.monotonic().count();
-  if (!to_wall_) to_wall_ = clock_.wall() - monotonic;
-  return monotonic + *to_wall_;
+Time Writer::now() {
+  const auto monotonic = clock_.monotonic();
+  if (!to_wall_) to_wall_ = clock_.wall().time_since_epoch() - monotonic;
+  return Time(monotonic + *to_wall_);
 }
 
 Result<std::size_t> Writer::add_stream(std::string_view name) {
@@ -145,7 +145,7 @@ Error Writer::named(const File& file, const Error& error) const {
   return {error.code, is_folder_ ? file.path + ": " + error.detail : error.detail};
 }
 
-Status Writer::write(std::size_t stream, const Message& message, std::int64_t log_time) {
+Status Writer::write(std::size_t stream, const Message& message, Time log_time) {
   if (mcap_ != nullptr) return mcap_->write(stream, message, log_time);
   auto& file = files_[is_folder_ ? stream : 0];
   auto sent = file.sink->send(message);
@@ -164,9 +164,8 @@ Status Writer::record(std::size_t bytes, const Write& write) {
   return done;
 }
 
-Status Writer::add(std::size_t stream, const Message& message,
-                   std::optional<std::int64_t> log_time) {
-  const auto time = log_time.value_or(0) != 0 ? *log_time : now();
+Status Writer::add(std::size_t stream, const Message& message, Time log_time) {
+  const auto time = log_time != Time() ? log_time : now();
   auto added = record(message.elements.size(), [&] { return write(stream, message, time); });
   if (!added && added.error().code == Code::TooLarge) {
     if (dropping_.insert(stream).second)

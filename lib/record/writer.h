@@ -75,8 +75,8 @@ class Writer {
 
   /// Records a message; blocks while the disk is slower. A message that does not fit into the file
   /// is dropped, which is logged once per stream.
-  /// @param log_time  when it was first recorded [ns since the Unix epoch]; nullopt or 0: now.
-  Status add(std::size_t stream, const Message& message, std::optional<std::int64_t> log_time = {});
+  /// @param log_time  when it was first recorded; Time{}: now.
+  Status add(std::size_t stream, const Message& message, Time log_time = {});
 
   /// The topics that must be read from MCAP files for copy().
   [[nodiscard]] Topics copied_topics() const { return mcap_ ? Topics::All : Topics::Mtp; }
@@ -95,8 +95,8 @@ class Writer {
   const Written& close();
 
   /// The time for new messages: the wall clock at the first call, advanced by the monotonic clock,
-  /// so that setting the wall clock has no effect. [ns since the Unix epoch]
-  [[nodiscard]] std::int64_t now();
+  /// so that setting the wall clock has no effect.
+  [[nodiscard]] Time now();
   [[nodiscard]] const Written& written() const { return written_; }
 
  private:
@@ -122,17 +122,17 @@ class Writer {
   Status record(std::size_t bytes, const Write& write);
   template <typename Write>
   Status to_mcap(const Write& write);
-  Status write(std::size_t stream, const Message& message, std::int64_t log_time);
+  Status write(std::size_t stream, const Message& message, Time log_time);
   void save_when_set(const Message& message);
 
   const WriterOptions options_;
   SystemClock system_clock_;
   const Clock& clock_;
   const bool is_folder_;
-  std::optional<std::int64_t> to_wall_;  // to be added to the monotonic clock [ns]
-  std::vector<std::string> names_;       // of streams
-  std::unique_ptr<McapWriter> mcap_;     // null: files of messages
-  std::vector<File> files_;              // one per stream of a folder, else one for all
+  std::optional<std::chrono::nanoseconds> to_wall_;  // to be added to the monotonic clock
+  std::vector<std::string> names_;                   // of streams
+  std::unique_ptr<McapWriter> mcap_;                 // null: files of messages
+  std::vector<File> files_;                          // one per stream of a folder, else one for all
   std::set<std::string> file_names_;
   // Streams by src, for each link or file and name.
   std::map<std::pair<const void*, std::string>, std::map<std::int32_t, std::size_t>> links_;

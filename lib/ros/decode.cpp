@@ -17,8 +17,10 @@
 namespace hc::ros {
 namespace {
 
-std::int64_t nanoseconds(const Time& time) {
-  return time.sec * std::int64_t{1'000'000'000} + time.nanosec;
+/// A stamp before 1970 counts as none.
+hc::Time moment_of(const Time& stamp) {
+  const std::chrono::seconds whole(stamp.sec);
+  return std::max(hc::Time(), hc::Time(whole + std::chrono::nanoseconds(stamp.nanosec)));
 }
 
 Error malformed(std::string why) {
@@ -27,7 +29,7 @@ Error malformed(std::string why) {
 
 /// An empty message of a port's type. Errors: TooLarge.
 Result<Draft> draft_for(const PortType& port, std::uint64_t width, std::uint64_t height,
-                        std::int64_t time) {
+                        hc::Time time) {
   constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
   if (width > kMost || height > kMost)
     return Error{Code::TooLarge,
@@ -36,14 +38,14 @@ Result<Draft> draft_for(const PortType& port, std::uint64_t width, std::uint64_t
   header.info = port.info;
   header.width = static_cast<std::int32_t>(width);
   header.height = static_cast<std::int32_t>(height);
-  header.time = std::max<std::int64_t>(time, 0);
+  header.time = time;
   HC_TRY(check(header));
   return Draft::make(header);
 }
 
 /// A table or pose from its numbers, row by row.
 Result<Message> matrix_of(const PortType& port, std::uint64_t width, std::uint64_t height,
-                          std::int64_t time, std::span<const double> numbers) {
+                          hc::Time time, std::span<const double> numbers) {
   auto draft = HC_TRY(draft_for(port, width, height, time));
   std::ranges::copy(numbers, view<double>(draft).numbers().begin());
   return std::move(draft).finish();
@@ -91,7 +93,7 @@ Result<Message> decode_colours(const Image& image, const PortType& port) {
   if (pixel == std::end(kPixels))
     return unknown_encoding(image, "rgb8, bgr8, rgba8, bgra8 and mono8");
   HC_TRY(check_rows(image, pixel->bytes));
-  auto draft = HC_TRY(draft_for(port, image.width, image.height, nanoseconds(image.header.stamp)));
+  auto draft = HC_TRY(draft_for(port, image.width, image.height, moment_of(image.header.stamp)));
   auto* to = reinterpret_cast<std::uint8_t*>(draft.elements().data());
   const bool is_grey = port.info.components == 1;
   for (std::size_t y = 0; y < image.height; ++y) {
@@ -117,7 +119,7 @@ Result<Message> decode_depth(const Image& image, const PortType& port) {
   if (image.is_bigendian != 0) return Error{Code::Unsupported, "big-endian numbers"};
   const std::size_t size = is_metres ? sizeof(float) : sizeof(std::uint16_t);
   HC_TRY(check_rows(image, size));
-  auto draft = HC_TRY(draft_for(port, image.width, image.height, nanoseconds(image.header.stamp)));
+  auto draft = HC_TRY(draft_for(port, image.width, image.height, moment_of(image.header.stamp)));
   auto to = view<float>(draft).numbers().begin();
   for (std::size_t y = 0; y < image.height; ++y)
     for (std::size_t x = 0; x < image.width; ++x) {
@@ -164,7 +166,7 @@ Result<Message> convert(const CompressedImage& image, const PortType& port, cons
   message.header.info.encoding = Encoding::Jpeg;
   message.header.width = static_cast<std::int32_t>(size->first);
   message.header.height = static_cast<std::int32_t>(size->second);
-  message.header.time = std::max<std::int64_t>(nanoseconds(image.header.stamp), 0);
+  message.header.time = moment_of(image.header.stamp);
   HC_TRY(check(message.header));
   message.elements = image.data.bytes;
   return message.keep();
@@ -202,7 +204,7 @@ Result<Message> convert(const PointCloud2& cloud, const PortType& port, const Ch
     return malformed("expected " + std::to_string(cloud.height) + " x " +
                      std::to_string(cloud.width) + " points, got " +
                      std::to_string(cloud.data.bytes.size()) + " bytes");
-  auto draft = HC_TRY(draft_for(port, cloud.width, cloud.height, nanoseconds(cloud.header.stamp)));
+  auto draft = HC_TRY(draft_for(port, cloud.width, cloud.height, moment_of(cloud.header.stamp)));
   auto to = view<float>(draft).numbers().begin();
   for (std::size_t y = 0; y < cloud.height; ++y)
     for (std::size_t x = 0; x < cloud.width; ++x)
@@ -218,10 +220,10 @@ Result<Message> convert(const CameraInfo& camera, const PortType& port, const Ch
   const auto& p = camera.p;
   if (!(p[0] > 0)) return malformed("matrix P has no focal length: calibrate the camera");
   const double numbers[] = {p[0], p[5], p[2], p[6], -p[3] / p[0]};
-  return matrix_of(port, 5, 1, nanoseconds(camera.header.stamp), numbers);
+  return matrix_of(port, 5, 1, moment_of(camera.header.stamp), numbers);
 }
 
-Result<Message> matrix_of(const PortType& port, const Pose& pose, std::int64_t time) {
+Result<Message> matrix_of(const PortType& port, const Pose& pose, hc::Time time) {
   const auto& [p, q] = pose;
   const Eigen::Quaterniond rotation(q.w, q.x, q.y, q.z);
   constexpr double kTolerance = 0.01;
@@ -237,7 +239,7 @@ Result<Message> matrix_of(const PortType& port, const Pose& pose, std::int64_t t
 }
 
 Result<Message> convert(const PoseStamped& pose, const PortType& port, const Choice&) {
-  return matrix_of(port, pose.pose, nanoseconds(pose.header.stamp));
+  return matrix_of(port, pose.pose, moment_of(pose.header.stamp));
 }
 
 Result<Message> convert(const TfMessage& message, const PortType& port, const Choice& choice) {
@@ -246,14 +248,14 @@ Result<Message> convert(const TfMessage& message, const PortType& port, const Ch
       message.transforms.rbegin(), message.transforms.rend(),
       [&](const TransformStamped& each) { return each.child_frame_id == choice.child; });
   if (newest != message.transforms.rend())
-    return matrix_of(port, newest->transform, nanoseconds(newest->header.stamp));
+    return matrix_of(port, newest->transform, moment_of(newest->header.stamp));
   return Error{Code::NotFound, "no frame \"" + choice.child + "\" in the message"};
 }
 
 Result<Message> convert(const Twist& twist, const PortType& port, const Choice&) {
   const auto& [linear, angular] = twist;
   const double numbers[] = {linear.x, linear.y, linear.z, angular.x, angular.y, angular.z};
-  return matrix_of(port, 6, 1, 0, numbers);
+  return matrix_of(port, 6, 1, {}, numbers);
 }
 
 Result<Message> convert(const JointState& state, const PortType& port, const Choice& choice) {
@@ -278,11 +280,11 @@ Result<Message> convert(const JointState& state, const PortType& port, const Cho
     for (const auto joint : order)
       numbers.push_back(list->empty() ? std::numeric_limits<double>::quiet_NaN() : (*list)[joint]);
   }
-  return matrix_of(port, order.size(), rows, nanoseconds(state.header.stamp), numbers);
+  return matrix_of(port, order.size(), rows, moment_of(state.header.stamp), numbers);
 }
 
 Result<Message> convert(const String& string, const PortType& port, const Choice&) {
-  auto draft = HC_TRY(draft_for(port, string.data.text.size(), 1, 0));
+  auto draft = HC_TRY(draft_for(port, string.data.text.size(), 1, {}));
   std::ranges::copy(std::as_bytes(std::span(string.data.text)), draft.elements().begin());
   return std::move(draft).finish();
 }
@@ -303,7 +305,7 @@ Result<Message> convert(const MultiArray<double>& array, const PortType& port, c
       return malformed("expected " + std::to_string(height) + " x " + std::to_string(width) +
                        " numbers, got " + std::to_string(count));
   }
-  auto draft = HC_TRY(draft_for(port, width, height, 0));
+  auto draft = HC_TRY(draft_for(port, width, height, {}));
   const auto from = array.data.bytes.subspan(array.data_offset * sizeof(double));
   std::ranges::copy(from, draft.elements().begin());
   return std::move(draft).finish();

@@ -23,7 +23,7 @@ struct Choice {
   std::string child;  ///< of a TFMessage: the frame whose pose is taken
 };
 
-/// Converts a message of ROS to a port's type. Its time is that of the stamp; 0: none.
+/// Converts a message of ROS to a port's type. Its time is that of the stamp, if any.
 ///
 /// | ROS | MTP |
 /// |---|---|

@@ -21,7 +21,7 @@ const PortType kRgb = rgb_image().type, kGrey = intensity_image().type,
                kDepth = intensity_image<float>().type, kPoints = position<float>().type,
                kPose = transformation().type, kTable = table().type, kText = string().type;
 const Stamp kStamp{{5, 7}, "eye"};
-constexpr std::int64_t kTime = 5'000'000'007;
+constexpr hc::Time kTime = unix_time(5'000'000'007);
 
 template <typename T>
 std::vector<T> numbers(const Result<Message>& message) {

@@ -15,7 +15,7 @@
 namespace hc::ros {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
+using namespace std::chrono_literals;
 
 Error unfit(Type type, const Message& message) {
   const Header& header = message.header;
@@ -117,9 +117,9 @@ Pose pose_of(std::span<const double> n) {
 
 }  // namespace
 
-Time time_of(std::int64_t nanoseconds) {
-  return {static_cast<std::int32_t>(nanoseconds / kSecond),
-          static_cast<std::uint32_t>(nanoseconds % kSecond)};
+Time time_of(hc::Time time) {
+  const auto since = time.time_since_epoch();
+  return {static_cast<std::int32_t>(since / 1s), static_cast<std::uint32_t>((since % 1s).count())};
 }
 
 std::optional<Type> type_for(const PortType& port) {
@@ -409,7 +409,7 @@ Pieces Encoder::encode(std::span<const Joint> list) {
   return writer_.write(message);
 }
 
-Pieces Encoder::encode_log(std::int64_t time, const LogLine& line) {
+Pieces Encoder::encode_log(hc::Time time, const LogLine& line) {
   Log log;
   log.stamp = time_of(time);
   log.name = line.module;

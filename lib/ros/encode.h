@@ -54,7 +54,7 @@ struct Joint {
   std::string parent, child;
   std::array<double, 3> translation{};            ///< [m]
   std::array<double, 4> rotation = {0, 0, 0, 1};  ///< unit quaternion (x, y, z, w)
-  std::int64_t time = 0;                          ///< [ns since the Unix epoch]
+  hc::Time time;
 };
 
 /// Writes messages in CDR. Results are valid until the next call, and no longer than the message.
@@ -85,8 +85,7 @@ class Encoder {
   Pieces encode(std::span<const Joint> list);
 
   /// A line of a graph's log as a rcl_interfaces/msg/Log.
-  /// @param time  [ns since the Unix epoch]
-  Pieces encode_log(std::int64_t time, const LogLine& line);
+  Pieces encode_log(hc::Time time, const LogLine& line);
 
   /// A whole MTP message (`offset` 0), or the companion of a message of another type, in which the
   /// elements start at `offset`.
@@ -111,7 +110,7 @@ class Encoder {
   std::vector<std::byte> samples_;  // of sound in another scalar
 };
 
-/// Converts a time [ns since the Unix epoch]; ROS times end in 2038.
-Time time_of(std::int64_t nanoseconds);
+/// Converts a time; ROS times end in 2038.
+Time time_of(hc::Time time);
 
 }  // namespace hc::ros

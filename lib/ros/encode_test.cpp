@@ -20,7 +20,7 @@ Message message_of(MatrixType type, int components, std::int32_t width, std::int
       Draft::make({type, static_cast<std::uint8_t>(components), scalar_for<T>(), Encoding::Binary},
                   height, width);
   draft.header.coord = coord;
-  draft.header.time = 1'763'683'200'123'456'789;
+  draft.header.time = unix_time(1'763'683'200'123'456'789);
   std::ranges::copy(numbers, view<T>(draft).numbers().begin());
   return std::move(draft).finish();
 }
@@ -51,7 +51,7 @@ TEST(Encode, AnImageIsNotCopied) {
 TEST(Encode, ALineOfTheLogHasNameAndSeverity) {
   Encoder encoder;
   auto words = [&](Level level) {
-    const auto bytes = bytes_of(encoder.encode_log(1, {"eyes", level, "it is dark"}));
+    const auto bytes = bytes_of(encoder.encode_log({}, {"eyes", level, "it is dark"}));
     const auto log = *CdrReader::read<Log>(bytes);
     return std::to_string(log.level) + " " + std::string(log.name) + " " + std::string(log.msg);
   };

@@ -10,7 +10,7 @@
 namespace hc::ros {
 namespace {
 
-Joint joint(std::string parent, std::string child, const Eigen::Isometry3d& T, std::int64_t time) {
+Joint joint(std::string parent, std::string child, const Eigen::Isometry3d& T, hc::Time time) {
   const hc::frames::Pose pose(T);
   return {std::move(parent),
           std::move(child),
@@ -37,8 +37,8 @@ Result<GraphJoints> GraphJoints::read(const std::string& text) {
                        joints.frames.movers.end();
     if (moves) continue;
     auto T =
-        HC_TRY(joints.frames.tree.lookup(std::string_view(parent), std::string_view(child), 0));
-    joints.fixed.push_back(joint(parent, child, T, 0));
+        HC_TRY(joints.frames.tree.lookup(std::string_view(parent), std::string_view(child), {}));
+    joints.fixed.push_back(joint(parent, child, T, {}));
   }
   while (parents.contains(joints.root)) joints.root = parents[joints.root];
   return joints;

@@ -30,11 +30,11 @@ TEST(GraphJoints, a_pose_moves_the_one_that_it_is_of) {
   hc::Message pose = hc::transformation().message(T);
   pose.header.src = 12;
   pose.header.coord = 2003;
-  pose.header.time = 77;
+  pose.header.time = unix_time(77);
   const auto joint = must(joints.joint_of(pose));
   EXPECT_EQ(joint.parent, "robot");
   EXPECT_EQ(joint.child, "head");
-  EXPECT_EQ(joint.time, 77);
+  EXPECT_EQ(joint.time, unix_time(77));
   EXPECT_EQ(joint.translation, (std::array<double, 3>{0.5, 0, 0.25}));
   EXPECT_NEAR(joint.rotation[2], std::sqrt(0.5), 1e-12);
   pose.header.src = 99;

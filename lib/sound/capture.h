@@ -18,7 +18,7 @@ namespace hc::audio {
 /// A piece of recorded sound.
 struct Heard {
   std::vector<std::int16_t> samples;  ///< channels next to one another
-  std::int64_t time = 0;              ///< of the last frame [ns since the Unix epoch]
+  Time time;                          ///< of the last frame
 };
 
 /// Records in pieces of one length. For one thread.

@@ -4,12 +4,11 @@
 #include <SDL2/SDL.h>
 #include <dlfcn.h>
 
-#include <cstdlib>
 #include <utility>
 
 namespace hc::audio {
 
-constexpr std::int64_t kMostDrift = 50'000'000;  // [ns]
+constexpr std::chrono::milliseconds kMostDrift{50};
 
 namespace {
 
@@ -37,14 +36,14 @@ Result<AudioSystem> start_audio() {
   return AudioSystem(nullptr, [](void*) { SDL_QuitSubSystem(SDL_INIT_AUDIO); });
 }
 
-std::int64_t FrameClock::stamp(std::int64_t frames, std::int64_t now) {
-  std::int64_t end = start_.value_or(0) + duration_of(counted_ + frames, rate_);
-  if (!start_ || std::abs(end - now) > kMostDrift) {
+Time FrameClock::stamp(std::int64_t frames, Time now) {
+  Time end = start_.value_or(Time()) + duration_of(counted_ + frames, rate_);
+  if (!start_ || std::chrono::abs(end - now) > kMostDrift) {
     start_ = now - duration_of(frames, rate_);
     counted_ = 0;
     end = now;
   }
-  const std::int64_t first = *start_ + duration_of(counted_, rate_);
+  const Time first = *start_ + duration_of(counted_, rate_);
   counted_ += frames;
   return first;
 }

@@ -27,13 +27,13 @@ class FrameClock {
  public:
   explicit FrameClock(int rate) : rate_(rate) {}
   /// @param frames  in this piece.
-  /// @param now  time of its last frame [ns since the Unix epoch].
-  /// @returns  time of its first frame [ns since the Unix epoch].
-  std::int64_t stamp(std::int64_t frames, std::int64_t now);
+  /// @param now  time of its last frame.
+  /// @returns  time of its first frame.
+  Time stamp(std::int64_t frames, Time now);
 
  private:
   int rate_;
-  std::optional<std::int64_t> start_;
+  std::optional<Time> start_;
   std::int64_t counted_ = 0;
 };
 

@@ -22,6 +22,7 @@ using hc::audio::Capture;
 using hc::audio::FrameClock;
 using hc::audio::Playback;
 using std::chrono::milliseconds;
+using namespace std::chrono_literals;
 
 class Device : public testing::Test {
  protected:
@@ -56,7 +57,7 @@ TEST_F(Device, what_is_recorded_comes_in_pieces) {
       .write(reinterpret_cast<const char*>(samples.data()), 2 * std::ssize(samples));
   auto capture = hc::must(Capture::open("", {16000, 1}, 320));
   std::vector<std::int16_t> heard;
-  std::int64_t last = 0;
+  hc::Time last;
   while (heard.size() < samples.size()) {
     auto piece = hc::must(capture->take(milliseconds(30000)));
     ASSERT_EQ(piece.samples.size(), 320);
@@ -105,13 +106,14 @@ TEST_F(Device, one_that_is_missing_is_reported_by_its_error_alone) {
 
 TEST(FrameClock, counts_frames_and_starts_over_after_a_gap) {
   FrameClock clock(16000);
-  constexpr std::int64_t kStart = 1'763'683'200'000'000'000, kPiece = 20'000'000;
+  constexpr hc::Time kStart(1'763'683'200s);
+  constexpr auto kPiece = 20ms;
   EXPECT_EQ(clock.stamp(320, kStart), kStart - kPiece);
   // The wake-ups jitter, but the sound does not.
-  EXPECT_EQ(clock.stamp(320, kStart + kPiece + 3'000'000), kStart);
-  EXPECT_EQ(clock.stamp(320, kStart + 2 * kPiece - 3'000'000), kStart + kPiece);
+  EXPECT_EQ(clock.stamp(320, kStart + kPiece + 3ms), kStart);
+  EXPECT_EQ(clock.stamp(320, kStart + 2 * kPiece - 3ms), kStart + kPiece);
   EXPECT_EQ(clock.stamp(320, kStart + 10 * kPiece), kStart + 9 * kPiece);
-  EXPECT_EQ(clock.stamp(320, kStart + 11 * kPiece + 1), kStart + 10 * kPiece);
+  EXPECT_EQ(clock.stamp(320, kStart + 11 * kPiece + 1ns), kStart + 10 * kPiece);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 // (spec/mtp-1.md, R44). Pure.
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,9 +19,9 @@ struct Format {
   bool operator==(const Format&) const = default;
 };
 
-/// Duration of a number of frames [ns]; split, so that no product overflows within a century.
-constexpr std::int64_t duration_of(std::int64_t frames, std::int64_t rate) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
+/// Duration of a number of frames; split, so that no product overflows within a century.
+constexpr std::chrono::nanoseconds duration_of(std::int64_t frames, std::int64_t rate) {
+  constexpr std::chrono::nanoseconds kSecond = std::chrono::seconds(1);
   return frames / rate * kSecond + frames % rate * kSecond / rate;
 }
 

@@ -15,7 +15,7 @@ struct Sight {
   hc::graphics::PinholeCamera camera;            ///< of both eyes
   std::array<Eigen::Isometry3d, 2> T_world_eye;  ///< left, right; optical frames
   double scale = 0;                              ///< focal length · baseline [px · m]
-  std::int64_t time = 0;                         ///< [ns]
+  hc::Time time;
 
   /// A point in an eye's frame [m].
   [[nodiscard]] Eigen::Vector3d in_eye(std::size_t eye, const Eigen::Vector3d& p_world) const {

@@ -11,12 +11,12 @@ hc::Header image() {
   hc::Header header;
   header.width = 80;
   header.height = 60;
-  header.time = 5;
+  header.time = hc::unix_time(5);
   return header;
 }
 
 hc::TimedPose pose(std::int32_t to, std::int32_t from, const Eigen::Isometry3d& T) {
-  return {to, from, 5, T};
+  return {to, from, hc::unix_time(5), T};
 }
 
 /// With the default head: its left eye is at (0.06, 0.05, 1.25) m of the world and looks along x.

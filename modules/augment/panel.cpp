@@ -39,7 +39,7 @@ void Panel::draw_frames(const Sight& sight, std::size_t eye, const Scene& scene,
 
 void Panel::draw_target(const Sight& sight, std::size_t eye, hc::ModuleFrames& frames,
                         cv::Mat& image) const {
-  if (!target || std::abs(sight.time - target->time) > kTargetLives) return;
+  if (!target || std::chrono::abs(sight.time - target->time) > kTargetLives) return;
   const auto coord = target->coord;
   const bool is_left = coord == Coord::kLeftImage || coord == Coord::kLeftRectified;
   const bool is_right = coord == Coord::kRightImage || coord == Coord::kRightRectified;

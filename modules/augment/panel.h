@@ -18,11 +18,11 @@ class Panel {
  public:
   /// Target of the gaze.
   struct Target {
-    std::int64_t time = 0;   ///< [ns]
+    hc::Time time;
     std::int32_t coord = 0;  ///< an image: p is x, y [px]; a frame: x, y, z [m]
     Eigen::Vector3d p = Eigen::Vector3d::Zero();
   };
-  static constexpr std::int64_t kTargetLives = 500'000'000;  ///< how long a target is shown [ns]
+  static constexpr std::chrono::milliseconds kTargetLives{500};  ///< how long a target is shown
 
   Instruments shown;
   std::map<std::int32_t, std::string> modes;  ///< names of modes

@@ -11,7 +11,7 @@ namespace {
 
 /// T_world_frame; nothing for a marker not yet seen.
 std::optional<Eigen::Isometry3d> find_frame(hc::ModuleFrames& frames, const Markers& markers,
-                                            const NamedFrame& frame, std::int64_t time) {
+                                            const NamedFrame& frame, hc::Time time) {
   if (frame.number == 0) return frames.nearest("world", std::string_view(frame.name), time);
   if (const auto* T_world_marker = markers.find(frame.number); T_world_marker != nullptr)
     return *T_world_marker;
@@ -21,7 +21,7 @@ std::optional<Eigen::Isometry3d> find_frame(hc::ModuleFrames& frames, const Mark
 
 }  // namespace
 
-void Markers::see(int number, std::int64_t time, const Eigen::Isometry3d& T_world_marker,
+void Markers::see(int number, hc::Time time, const Eigen::Isometry3d& T_world_marker,
                   double smoothing) {
   constexpr double kMoved = 0.1;  // a larger jump is not smoothed [m]
   const auto [at, is_new] = seen_.try_emplace(number, Seen{time, T_world_marker});
@@ -54,7 +54,7 @@ hc::Result<std::unique_ptr<Scene>> Scene::make(const std::string& text) {
   return scene;
 }
 
-void Scene::place(hc::ModuleFrames& frames, const Markers& markers, std::int64_t time) {
+void Scene::place(hc::ModuleFrames& frames, const Markers& markers, hc::Time time) {
   placed_.clear();
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const Object& object = objects_[i];

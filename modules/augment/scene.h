@@ -17,16 +17,15 @@
 /// marked thing is still there.
 class Markers {
  public:
-  /// @param number  of the marker's frame. @param time  [ns].
+  /// @param number  of the marker's frame.
   /// @param smoothing  time constant [s].
-  void see(int number, std::int64_t time, const Eigen::Isometry3d& T_world_marker,
-           double smoothing);
+  void see(int number, hc::Time time, const Eigen::Isometry3d& T_world_marker, double smoothing);
   /// T_world_marker; null if not yet seen.
   [[nodiscard]] const Eigen::Isometry3d* find(int number) const;
 
  private:
   struct Seen {
-    std::int64_t time = 0;
+    hc::Time time;
     Eigen::Isometry3d pose;
   };
   std::map<int, Seen> seen_;
@@ -38,9 +37,9 @@ class Scene {
   /// Errors: as hc::graphics::Renderer::make(), read_objects(), load().
   static hc::Result<std::unique_ptr<Scene>> make(const std::string& objects);
 
-  /// Places all objects for a time [ns], except those at markers not yet seen. An unknown frame
+  /// Places all objects for a time, except those at markers not yet seen. An unknown frame
   /// name ends the module.
-  void place(hc::ModuleFrames& frames, const Markers& markers, std::int64_t time);
+  void place(hc::ModuleFrames& frames, const Markers& markers, hc::Time time);
   [[nodiscard]] const std::vector<hc::graphics::Body>& bodies() const { return placed_; }
   /// Whether an eye sees any of them.
   [[nodiscard]] bool is_seen(const Sight& sight) const;

@@ -69,7 +69,7 @@ void AugmentScore::start() {
   cube_.T_world_body = Eigen::Translation3d(*parameters_.x, *parameters_.y, *parameters_.z);
 }
 
-void AugmentScore::compare(std::int64_t time, const Eyes& eyes, const hc::Message& scene,
+void AugmentScore::compare(hc::Time time, const Eyes& eyes, const hc::Message& scene,
                            std::span<const double> corners, const hc::Message& mask) {
   const double rate = turn(time, eyes[0]);
   if (rate < *parameters_.turning) return;
@@ -80,7 +80,7 @@ void AugmentScore::compare(std::int64_t time, const Eyes& eyes, const hc::Messag
   if (static_cast<std::int64_t>(samples_.right.size()) >= *parameters_.images) finish();
 }
 
-double AugmentScore::turn(std::int64_t time, const Eigen::Isometry3d& T_world_left) {
+double AugmentScore::turn(hc::Time time, const Eigen::Isometry3d& T_world_left) {
   double rate = 0;
   if (last_ && time > last_->first)
     rate = Eigen::AngleAxisd(last_->second.linear().transpose() * T_world_left.linear()).angle() /

@@ -57,10 +57,10 @@ class AugmentScore {
       hc::transform_coord(hc::Coord::kWorld, hc::Coord::kRightEye);
 
   void start();
-  void compare(std::int64_t time, const Eyes& eyes, const hc::Message& scene,
+  void compare(hc::Time time, const Eyes& eyes, const hc::Message& scene,
                std::span<const double> corners, const hc::Message& mask);
   /// Angular speed of the head since the previous pose [rad/s].
-  double turn(std::int64_t time, const Eigen::Isometry3d& T_world_left);
+  double turn(hc::Time time, const Eigen::Isometry3d& T_world_left);
   void compare_corners(const Eyes& eyes, std::span<const double> found);
   void compare_mask(const Eigen::Isometry3d& T_world_left, const cv::Mat& scene,
                     const cv::Mat& found);
@@ -88,6 +88,6 @@ class AugmentScore {
   hc::graphics::Body cube_;
   hc::graphics::PinholeCamera camera_;
   Samples samples_;
-  std::optional<std::pair<std::int64_t, Eigen::Isometry3d>> last_;  // time and T_world_left_eye
-  std::int64_t waits_ = 0;                                          // periods since an image
+  std::optional<std::pair<hc::Time, Eigen::Isometry3d>> last_;  // time and T_world_left_eye
+  std::int64_t waits_ = 0;                                      // periods since an image
 };

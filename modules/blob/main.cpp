@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
     const auto blob =
         search.look(hc::as_mat(message), {*hue, *hue_width, *saturation, *value}, *min_area);
     if (!blob) return;
-    target.send({blob->x, blob->y, blob->radius}, 0, message.header.coord);
+    target.send({blob->x, blob->y, blob->radius}, {}, message.header.coord);
     area.send({blob->area});
   });
   const int status = module.run(argc, argv);

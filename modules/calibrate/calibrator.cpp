@@ -15,7 +15,7 @@ using hc::gaze::Angles, hc::gaze::HeadCalibration;
 Calibrator::Calibrator(hc::Module& module) : module_(module) {
   module.on_start([this] { start(); });
   module.on(hc::together(left_, right_), [this](const auto& one, const auto& other) {
-    const std::int64_t time = one.header.time;
+    const hc::Time time = one.header.time;
     frames_.when_known("robot", "head", time, [this, time, one, other](const auto& T_robot_head) {
       if (!T_robot_head) return;
       look(time, hc::gaze::angles_of(Eigen::Quaterniond(T_robot_head->linear())), one, other);
@@ -41,7 +41,7 @@ void Calibrator::start() {
     finish(hc::value_or_end(HeadCalibration::of(cameras_.head)), "from " + file + ": ");
 }
 
-void Calibrator::look(std::int64_t time, const Angles& measured, const hc::Message& one,
+void Calibrator::look(hc::Time time, const Angles& measured, const hc::Message& one,
                       const hc::Message& other) {
   last_pair_ = module_.now();
   if (attempts_.are_over || computes() || !tour_->rests(time, measured)) return;
@@ -54,7 +54,7 @@ void Calibrator::look(std::int64_t time, const Angles& measured, const hc::Messa
   if (cameras_.M1(0, 0) == 0)
     cameras_ = hc::vision::ideal_pair(size, *parameters_.focal, mounted_->baseline());
   if (cameras_.size.area() == 0) cameras_.size = size;
-  attempts_.sent = 0;
+  attempts_.sent = {};
   if (tour_->is_complete()) compute();
 }
 
@@ -79,19 +79,19 @@ void Calibrator::take() {
 
 void Calibrator::steer() {
   using std::chrono_literals::operator""ms;
-  constexpr std::int64_t kSilent = 1'000'000'000;  // without a pair for longer: disconnected [ns]
-  const std::int64_t now = module_.now();
+  constexpr std::chrono::seconds kSilent{1};  // without a pair for longer: disconnected
+  const hc::Time now = module_.now();
   if (computes() && computation_.result.wait_for(0ms) == std::future_status::ready) take();
   // Bids for the head only while images of both eyes arrive with a known head pose.
   const bool sees = now - last_pair_ < kSilent;
   const bool wants = !attempts_.are_over && now >= attempts_.paused_until && (sees || computes());
   bid_.send({wants ? *parameters_.salience : 0.0}, now);
   if (!wants) {
-    attempts_.sent = 0;
+    attempts_.sent = {};
     return;
   }
   const auto& wanted = computes() ? tour_->last() : tour_->next();
-  if (attempts_.sent == 0) attempts_.sent = now;
+  if (attempts_.sent == hc::Time()) attempts_.sent = now;
   if (!computes() && hc::seconds(now - attempts_.sent) > *parameters_.timeout)
     return fail("the head did not come to rest at the commanded pose");
   command_.send({0.0, wanted.tilt, wanted.pan}, now);
@@ -114,9 +114,9 @@ void Calibrator::finish(const HeadCalibration& calibration, const std::string& h
 
 void Calibrator::fail(const std::string& why) {
   tour_->restart();
-  attempts_.sent = 0;
+  attempts_.sent = {};
   attempts_.are_over = ++attempts_.failed >= *parameters_.tries;
-  attempts_.paused_until = module_.now() + hc::duration(*parameters_.pause).count();
+  attempts_.paused_until = module_.now() + hc::duration(*parameters_.pause);
   module_.log("not calibrated: " + why + (attempts_.are_over ? "; giving up" : "; retrying"));
 }
 

@@ -59,15 +59,15 @@ class Calibrator {
     std::future<hc::Result<hc::gaze::HeadCalibration>> result;  ///< valid while it runs
   };
   struct Attempts {
-    std::int64_t sent = 0;          ///< when the current pose was first commanded; 0: not yet [ns]
-    std::int64_t paused_until = 0;  ///< [ns]
+    hc::Time sent;  ///< when the current pose was first commanded; Time{}: not yet
+    hc::Time paused_until;
     std::int64_t failed = 0;
     bool are_over = false;
   };
 
   void start();
   /// Handles a pair of images and the head's pose at its time.
-  void look(std::int64_t time, const hc::gaze::Angles& measured, const hc::Message& one,
+  void look(hc::Time time, const hc::gaze::Angles& measured, const hc::Message& one,
             const hc::Message& other);
   void compute();
   /// Takes the result of the computation.
@@ -104,5 +104,5 @@ class Calibrator {
   Computation computation_;
   std::optional<Found> found_;
   Attempts attempts_;
-  std::int64_t last_pair_ = 0;  // last images of both eyes with a known head pose [ns]
+  hc::Time last_pair_;  // last images of both eyes with a known head pose
 };

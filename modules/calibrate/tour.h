@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The poses that the head takes to be calibrated, and a view of each. Pure; times in nanoseconds.
+// The poses that the head takes to be calibrated, and a view of each. Pure.
 
+#include <chrono>
 #include <cmath>
-#include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include <hc/base/result.h>
+#include <hc/base/time.h>
 
 #include "calibrate.h"
 
@@ -31,14 +33,14 @@ class Tour {
   [[nodiscard]] bool is_complete() const { return views_.size() == poses_.size(); }
 
   /// Whether the head, measured at a time, has come to rest at the next pose.
-  bool rests(std::int64_t time, const hc::gaze::Angles& measured) {
+  bool rests(hc::Time time, const hc::gaze::Angles& measured) {
     const bool is_there = std::abs(measured.pan - next().pan) < kNear &&
                           std::abs(measured.tilt - next().tilt) < kNear;
     if (!is_there)
-      rests_from_ = 0;
-    else if (rests_from_ == 0)
+      rests_from_.reset();
+    else if (!rests_from_)
       rests_from_ = time;
-    return is_there && time >= rests_from_ + kRests;
+    return is_there && time - *rests_from_ >= kRests;
   }
   /// Takes the view of the next pose. Errors: Malformed (its images are of another size).
   hc::Status add(HeadView view) {
@@ -46,20 +48,20 @@ class Tour {
         (!views_.empty() && view.first.size() != views_[0].first.size()))
       return hc::Error{hc::Code::Malformed, "the images have different sizes"};
     views_.push_back(std::move(view));
-    rests_from_ = 0;
+    rests_from_.reset();
     return {};
   }
   /// Gives the views away, and begins again.
   std::vector<HeadView> restart() {
-    rests_from_ = 0;
+    rests_from_.reset();
     return std::exchange(views_, {});
   }
 
  private:
-  static constexpr double kNear = 0.004;               // tolerance of a pose [rad]
-  static constexpr std::int64_t kRests = 300'000'000;  // time in tolerance until at rest [ns]
+  static constexpr double kNear = 0.004;                   // tolerance of a pose [rad]
+  static constexpr std::chrono::milliseconds kRests{300};  // time in tolerance until at rest
 
   const std::vector<hc::gaze::Angles> poses_;
   std::vector<HeadView> views_;
-  std::int64_t rests_from_ = 0;  // 0: moving [ns]
+  std::optional<hc::Time> rests_from_;  // none: moving
 };

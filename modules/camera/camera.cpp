@@ -67,7 +67,7 @@ void Camera::take_live() {
   if (!*taken) return;
   const auto& [left, right] = **taken;
   // Both images of a pair get the same time, so that they match downstream.
-  const std::int64_t time = left ? left->time : right->time;
+  const hc::Time time = left ? left->time : right->time;
   if (thinning_.takes(time, *parameters_.rate))
     send_both(left ? left->image : cv::Mat(), right ? right->image : cv::Mat(), time);
 }
@@ -75,7 +75,7 @@ void Camera::take_live() {
 void Camera::take_files() {
   if (*parameters_.rate > 0) module_.keep_rate(*parameters_.rate);
   const cv::Mat left = next(*left_file_);
-  const std::int64_t time = module_.now();
+  const hc::Time time = module_.now();
   const cv::Mat right = right_file_ ? next(*right_file_) : cv::Mat();
   if (left.empty() || (right_file_ && right.empty())) return module_.stop();
   send_both(left, right, time);
@@ -88,7 +88,7 @@ cv::Mat Camera::next(ImageSequence& file) const {
   return file.next();
 }
 
-void Camera::send_both(cv::Mat left, cv::Mat right, std::int64_t time) {
+void Camera::send_both(cv::Mat left, cv::Mat right, hc::Time time) {
   using hc::Coord;
   if (*parameters_.side_by_side) {
     const int half = left.cols / 2;
@@ -101,13 +101,13 @@ void Camera::send_both(cv::Mat left, cv::Mat right, std::int64_t time) {
   ++sent_;
 }
 
-void Camera::send(Images& output, const cv::Mat& image, std::int64_t time, std::int32_t coord) {
+void Camera::send(Images& output, const cv::Mat& image, hc::Time time, std::int32_t coord) {
   if (image.empty()) return;
   const auto& given = parameters_;
   const cv::Mat fitted = hc::vision::fit(image, static_cast<int>(*given.width),
                                          static_cast<int>(*given.height), *given.smooth);
   auto draft = output.loan(fitted.rows, fitted.cols);
-  draft.header.time = *given.stamped ? time : 0;
+  draft.header.time = *given.stamped ? time : hc::Time();
   draft.header.coord = coord;
   hc::fill(draft, [&](cv::Mat& rgb) { cv::cvtColor(fitted, rgb, cv::COLOR_BGR2RGB); });
   output.send(std::move(draft));

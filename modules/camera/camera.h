@@ -74,8 +74,8 @@ class Camera {
   void take_live();
   void take_files();
   [[nodiscard]] cv::Mat next(ImageSequence& file) const;
-  void send_both(cv::Mat left, cv::Mat right, std::int64_t time);
-  void send(Images& output, const cv::Mat& image, std::int64_t time, std::int32_t coord);
+  void send_both(cv::Mat left, cv::Mat right, hc::Time time);
+  void send(Images& output, const cv::Mat& image, hc::Time time, std::int32_t coord);
 
   hc::Module& module_;
   hc::Output<hc::RgbImageKind<std::uint8_t>> left_ =

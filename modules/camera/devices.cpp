@@ -11,6 +11,8 @@
 
 namespace {
 
+using namespace std::chrono_literals;
+
 constexpr std::string_view kAravis = "aravis:";
 constexpr int kStreamTimeout = 3000;  // of an RTSP server [ms]
 
@@ -63,12 +65,12 @@ class CaptureDevice final : public Device {
 
  private:
   /// V4L2 stamps images with the monotonic clock; converted to wall time.
-  [[nodiscard]] std::int64_t time_of_image() const {
+  [[nodiscard]] hc::Time time_of_image() const {
     const hc::SystemClock clock;
     if (is_device_) {
-      const auto taken = static_cast<std::int64_t>(capture_.get(cv::CAP_PROP_POS_MSEC) * 1e6);
-      const auto age = clock.monotonic().count() - taken;
-      if (taken > 0 && age >= 0 && age < 1'000'000'000) return clock.wall() - age;
+      const auto taken = hc::duration(capture_.get(cv::CAP_PROP_POS_MSEC) / 1000);
+      const auto age = clock.monotonic() - taken;
+      if (taken > 0s && age >= 0s && age < 1s) return clock.wall() - age;
     }
     return clock.wall();
   }

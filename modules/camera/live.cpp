@@ -8,16 +8,18 @@ namespace {
 
 constexpr std::chrono::milliseconds kTimeout{100};  // of a wait, to notice `stopping_`
 constexpr std::chrono::seconds kSettled{1};         // a camera lost sooner increases the backoff
+constexpr std::chrono::hours kLongestPeriod{24};
 
 }  // namespace
 
-bool Thinning::takes(std::int64_t time, double rate) {
+bool Thinning::takes(hc::Time time, double rate) {
   if (rate <= 0) return true;
-  const double period = 1e9 / rate, now = static_cast<double>(time);
-  if (due_ <= 0 || due_ > now + 2 * period) due_ = now;  // first image, or the clock was set back
+  const auto period = std::min<hc::MonotonicTime>(hc::duration(1 / rate), kLongestPeriod);
+  // The first image, or the clock was set back.
+  if (due_ == hc::Time() || due_ - time > 2 * period) due_ = time;
   // A camera that keeps the rate itself may be a little early.
-  if (now < due_ - period / 4) return false;
-  due_ = std::max(due_, now - period) + period;
+  if (time < due_ - period / 4) return false;
+  due_ = std::max(due_, time - period) + period;
   return true;
 }
 

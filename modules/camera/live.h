@@ -31,11 +31,11 @@ struct Adjustment {
 /// Thins out images to a rate, by their times; never delays one. Pure.
 class Thinning {
  public:
-  /// Whether to take the image of this time [ns] at a rate [1/s]; 0: all.
-  bool takes(std::int64_t time, double rate);
+  /// Whether to take the image of this time at a rate [1/s]; 0: all.
+  bool takes(hc::Time time, double rate);
 
  private:
-  double due_ = 0;  // next image [ns]
+  hc::Time due_;  // next image
 };
 
 /// An open camera. For one thread.

@@ -10,6 +10,7 @@
 namespace {
 
 using std::chrono::milliseconds;
+using namespace std::chrono_literals;
 
 /// Faults that a test injects from another thread.
 struct Plug {
@@ -28,8 +29,7 @@ class FakeDevice final : public Device {
     std::this_thread::sleep_for(milliseconds(1));  // its rate
     // One clock for all; otherwise images of a reconnected camera would have no partners.
     const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    return std::optional<Frame>(
-        Frame{cv::Mat(2, 2, CV_8UC3), std::chrono::nanoseconds(now).count()});
+    return std::optional<Frame>(Frame{cv::Mat(2, 2, CV_8UC3), hc::Time(now)});
   }
   hc::Status adjust(const Adjustment& adjustment) override {
     ++plug_.adjusted;
@@ -148,7 +148,7 @@ TEST(Thinning, keeps_a_rate_and_holds_nothing_back) {
     Thinning thinning;
     int count = 0;
     for (int i = 0; i < 10 * camera; ++i)
-      count += thinning.takes(1'000'000'000'000 + std::llround(i * 1e9 / camera), rate) ? 1 : 0;
+      count += thinning.takes(hc::Time(1000s + hc::duration(i / camera)), rate) ? 1 : 0;
     return count;
   };
   EXPECT_EQ(taken(30, 0), 300);
@@ -157,9 +157,9 @@ TEST(Thinning, keeps_a_rate_and_holds_nothing_back) {
   EXPECT_EQ(taken(20, 20), 200);
   EXPECT_EQ(taken(5, 20), 50);
   Thinning thinning;
-  EXPECT_TRUE(thinning.takes(1'000'000'000'000, 10));
-  EXPECT_FALSE(thinning.takes(1'000'050'000'000, 10));
-  EXPECT_TRUE(thinning.takes(5'000'000'000, 10));  // after the clock was set back
+  EXPECT_TRUE(thinning.takes(hc::Time(1000s), 10));
+  EXPECT_FALSE(thinning.takes(hc::Time(1000s + 50ms), 10));
+  EXPECT_TRUE(thinning.takes(hc::Time(5s), 10));  // after the clock was set back
 }
 
 TEST(LiveCameras, what_differs_is_reported_once) {

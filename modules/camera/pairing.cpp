@@ -2,7 +2,7 @@
 #include "pairing.h"
 
 #include <algorithm>
-#include <cstdlib>
+#include <chrono>
 #include <utility>
 #include <vector>
 
@@ -14,9 +14,9 @@ constexpr double kTolerance = 0.55;
 
 }  // namespace
 
-std::optional<std::int64_t> Pairing::Side::period() const {
+std::optional<std::chrono::nanoseconds> Pairing::Side::period() const {
   if (periods.empty()) return {};
-  std::vector<std::int64_t> sorted(periods.begin(), periods.end());
+  std::vector sorted(periods.begin(), periods.end());
   std::sort(sorted.begin(), sorted.end());
   return sorted[sorted.size() / 2];
 }
@@ -24,7 +24,7 @@ std::optional<std::int64_t> Pairing::Side::period() const {
 void Pairing::add(std::size_t side, Frame frame) {
   Side& mine = sides_.at(side);
   if (frame.time < mine.last) mine = {};
-  if (mine.last != 0) mine.periods.push_back(frame.time - mine.last);
+  if (mine.last != hc::Time()) mine.periods.push_back(frame.time - mine.last);
   if (mine.periods.size() > kPeriods) mine.periods.pop_front();
   mine.last = frame.time;
   mine.waiting.push_back(std::move(frame));
@@ -36,11 +36,10 @@ std::optional<std::array<Frame, 2>> Pairing::take() {
   auto& right = sides_[1].waiting;
   while (!left.empty() && !right.empty()) {
     Side& behind = left.front().time <= right.front().time ? sides_[0] : sides_[1];
-    const auto difference = std::abs(left.front().time - right.front().time);
+    const auto difference = std::chrono::abs(left.front().time - right.front().time);
     const auto period = behind.period();
-    const bool is_nearest =
-        period && static_cast<double>(difference) <= kTolerance * static_cast<double>(*period);
-    if (difference == 0 || is_nearest) {
+    const bool is_nearest = period && hc::seconds(difference) <= kTolerance * hc::seconds(*period);
+    if (difference.count() == 0 || is_nearest) {
       std::array<Frame, 2> pair{std::move(left.front()), std::move(right.front())};
       left.pop_front();
       right.pop_front();

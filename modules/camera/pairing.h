@@ -3,16 +3,17 @@
 // Pairs the images of two free-running cameras by time. Pure.
 
 #include <array>
-#include <cstdint>
+#include <chrono>
 #include <deque>
 #include <optional>
 
+#include <hc/base/time.h>
 #include <opencv2/core.hpp>
 
-/// An image, (H, W, 3) u8 blue, green, red, and its time [ns since the Unix epoch].
+/// An image, (H, W, 3) u8 blue, green, red, and its time.
 struct Frame {
   cv::Mat image;
-  std::int64_t time = 0;
+  hc::Time time;
 };
 
 /// Returns a pair as soon as no later image can be closer: when the times differ by at most half a
@@ -30,9 +31,9 @@ class Pairing {
   static constexpr std::size_t kMostWaiting = 8;
   struct Side {
     std::deque<Frame> waiting;
-    std::deque<std::int64_t> periods;  // the last few [ns]
-    std::int64_t last = 0;
-    [[nodiscard]] std::optional<std::int64_t> period() const;
+    std::deque<std::chrono::nanoseconds> periods;  // the last few
+    hc::Time last;
+    [[nodiscard]] std::optional<std::chrono::nanoseconds> period() const;
   };
   std::array<Side, 2> sides_;
 };

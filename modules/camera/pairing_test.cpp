@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pairing.h"
 
+#include <chrono>
 #include <utility>
 #include <vector>
 
@@ -8,7 +9,12 @@
 
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+hc::Time time_of(std::int64_t milliseconds) {
+  return hc::Time(std::chrono::milliseconds(milliseconds));
+}
+std::int64_t milliseconds_of(hc::Time time) {
+  return time.time_since_epoch() / std::chrono::milliseconds(1);
+}
 
 /// The times [ms] of all pairs from images that arrive in order of time.
 std::vector<std::pair<std::int64_t, std::int64_t>> pairs_of(std::vector<std::int64_t> left,
@@ -17,11 +23,11 @@ std::vector<std::pair<std::int64_t, std::int64_t>> pairs_of(std::vector<std::int
   std::vector<std::pair<std::int64_t, std::int64_t>> pairs;
   for (std::size_t l = 0, r = 0; l < left.size() || r < right.size();) {
     if (r == right.size() || (l < left.size() && left[l] <= right[r]))
-      pairing.add(0, {{}, left[l++] * kMs});
+      pairing.add(0, {{}, time_of(left[l++])});
     else
-      pairing.add(1, {{}, right[r++] * kMs});
+      pairing.add(1, {{}, time_of(right[r++])});
     while (auto pair = pairing.take())
-      pairs.emplace_back((*pair)[0].time / kMs, (*pair)[1].time / kMs);
+      pairs.emplace_back(milliseconds_of((*pair)[0].time), milliseconds_of((*pair)[1].time));
   }
   return pairs;
 }
@@ -58,12 +64,12 @@ TEST(Pairing, an_image_that_is_missing_costs_one_pair) {
 TEST(Pairing, a_clock_that_goes_back_starts_over) {
   EXPECT_EQ(pairs_of({}, {}), Matched{});
   Pairing pairing;
-  pairing.add(0, {{}, 100 * kMs});
-  pairing.add(0, {{}, 10 * kMs});
-  pairing.add(1, {{}, 10 * kMs});
+  pairing.add(0, {{}, time_of(100)});
+  pairing.add(0, {{}, time_of(10)});
+  pairing.add(1, {{}, time_of(10)});
   const auto pair = pairing.take();
   ASSERT_TRUE(pair);
-  EXPECT_EQ((*pair)[0].time, 10 * kMs);
+  EXPECT_EQ((*pair)[0].time, time_of(10));
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
   });
   module.every(rate, [&] {
     const auto now = module.monotonic();
-    const std::int64_t time = module.now();
+    const hc::Time time = module.now();
     if (!start) start = now;
     const auto angles = angles_at({*amplitude, *speed}, hc::seconds(now - *start));
     const double pitch = side * angles.pitch, yaw = side * angles.yaw;

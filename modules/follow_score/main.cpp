@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
   std::int64_t waits[2] = {};  // periods since a setpoint, a motion
   auto take = [](auto& samples, auto& wait, const auto& message) {
     wait = 0;
-    const double time = hc::seconds(message.header.time);
+    const double time = hc::seconds(message.header.time.time_since_epoch());
     const auto q = hc::value_or_drop(hc::rotation_of(message));
     if (samples.empty() || time > samples.back().time)
       samples.push_back({time, hc::gaze::angles_of(q)});

@@ -17,7 +17,6 @@ namespace {
 
 constexpr const char* kProtocols[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"};  // best first
 constexpr std::int32_t kFailed = 2;  // status level of an error
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 using web::refusal;
 
@@ -245,7 +244,7 @@ void Bridge::set_parameters(const std::shared_ptr<Viewer>& viewer, const Json& r
 }
 
 void Bridge::take_log(const hc::LogLine& line) {
-  const std::int64_t time = clock_.wall();
+  const hc::Time time = clock_.wall();
   publish(catalog_.log().id, {time, bytes_of(encoder_.encode_log(time, line))});
 }
 
@@ -304,8 +303,8 @@ void Bridge::remove(const Viewer* viewer) {
 
 void Bridge::tick() {
   std::erase_if(viewers_, [](const auto& viewer) { return viewer->is_lost(); });
-  const std::int64_t now = clock_.wall();
-  const bool reports = now >= reported_ + kSecond || now < reported_;
+  const hc::Time now = clock_.wall();
+  const bool reports = now >= reported_ + std::chrono::seconds(1) || now < reported_;
   if (reports) reported_ = now;
   for (const auto& viewer : viewers_) viewer->say_time(now);
   std::erase_if(publishers_, [&](const auto& each) { return !is_subscribed(each.first); });

@@ -66,6 +66,6 @@ class Bridge final : public hc::web::Site {
   std::map<std::string, hc::ros::Joint> joints_;  // by child
   std::list<std::shared_ptr<Viewer>> viewers_;
   std::map<std::uint32_t, std::unique_ptr<Publisher>> publishers_;  // by channel
-  std::int64_t reported_ = 0;                                       // last report of drops [ns]
+  hc::Time reported_;                                               // last report of drops
   hc::GraphClient graph_;
 };

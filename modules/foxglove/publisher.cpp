@@ -47,8 +47,8 @@ void Publisher::take(const hc::Message& message) {
       call([why = failed_](const Callbacks& to) { to.end(why); });
     return;
   }
-  const std::int64_t time =
-      message.header.time != 0 ? message.header.time : hc::SystemClock().wall();
+  const hc::Time time =
+      message.header.time != hc::Time() ? message.header.time : hc::SystemClock().wall();
   auto bytes = bytes_of(*pieces);
   shared_->waiting += bytes->size();
   call([payload = Payload{time, std::move(bytes)},

@@ -25,7 +25,7 @@ struct Channel {
 
 /// A message in CDR.
 struct Payload {
-  std::int64_t time = 0;  ///< of the message [ns since the Unix epoch]
+  hc::Time time;  ///< of the message
   hc::web::Bytes bytes;
 };
 

@@ -41,9 +41,9 @@ void Viewer::say(std::string json) {
   socket_->close(1008, "too slow: 512 messages are unread");
 }
 
-void Viewer::say_time(std::int64_t time) {
+void Viewer::say_time(hc::Time time) {
   if (socket_->waiting() < kMaxUnderWay)
-    socket_->send(std::make_shared<const std::string>(), binary(kTime, time));
+    socket_->send(std::make_shared<const std::string>(), binary(kTime, hc::unix_nanoseconds(time)));
 }
 
 void Viewer::say_status(int level, const std::string& words, const std::string& id) {
@@ -105,7 +105,8 @@ void Viewer::flush() {
     auto [channel, payload] = std::move(queue_.front());
     queue_.pop_front();
     queued_ -= payload.bytes->size();
-    socket_->send(payload.bytes, binary(kMessageData, subscriptions_.at(channel).id, payload.time));
+    socket_->send(payload.bytes, binary(kMessageData, subscriptions_.at(channel).id,
+                                        hc::unix_nanoseconds(payload.time)));
   }
 }
 

@@ -27,8 +27,8 @@ class Viewer {
   /// Sends JSON. A viewer that does not read is disconnected; is_lost() is then true.
   void say(std::string json);
   [[nodiscard]] bool is_lost() const { return is_lost_; }
-  /// Sends the server's time [ns since the Unix epoch].
-  void say_time(std::int64_t time);
+  /// Sends the server's time.
+  void say_time(hc::Time time);
   /// Sends a warning (level 1) or error (2) for the viewer's list of problems; replaces an earlier
   /// one with the same id.
   void say_status(int level, const std::string& words, const std::string& id = {});

@@ -33,14 +33,14 @@ struct ViewerTest : ::testing::Test {
   Viewer viewer{socket, hc::web::Right::View};
   Channel channel{7, "/eyes/left", "eyes.left", hc::ros::Type::Image};
 
-  static Payload payload(const std::string& bytes, std::int64_t time = 1) {
+  static Payload payload(const std::string& bytes, hc::Time time = hc::unix_time(1)) {
     return {time, std::make_shared<const std::string>(bytes)};
   }
 };
 
 TEST_F(ViewerTest, a_message_has_its_subscription_and_time) {
   ASSERT_TRUE(viewer.subscribe(3, channel));
-  viewer.offer(7, payload("abc", 0x0102030405060708));
+  viewer.offer(7, payload("abc", hc::unix_time(0x0102030405060708)));
   ASSERT_EQ(socket->sent.size(), 1u);
   EXPECT_EQ(socket->sent[0],
             std::string("\x01\x03\0\0\0\x08\x07\x06\x05\x04\x03\x02\x01", 13) + "abc");

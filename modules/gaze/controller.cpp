@@ -8,31 +8,31 @@ Angles Controller::command(const hc::gaze::Motion& motion) const {
                                     motion.angles.tilt + parameters_.lead(motion.tilt_rate)});
 }
 
-std::optional<Angles> Controller::follow(std::int64_t now, const Angles& measured) const {
+std::optional<Angles> Controller::follow(hc::Time now, const Angles& measured) const {
   const auto& follower = targets.follower();
   if (!is_fresh(follower.last(), now))
     return *parameters_.idle_salience > 0 ? std::optional(parameters_.within_limits({0, 0}))
                                           : std::nullopt;
-  const auto motion = *follower.at(hc::seconds(now) + *parameters_.predict);
+  const auto motion = *follower.at(hc::seconds(now.time_since_epoch()) + *parameters_.predict);
   if (hc::gaze::between(motion.angles, measured) < *parameters_.dead_zone) return std::nullopt;
   return command(motion);
 }
 
-void Controller::push(std::int64_t now, double left, double down, const Angles& measured) {
+void Controller::push(hc::Time now, double left, double down, const Angles& measured) {
   const double full = *parameters_.stick_rate;
   stick_.push({std::clamp(left, -1.0, 1.0) * full, std::clamp(down, -1.0, 1.0) * full},
-              hc::seconds(now), measured);
+              hc::seconds(now.time_since_epoch()), measured);
 }
 
-std::optional<Angles> Controller::steer(std::int64_t now, const Angles& measured) {
+std::optional<Angles> Controller::steer(hc::Time now, const Angles& measured) {
   constexpr double kLead = 0.02;  // to start at once, and to bridge a late push [s]
-  auto motion = stick_.at(hc::seconds(now), measured);
+  auto motion = stick_.at(hc::seconds(now.time_since_epoch()), measured);
   if (!motion) return std::nullopt;
   motion->angles.pan += motion->pan_rate * kLead;
   motion->angles.tilt += motion->tilt_rate * kLead;
   return command(*motion);
 }
 
-bool Controller::wants_head(std::int64_t now) const {
+bool Controller::wants_head(hc::Time now) const {
   return is_fresh(targets.follower().last(), now) || is_fresh(stick_.last(), now);
 }

@@ -115,8 +115,8 @@ hc::gaze::Angles Gaze::measured() {
       Eigen::Quaterniond(frames_.nearest(kRobot, kHead, module_.now()).linear()));
 }
 
-std::int64_t Gaze::time_of(const hc::Header& header, double oldest) const {
-  if (header.time <= 0) return module_.now();
+hc::Time Gaze::time_of(const hc::Header& header, double oldest) const {
+  if (header.time <= hc::Time()) return module_.now();
   const double age = hc::seconds(module_.now() - header.time);
   if (age <= oldest && age >= -kAhead) return header.time;
   throw hc::BadMessage(

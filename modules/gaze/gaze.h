@@ -38,7 +38,7 @@ class Gaze {
 
   [[nodiscard]] hc::gaze::Angles measured();
   /// Time of a message. Drops old ones, and ones from the future, which would block all until then.
-  std::int64_t time_of(const hc::Header& header, double oldest) const;
+  hc::Time time_of(const hc::Header& header, double oldest) const;
   /// Drops a message whose frame has no transform to the robot's.
   void check_frame(std::int32_t frame, const std::string& others);
   /// Whether a source is in control, of several that send to one input.

@@ -19,7 +19,7 @@ std::int32_t Targets::frame_of(std::int32_t coord) {
   return is_seen_by_eye ? kHead : coord;
 }
 
-void Targets::see(std::int64_t time, std::int32_t coord, const Eigen::Vector3d& p,
+void Targets::see(hc::Time time, std::int32_t coord, const Eigen::Vector3d& p,
                   const Eigen::Isometry3d& T_robot_frame) {
   std::optional<Eigen::Vector3d> in_frame = p;
   if (frame_of(coord) != coord) {
@@ -31,10 +31,11 @@ void Targets::see(std::int64_t time, std::int32_t coord, const Eigen::Vector3d& 
       in_frame = eyes_.T_head_eye(side) * p;
   }
   if (!in_frame) return;
-  follower_.see(hc::seconds(time), hc::gaze::aim(T_robot_frame * *in_frame, eyes_.cyclopean()));
+  follower_.see(hc::seconds(time.time_since_epoch()),
+                hc::gaze::aim(T_robot_frame * *in_frame, eyes_.cyclopean()));
 }
 
-std::optional<Eigen::Vector3d> Targets::place(std::int64_t time, Side side, Eigen::Vector2d pixel) {
+std::optional<Eigen::Vector3d> Targets::place(hc::Time time, Side side, Eigen::Vector2d pixel) {
   if (cameras_) {
     const auto eye = side == Side::Left ? hc::vision::Eye::Left : hc::vision::Eye::Right;
     const auto ray = hc::vision::ray_of(*cameras_, eye, {pixel.x(), pixel.y()});

@@ -15,7 +15,7 @@
 inline constexpr std::int32_t kRobot = 2, kHead = 3, kLeftEye = 4, kRightEye = 5, kLeftImage = 7,
                               kRightImage = 8;
 
-/// Times are in nanoseconds of any one clock.
+/// Times are of any one clock.
 class Targets {
  public:
   /// @param distance  assumed of a target seen by one eye only [m].
@@ -31,11 +31,11 @@ class Targets {
   [[nodiscard]] static std::int32_t frame_of(std::int32_t coord);
   /// Takes a target: x, y in an image [px], or a position in a frame [m].
   /// @param T_robot_frame  of frame_of(coord) at that time.
-  void see(std::int64_t time, std::int32_t coord, const Eigen::Vector3d& p,
+  void see(hc::Time time, std::int32_t coord, const Eigen::Vector3d& p,
            const Eigen::Isometry3d& T_robot_frame);
   /// Takes a setpoint instead of a target.
-  void set(std::int64_t time, const hc::gaze::Angles& setpoint) {
-    follower_.see(hc::seconds(time), setpoint);
+  void set(hc::Time time, const hc::gaze::Angles& setpoint) {
+    follower_.see(hc::seconds(time.time_since_epoch()), setpoint);
   }
 
   /// The filtered target; times in seconds.
@@ -43,8 +43,7 @@ class Targets {
 
  private:
   /// Position in the head's frame [m].
-  std::optional<Eigen::Vector3d> place(std::int64_t time, hc::gaze::Side side,
-                                       Eigen::Vector2d pixel);
+  std::optional<Eigen::Vector3d> place(hc::Time time, hc::gaze::Side side, Eigen::Vector2d pixel);
 
   hc::gaze::Eyes eyes_;
   double distance_;

@@ -7,7 +7,7 @@
 
 namespace {
 
-constexpr std::int64_t kNow = 1'700'000'000'000'000'000, kMillisecond = 1'000'000;
+constexpr hc::Time kNow{std::chrono::seconds(1'700'000'000)};
 
 Targets targets() {
   return {hc::gaze::mounted_eyes(), {}, 2.5};
@@ -55,7 +55,7 @@ TEST(Targets, are_seen_by_eyes_that_are_swapped) {
     auto eyes = targets();
     eyes.calibrate(hc::gaze::HeadCalibration{swapped, {}, Eigen::Vector3d::Zero(), 0});
     for (int i = 0; i < 40; ++i) {
-      const std::int64_t time = kNow + i * 50 * kMillisecond;
+      const hc::Time time = kNow + i * std::chrono::milliseconds(50);
       eyes.see(time, swapped ? kRightImage : kLeftImage, {399.5 + side, 299.5, 0}, pan(0));
       eyes.see(time, swapped ? kLeftImage : kRightImage, {399.5 - side, 299.5, 0}, pan(0));
     }

@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
     const auto heard = hc::audio::hear(message.numbers(), *rate, *base);
     level.send({heard.level});
     if (heard.pan && heard.level >= *min_level)
-      direction.send({0.0, 0.0, *heard.pan}, 0, hc::Coord::kHead);
+      direction.send({0.0, 0.0, *heard.pan}, hc::Time(), hc::Coord::kHead);
   });
   return module.run(argc, argv);
 }

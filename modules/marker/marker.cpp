@@ -106,7 +106,7 @@ std::optional<MarkerSearch::Found> MarkerSearch::place(const Marker& marker,
 
 void MarkerSearch::send_poses(const std::vector<Found>& all, std::int32_t eye) {
   for (const auto& found : all)
-    poses_.send(hc::numbers_of(found.T_eye_marker()), 0, 1000 * eye + found.frame);
+    poses_.send(hc::numbers_of(found.T_eye_marker()), {}, 1000 * eye + found.frame);
 }
 
 void MarkerSearch::send_table(const std::vector<Found>& all, std::int32_t eye) {

@@ -9,7 +9,7 @@ using hc::audio::Converter;
 using hc::audio::WavReader;
 
 Result<FileEar> FileEar::open(const std::string& path, const hc::audio::Format& format,
-                              std::int64_t start) {
+                              hc::Time start) {
   auto reader = HC_TRY(WavReader::open(path));
   auto converter = HC_TRY(Converter::make(Converter::Scalar::I16, reader.format(), format));
   return FileEar(std::move(reader), std::move(converter), format, start);

@@ -27,16 +27,16 @@ using Piece = hc::MessageOf<hc::SoundKind<std::int16_t>>;
 /// Reads a WAV file and converts it to a format. The last piece may be shorter.
 class FileEar {
  public:
-  /// @param start  time of its first frame [ns]. Errors: as WavReader::open and Converter::make.
+  /// @param start  time of its first frame. Errors: as WavReader::open and Converter::make.
   static hc::Result<FileEar> open(const std::string& path, const hc::audio::Format& format,
-                                  std::int64_t start = 0);
+                                  hc::Time start = {});
 
   /// The next piece; nothing at the end. Errors: System.
   hc::Result<std::optional<Piece>> next();
 
  private:
   FileEar(hc::audio::WavReader reader, hc::audio::Converter converter,
-          const hc::audio::Format& format, std::int64_t start)
+          const hc::audio::Format& format, hc::Time start)
       : reader_(std::move(reader)),
         converter_(std::move(converter)),
         format_(format),
@@ -45,7 +45,8 @@ class FileEar {
   hc::audio::WavReader reader_;
   hc::audio::Converter converter_;
   hc::audio::Format format_;
-  std::int64_t start_, sent_ = 0;  // [ns]; frames
+  hc::Time start_;
+  std::int64_t sent_ = 0;  // frames
   std::vector<std::int16_t> ready_;
   bool is_finished_ = false;
 };

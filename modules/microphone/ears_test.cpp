@@ -36,7 +36,7 @@ TEST_F(Ears, a_file_comes_whole_in_pieces) {
     auto piece = ear->next();
     ASSERT_TRUE(piece && *piece);
     EXPECT_EQ((*piece)->header.width, frames);
-    EXPECT_EQ((*piece)->header.time, static_cast<std::int64_t>(all.size()) * 62'500);
+    EXPECT_EQ((*piece)->header.time, hc::unix_time(std::ssize(all) * 62'500));
     const auto samples = (*piece)->numbers();
     all.insert(all.end(), samples.begin(), samples.end());
   }
@@ -84,7 +84,7 @@ TEST_F(Ears, a_missing_microphone_is_logged_once_and_found_later) {
     ASSERT_LE(log.size(), 2);
   }
   EXPECT_EQ(piece->header.width, 320);
-  EXPECT_GT(piece->header.time, 0);
+  EXPECT_GT(piece->header.time, hc::Time());
   ASSERT_EQ(log.size(), 2);
   EXPECT_EQ(log[1], "microphone connected");
 }

@@ -28,7 +28,7 @@ void PanTilt::turn(const hc::MessageOf<hc::RotationKind<double>>& message) {
 }
 
 void PanTilt::send(const hc::pan_tilt::Gaze& seen) {
-  const std::int64_t time = module_.now() - (now() - seen.time).count();
+  const hc::Time time = module_.now() - (now() - seen.time);
   gaze_.send({0.0, seen.tilt, seen.pan}, time);
   const Eigen::Isometry3d T_robot_head(hc::frames::rotation(0, seen.tilt, seen.pan));
   if (pose_.linked()) pose_.send(hc::numbers_of(T_robot_head), time);

@@ -39,13 +39,13 @@ int main(int argc, char** argv) {
   });
   module.on(motion, [&](const auto& message) {
     const auto q = hc::value_or_drop(hc::rotation_of(message));
-    pusher->take(hc::seconds(message.header.time), hc::gaze::angles_of(q));
+    pusher->take(hc::seconds(message.header.time.time_since_epoch()), hc::gaze::angles_of(q));
   });
   module.on(report, [&](const auto&) { is_ready = true; });
   module.every(std::chrono::milliseconds(1), [&] {
     if (!is_ready) return;
-    const std::int64_t now = module.now();
-    if (const auto pushed = pusher->look(hc::seconds(now), *rate))
+    const hc::Time now = module.now();
+    if (const auto pushed = pusher->look(hc::seconds(now.time_since_epoch()), *rate))
       stick.send({pushed->left, pushed->down}, now);
     if (!pusher->is_done()) return;
     const auto score = pusher->score();

@@ -21,8 +21,8 @@ bool are_near(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-bool Announcer::take(const std::string& text, double confidence, std::int64_t time,
-                     const Rules& rules, bool is_heard) {
+bool Announcer::take(const std::string& text, double confidence, hc::Time time, const Rules& rules,
+                     bool is_heard) {
   const bool is_sure = !text.empty() && confidence >= rules.confidence;
   readings_.push_back(is_sure ? text : "");
   constexpr std::int64_t kDoubt = 3;

@@ -6,6 +6,8 @@
 #include <deque>
 #include <string>
 
+#include <hc/base/time.h>
+
 class Announcer {
  public:
   struct Rules {
@@ -18,11 +20,11 @@ class Announcer {
 
   /// Takes a reading.
   ///
-  /// @param time  when the image was taken [ns].
+  /// @param time  when the image was taken.
   /// @param is_heard  whether an announcement has an effect now: this mode has the focus.
   /// @returns  whether to announce the text now: it is certain, and it is new, or the last
   ///     announcement was `again` ago or not heard.
-  bool take(const std::string& text, double confidence, std::int64_t time, const Rules& rules,
+  bool take(const std::string& text, double confidence, hc::Time time, const Rules& rules,
             bool is_heard = true);
 
   /// "read 3 texts, the last "STOP""; empty if none was announced.
@@ -31,7 +33,7 @@ class Announcer {
  private:
   std::deque<std::string> readings_;  // recent; "" if not confident
   std::string said_;                  // last announced text
-  std::int64_t said_at_ = 0;
+  hc::Time said_at_;
   bool was_heard_ = false;
   int texts_ = 0;  // announced
 };

@@ -6,6 +6,8 @@
 
 namespace {
 
+using namespace std::chrono_literals;
+
 // Heights of capital letters to read a line at [px]: the network's errors differ between them.
 constexpr int kHeights[] = {36, 30, 42};
 
@@ -37,15 +39,15 @@ hc::Result<BlockReader> BlockReader::make(const std::string& language, bool uppe
   return BlockReader(std::move(recogniser), upper_case);
 }
 
-bool BlockReader::is_due(std::int64_t time, double rate) const {
+bool BlockReader::is_due(hc::Time time, double rate) const {
   if (rate <= 0 || !read_at_) return true;
   const auto since = time - *read_at_;
   // Tolerates 0.5 ms of jitter in the times of images.
-  return since < 0 || static_cast<double>(since) + 5e5 >= 1e9 / rate;
+  return since < 0s || since >= hc::duration(1 / rate) - 500us;
 }
 
 std::optional<hc::vision::Reading> BlockReader::read_when_due(const cv::Mat& image,
-                                                              const Block& block, std::int64_t time,
+                                                              const Block& block, hc::Time time,
                                                               double rate) {
   if (!hc::vision::is_whole(block) || !is_due(time, rate)) return std::nullopt;
   read_at_ = time;

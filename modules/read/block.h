@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include <hc/base/time.h>
 #include <vision/letters.h>
 #include <opencv2/core.hpp>
 
@@ -24,16 +25,16 @@ class BlockReader {
 
   /// Reads if the block is whole and the last reading is 1 / rate ago, by the times of the images,
   /// so that a recording gives the same result.
-  /// @param time  of the image [ns].
+  /// @param time  of the image.
   /// @param rate  maximum number of readings a second, 0: all [Hz].
   std::optional<hc::vision::Reading> read_when_due(const cv::Mat& image, const Block& block,
-                                                   std::int64_t time, double rate);
+                                                   hc::Time time, double rate);
 
  private:
   BlockReader(Recogniser recogniser, bool upper_case);
-  [[nodiscard]] bool is_due(std::int64_t time, double rate) const;
+  [[nodiscard]] bool is_due(hc::Time time, double rate) const;
 
   Recogniser recogniser_;
   bool upper_case_;
-  std::optional<std::int64_t> read_at_;  // time of the last image read [ns]
+  std::optional<hc::Time> read_at_;  // time of the last image read
 };

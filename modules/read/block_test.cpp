@@ -176,22 +176,22 @@ TEST(Block, codes_are_read_letter_by_letter) {
 }
 
 TEST(Block, is_read_when_it_is_whole_and_due_by_the_times_of_images) {
-  constexpr std::int64_t kMillisecond = 1'000'000;
+  using namespace std::chrono_literals;
   constexpr double kRate = 4;
   auto reader = BlockReader::make("eng", true);
   ASSERT_TRUE(reader) << reader.error().text();
   const auto image = draw_strokes("LAV56X", 2);
   auto block = hc::vision::block_of_best(hc::vision::find_text_lines(image));
   ASSERT_FALSE(block.empty());
-  const auto is_read = [&](std::int64_t time, double rate) {
-    return reader->read_when_due(image, block, time * kMillisecond, rate).has_value();
+  const auto is_read = [&](int time, double rate) {
+    return reader->read_when_due(image, block, hc::Time(time * 1ms), rate).has_value();
   };
   block.front().is_whole = false;
   EXPECT_FALSE(is_read(1000, kRate));
   block.front().is_whole = true;
   EXPECT_TRUE(is_read(1010, kRate)) << "what was not whole was not read";
   EXPECT_FALSE(is_read(1259, kRate));
-  EXPECT_TRUE(reader->read_when_due(image, block, 1260 * kMillisecond - 500'000, kRate))
+  EXPECT_TRUE(reader->read_when_due(image, block, hc::Time(1260ms - 500us), kRate))
       << "times differ by half a millisecond";
   EXPECT_TRUE(is_read(1270, 0)) << "all";
   EXPECT_FALSE(is_read(1280, kRate));

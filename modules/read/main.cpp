@@ -46,9 +46,9 @@ int main(int argc, char** argv) {
     const auto block = hc::vision::block_of_best(hc::vision::find_text_lines(pixels, *score));
     if (block.empty()) return;
     const auto box = hc::vision::box_of(block);
-    target.send({box.x + box.width / 2, box.y + box.height / 2, box.width}, 0,
+    target.send({box.x + box.width / 2, box.y + box.height / 2, box.width}, {},
                 message.header.coord);
-    const std::int64_t time = message.header.time != 0 ? message.header.time : module.now();
+    const hc::Time time = message.header.time != hc::Time() ? message.header.time : module.now();
     const auto reading = reader->read_when_due(pixels, block, time, *rate);
     if (!reading) return;
     confidence.send({reading->confidence});

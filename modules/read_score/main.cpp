@@ -28,8 +28,7 @@ int main(int argc, char** argv) {
 
   std::optional<Dictation> dictation;
   module.on_start([&] {
-    dictation.emplace(static_cast<std::uint64_t>(*seed),
-                      module.now() + hc::duration(*time_out).count());
+    dictation.emplace(static_cast<std::uint64_t>(*seed), module.now() + hc::duration(*time_out));
   });
   module.on(text, [&](const auto& message) {
     dictation->take_text(std::string(message.text()), message.header.time, module.now());
@@ -39,7 +38,7 @@ int main(int argc, char** argv) {
     dictation->take_sound(message.header.time, module.now(), message.header.width / rate);
   });
   module.every(std::chrono::milliseconds(10), [&] {
-    const std::int64_t now = module.now();
+    const hc::Time now = module.now();
     const auto ended = dictation->finish(now, *time_out, *pause);
     if (ended && ended->read != ended->truth)
       module.log("\"" + ended->truth + "\" was read as \"" + ended->read + "\"");

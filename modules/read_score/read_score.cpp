@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLeast = 5, kMost = 16;         // letters of a text
 constexpr std::size_t kLeastWord = 3, kMostWord = 8;  // of a word
-constexpr std::int64_t kSettle = 1'000'000'000;  // from the first reading to the first text [ns]
+constexpr std::chrono::seconds kSettle{1};            // from the first reading to the first text
 constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
 
 /// Returns 0 for no values.
@@ -79,11 +79,11 @@ ReadingScore score_of(const std::vector<ReadText>& texts) {
   return score;
 }
 
-void Attempt::take_text(const std::string& text, std::int64_t image) {
+void Attempt::take_text(const std::string& text, hc::Time image) {
   if (image >= written_at_ && !read_) read_ = text;
 }
 
-void Attempt::take_sound(std::int64_t image, std::int64_t now) {
+void Attempt::take_sound(hc::Time image, hc::Time now) {
   if (image < written_at_ || spoken_at_) return;
   spoken_at_ = now;
   image_ = image;
@@ -112,28 +112,28 @@ std::string ReadingScore::text() const {
   return line;
 }
 
-void Dictation::take_text(const std::string& text, std::int64_t image, std::int64_t now) {
+void Dictation::take_text(const std::string& text, hc::Time image, hc::Time now) {
   // Let the head turn to the text it has read.
   if (!std::exchange(has_begun_, true)) next_at_ = now + kSettle;
   if (attempt_) attempt_->take_text(text, image);
 }
 
-void Dictation::take_sound(std::int64_t image, std::int64_t now, double duration) {
-  heard_until_ = now + hc::duration(duration).count();
+void Dictation::take_sound(hc::Time image, hc::Time now, double duration) {
+  heard_until_ = now + hc::duration(duration);
   if (attempt_) attempt_->take_sound(image, now);
 }
 
-std::optional<ReadText> Dictation::finish(std::int64_t now, double time_out, double pause) {
+std::optional<ReadText> Dictation::finish(hc::Time now, double time_out, double pause) {
   if (!attempt_) return std::nullopt;
-  const bool is_late = now - attempt_->written_at() >= hc::duration(time_out).count();
+  const bool is_late = now - attempt_->written_at() >= hc::duration(time_out);
   if (!attempt_->is_done() && !is_late) return std::nullopt;
   texts_.push_back(attempt_->result());
   attempt_.reset();
-  next_at_ = std::max(now, heard_until_) + hc::duration(pause).count();
+  next_at_ = std::max(now, heard_until_) + hc::duration(pause);
   return texts_.back();
 }
 
-std::optional<std::string> Dictation::write(std::int64_t now) {
+std::optional<std::string> Dictation::write(hc::Time now) {
   if (attempt_ || now < std::max(next_at_, heard_until_)) return std::nullopt;
   has_begun_ = true;
   attempt_.emplace(random_text(random_), now);

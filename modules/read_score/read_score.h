@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Scores how well a robot reads aloud: texts to read, and their results. Pure: times come from the
-// caller, in nanoseconds since the Unix epoch.
+// caller.
 
 #include <array>
 #include <cstdint>
@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <hc/base/time.h>
 
 /// Capital letters and digits, 5 to 16 of them with the space: a word of 5 to 8, or two of 3 to 8.
 std::string random_text(std::mt19937_64& random);
@@ -42,44 +44,44 @@ ReadingScore score_of(const std::vector<ReadText>& texts);
 /// of earlier images do not.
 class Attempt {
  public:
-  Attempt(std::string truth, std::int64_t written_at)
+  Attempt(std::string truth, hc::Time written_at)
       : truth_(std::move(truth)), written_at_(written_at) {}
 
-  /// @param image  time of the image read [ns].
-  void take_text(const std::string& text, std::int64_t image);
-  /// @param image  time of the image whose text is spoken [ns].
-  void take_sound(std::int64_t image, std::int64_t now);
+  /// @param image  time of the image read.
+  void take_text(const std::string& text, hc::Time image);
+  /// @param image  time of the image whose text is spoken.
+  void take_sound(hc::Time image, hc::Time now);
 
   [[nodiscard]] bool is_done() const { return read_.has_value() && spoken_at_.has_value(); }
   [[nodiscard]] const std::string& truth() const { return truth_; }
-  [[nodiscard]] std::int64_t written_at() const { return written_at_; }
+  [[nodiscard]] hc::Time written_at() const { return written_at_; }
   [[nodiscard]] ReadText result() const;
 
  private:
   std::string truth_;
-  std::int64_t written_at_;
+  hc::Time written_at_;
   std::optional<std::string> read_;
-  std::optional<std::int64_t> spoken_at_;
-  std::int64_t image_ = 0;  // of the spoken text
+  std::optional<hc::Time> spoken_at_;
+  hc::Time image_;  // of the spoken text
 };
 
 /// Writes texts one after another, each until read and spoken. Call finish(), then write(), often.
 class Dictation {
  public:
-  /// @param latest  when to write the first text, unless one is read before [ns].
-  Dictation(std::uint64_t seed, std::int64_t latest) : random_(seed), next_at_(latest) {}
+  /// @param latest  when to write the first text, unless one is read before.
+  Dictation(std::uint64_t seed, hc::Time latest) : random_(seed), next_at_(latest) {}
 
   /// As Attempt's. The first text read shows that everything runs; the dictation starts 1 s later.
-  void take_text(const std::string& text, std::int64_t image, std::int64_t now);
+  void take_text(const std::string& text, hc::Time image, hc::Time now);
   /// @param duration  of the sound [s].
-  void take_sound(std::int64_t image, std::int64_t now, double duration);
+  void take_sound(hc::Time image, hc::Time now, double duration);
 
   /// The result of the text, once it is read and spoken or has timed out.
   /// @param time_out  of a text [s].
   /// @param pause  from the end of the speech to the next text [s].
-  std::optional<ReadText> finish(std::int64_t now, double time_out, double pause);
+  std::optional<ReadText> finish(hc::Time now, double time_out, double pause);
   /// The next text, when it is due.
-  std::optional<std::string> write(std::int64_t now);
+  std::optional<std::string> write(hc::Time now);
 
   /// Whether this many texts are finished.
   [[nodiscard]] bool is_done(std::int64_t texts) const;
@@ -89,6 +91,6 @@ class Dictation {
   std::mt19937_64 random_;
   std::vector<ReadText> texts_;  // finished
   std::optional<Attempt> attempt_;
-  std::int64_t next_at_, heard_until_ = 0;  // next text; end of the speech [ns]
+  hc::Time next_at_, heard_until_;  // next text; end of the speech
   bool has_begun_ = false;
 };

@@ -2,13 +2,16 @@
 #include "read_score.h"
 
 #include <algorithm>
+#include <chrono>
 #include <set>
 
 #include <gtest/gtest.h>
 
 namespace {
 
-constexpr std::int64_t kOneMillisecond = 1'000'000;
+hc::Time after(std::int64_t milliseconds) {
+  return hc::Time(std::chrono::milliseconds(milliseconds));
+}
 
 TEST(RandomText, is_a_word_or_two_of_letters_and_digits) {
   std::mt19937_64 random(7);
@@ -52,13 +55,13 @@ TEST(Edits, are_the_fewest) {
 
 TEST(Attempt, is_done_when_read_and_spoken_in_any_order) {
   for (const bool is_sound_first : {false, true}) {
-    Attempt attempt("ABC", 1000 * kOneMillisecond);
-    if (is_sound_first) attempt.take_sound(1100 * kOneMillisecond, 1300 * kOneMillisecond);
+    Attempt attempt("ABC", after(1000));
+    if (is_sound_first) attempt.take_sound(after(1100), after(1300));
     EXPECT_FALSE(attempt.is_done());
-    attempt.take_text("ABD", 1100 * kOneMillisecond);
+    attempt.take_text("ABD", after(1100));
     if (!is_sound_first) {
       EXPECT_FALSE(attempt.is_done());
-      attempt.take_sound(1100 * kOneMillisecond, 1300 * kOneMillisecond);
+      attempt.take_sound(after(1100), after(1300));
     }
     EXPECT_TRUE(attempt.is_done());
     const auto result = attempt.result();
@@ -71,19 +74,19 @@ TEST(Attempt, is_done_when_read_and_spoken_in_any_order) {
 }
 
 TEST(Attempt, what_was_seen_before_does_not_count) {
-  Attempt attempt("ABC", 1000 * kOneMillisecond);
-  attempt.take_text("OLD", 999 * kOneMillisecond);
-  attempt.take_sound(999 * kOneMillisecond, 1300 * kOneMillisecond);
+  Attempt attempt("ABC", after(1000));
+  attempt.take_text("OLD", after(999));
+  attempt.take_sound(after(999), after(1300));
   EXPECT_EQ(attempt.result().read, "");
   EXPECT_FALSE(attempt.result().seen_to_spoken);
 }
 
 TEST(Attempt, the_first_reading_counts) {
-  Attempt attempt("ABC", 0);
-  attempt.take_text("AC", 1);
-  attempt.take_text("ABC", 2);
-  attempt.take_sound(1, 10 * kOneMillisecond);
-  attempt.take_sound(2, 20 * kOneMillisecond);
+  Attempt attempt("ABC", after(0));
+  attempt.take_text("AC", hc::unix_time(1));
+  attempt.take_text("ABC", hc::unix_time(2));
+  attempt.take_sound(hc::unix_time(1), after(10));
+  attempt.take_sound(hc::unix_time(2), after(20));
   EXPECT_EQ(attempt.result().read, "AC");
   EXPECT_NEAR(*attempt.result().seen_to_spoken, 0.01, 1e-9);
 }
@@ -108,18 +111,16 @@ TEST(ReadingScore, is_over_all_letters_and_all_that_were_spoken) {
 }
 
 TEST(Dictation, writes_the_next_text_after_the_speech_and_a_pause) {
-  Dictation dictation(7, 10'000 * kOneMillisecond);
-  const auto write = [&](std::int64_t at) { return dictation.write(at * kOneMillisecond); };
-  const auto finish = [&](std::int64_t at) {
-    return dictation.finish(at * kOneMillisecond, 10, 0.3);
-  };
+  Dictation dictation(7, after(10'000));
+  const auto write = [&](std::int64_t ms) { return dictation.write(after(ms)); };
+  const auto finish = [&](std::int64_t ms) { return dictation.finish(after(ms), 10, 0.3); };
   EXPECT_FALSE(write(9'999));
   const auto first = write(10'000);
   ASSERT_TRUE(first);
   EXPECT_FALSE(write(10'010)) << "one at a time";
-  dictation.take_text(*first, 10'100 * kOneMillisecond, 10'200 * kOneMillisecond);
+  dictation.take_text(*first, after(10'100), after(10'200));
   EXPECT_FALSE(finish(10'300));
-  dictation.take_sound(10'100 * kOneMillisecond, 10'400 * kOneMillisecond, 2);
+  dictation.take_sound(after(10'100), after(10'400), 2);
   const auto ended = finish(10'400);
   ASSERT_TRUE(ended);
   EXPECT_EQ(ended->read, *first);
@@ -129,19 +130,19 @@ TEST(Dictation, writes_the_next_text_after_the_speech_and_a_pause) {
 }
 
 TEST(Dictation, begins_soon_after_something_is_read) {
-  Dictation dictation(7, 10'000 * kOneMillisecond);
-  dictation.take_text("WHAT STOOD THERE", 0, 2'000 * kOneMillisecond);
-  dictation.take_text("WHAT STOOD THERE", 0, 2'500 * kOneMillisecond);
-  EXPECT_FALSE(dictation.write(2'999 * kOneMillisecond));
-  EXPECT_TRUE(dictation.write(3'000 * kOneMillisecond)) << "after the first, not the second";
+  Dictation dictation(7, after(10'000));
+  dictation.take_text("WHAT STOOD THERE", after(0), after(2'000));
+  dictation.take_text("WHAT STOOD THERE", after(0), after(2'500));
+  EXPECT_FALSE(dictation.write(after(2'999)));
+  EXPECT_TRUE(dictation.write(after(3'000))) << "after the first, not the second";
 }
 
 TEST(Dictation, a_text_that_is_not_read_in_time_ends) {
-  Dictation dictation(7, 0);
-  ASSERT_TRUE(dictation.write(0));
+  Dictation dictation(7, after(0));
+  ASSERT_TRUE(dictation.write(after(0)));
   EXPECT_FALSE(dictation.is_done(0)) << "one is not ended";
-  EXPECT_FALSE(dictation.finish(4'999 * kOneMillisecond, 5, 0));
-  const auto ended = dictation.finish(5'000 * kOneMillisecond, 5, 0);
+  EXPECT_FALSE(dictation.finish(after(4'999), 5, 0));
+  const auto ended = dictation.finish(after(5'000), 5, 0);
   ASSERT_TRUE(ended);
   EXPECT_EQ(ended->read, "");
   EXPECT_TRUE(dictation.is_done(1));

@@ -31,7 +31,7 @@ class ModuleClock final : public hc::Clock {
  public:
   explicit ModuleClock(const hc::Module& module) : module_(module) {}
   [[nodiscard]] hc::MonotonicTime monotonic() const override { return module_.monotonic(); }
-  [[nodiscard]] std::int64_t wall() const override { return module_.now(); }
+  [[nodiscard]] hc::Time wall() const override { return module_.now(); }
 
  private:
   const hc::Module& module_;

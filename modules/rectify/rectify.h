@@ -72,6 +72,6 @@ class Rectify {
   std::optional<hc::vision::StereoCalibration> calibration_;
   std::optional<hc::vision::Rectifier> rectifiers_[2];
   Mounting mounting_;
-  bool is_new_ = true;                // since the intrinsics were sent
-  std::optional<std::int64_t> time_;  // of the last image
+  bool is_new_ = true;            // since the intrinsics were sent
+  std::optional<hc::Time> time_;  // of the last image
 };

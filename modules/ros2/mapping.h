@@ -40,10 +40,9 @@ hc::Result<std::vector<Mapping>> parse_subscribe(std::string_view text);
 /// Limits a rate [Hz].
 class RateLimit {
  public:
-  explicit RateLimit(double rate) : period_(rate > 0 ? 1e9 / rate : 0) {}
-  /// @param now  of a monotonic clock [ns].
-  bool passes(std::int64_t now) {
-    const auto at = static_cast<double>(now);
+  explicit RateLimit(double rate) : period_(rate > 0 ? 1 / rate : 0) {}
+  bool passes(hc::MonotonicTime now) {
+    const double at = hc::seconds(now);
     if (period_ > 0 && at < due_) return false;
     // On a fixed grid, so that a jittering source of exactly this rate passes unthinned.
     due_ = at - due_ > period_ ? at + period_ / 2 : due_ + period_;
@@ -51,5 +50,5 @@ class RateLimit {
   }
 
  private:
-  double period_, due_ = 0;
+  double period_, due_ = 0;  // [s]
 };

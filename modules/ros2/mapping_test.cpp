@@ -55,12 +55,11 @@ TEST(Mapping, refuses_the_rest_in_one_line) {
 }
 
 TEST(Mapping, rates_are_kept) {
-  constexpr std::int64_t kMillisecond = 1'000'000;
   RateLimit ten(10), all(0);
   int passed = 0;
-  for (std::int64_t now = 0; now < 2000; ++now) {
-    EXPECT_TRUE(all.passes(now * kMillisecond));
-    if (ten.passes((now + 7000) * kMillisecond)) ++passed;
+  for (std::chrono::milliseconds now{0}; now.count() < 2000; ++now) {
+    EXPECT_TRUE(all.passes(now));
+    if (ten.passes(now + std::chrono::seconds(7))) ++passed;
   }
   EXPECT_GE(passed, 19);
   EXPECT_LE(passed, 21);

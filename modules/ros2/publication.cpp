@@ -68,7 +68,7 @@ void Publication::open() {
 }
 
 void Publication::take(const hc::Message& message) {
-  if (!writer_ || !limit_.passes(hc::SystemClock().monotonic().count())) return;
+  if (!writer_ || !limit_.passes(hc::SystemClock().monotonic())) return;
   const auto pieces = encoder_.encode_any(type_, message);
   if (!pieces)
     return log_("not published as " + published_.topic,

@@ -119,7 +119,7 @@ void Ros2::publish_frames(const Mapping& published) {
 
 void Ros2::take(Subscription& from, const Bytes& bytes) {
   const auto& subscribed = from.subscribed;
-  if (!from.limit.passes(module_.monotonic().count())) return;
+  if (!from.limit.passes(module_.monotonic())) return;
   auto message = bytes ? hc::ros::decode(*subscribed.type, *bytes, from.to.port, subscribed.choice)
                        : hc::Result<hc::Message>(bytes.error());
   if (message && !message->plain()) message = hc::expand(*message);
@@ -127,7 +127,7 @@ void Ros2::take(Subscription& from, const Bytes& bytes) {
     return module_.log_once("refused of " + subscribed.topic,
                             subscribed.topic + ": message refused (further ones are counted): " +
                                 message.error().detail);
-  if (message->header.time == 0) message->header.time = module_.now();
+  if (message->header.time == hc::Time()) message->header.time = module_.now();
   message->header.coord = subscribed.coord;
   from.to.send(std::move(*message));
 }
@@ -136,7 +136,7 @@ void Ros2::write_pose(const hc::Message& pose) {
   if (!transforms_) return;
   const auto joint = joints_->joint_of(pose);
   if (!joint) return module_.log_once("pose", joint.error().detail);
-  const auto written = transforms_->write(*joint, module_.monotonic().count());
+  const auto written = transforms_->write(*joint, module_.monotonic());
   if (!written) module_.log_once("frames not written", "frames: " + written.error().detail);
 }
 

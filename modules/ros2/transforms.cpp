@@ -20,7 +20,7 @@ hc::Status Transforms::write_fixed(const std::vector<hc::ros::Joint>& joints) {
   return fixed_.write(encoder_.encode(joints));
 }
 
-hc::Status Transforms::write(const hc::ros::Joint& joint, std::int64_t now) {
+hc::Status Transforms::write(const hc::ros::Joint& joint, hc::MonotonicTime now) {
   if (!limits_.try_emplace(joint.child, rate_).first->second.passes(now)) return {};
   return moving_.write(encoder_.encode(std::span(&joint, 1)));
 }

@@ -22,8 +22,7 @@ class Transforms {
   /// Writes the joints that do not move.
   hc::Status write_fixed(const std::vector<hc::ros::Joint>& joints);
   /// Writes the pose of a joint, unless that would exceed the rate.
-  /// @param now  of a monotonic clock [ns].
-  hc::Status write(const hc::ros::Joint& joint, std::int64_t now);
+  hc::Status write(const hc::ros::Joint& joint, hc::MonotonicTime now);
 
  private:
   double rate_;

@@ -35,7 +35,7 @@ class SeenBefore {
  private:
   struct Entry {
     std::int64_t seq = -1;
-    std::int64_t time = 0;
+    hc::Time time;
     hc::MonotonicTime came{};
     std::int32_t dst = 0;
   };

@@ -13,13 +13,12 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-hc::Header header(std::int32_t src, std::int64_t seq, std::int64_t time = 5,
-                  std::int32_t dst = 21) {
+hc::Header header(std::int32_t src, std::int64_t seq, int time = 5, std::int32_t dst = 21) {
   hc::Header result;
   result.src = src;
   result.dst = dst;
   result.seq = seq;
-  result.time = time;
+  result.time = hc::unix_time(time);
   return result;
 }
 
@@ -73,7 +72,7 @@ TEST(SeenBefore, random_messages_are_judged_as_by_a_memory_without_bound) {
   };
   for (bool has_room : {true, false}) {
     SeenBefore seen(seconds(1), has_room ? 1 << 16 : 128, has_room ? 1 << 20 : 512);
-    std::map<std::tuple<int, int, std::int64_t, std::int64_t>, hc::MonotonicTime> model;
+    std::map<std::tuple<int, int, std::int64_t, hc::Time>, hc::MonotonicTime> model;
     std::map<int, std::int64_t> next;
     hc::MonotonicTime now{};
     int repeats = 0;

@@ -10,10 +10,10 @@ const Eigen::Vector3d kLoudspeaker(2.4, -1.6, 0.7);  // in the world [m]
 
 }  // namespace
 
-void Ears::hear_until(std::int64_t until, const Eigen::Isometry3d& T_world_head) {
+void Ears::hear_until(hc::Time until, const Eigen::Isometry3d& T_world_head) {
   const auto heard = start_ + period_end(sample_, hc::room::kSoundRate);
   if (was_set(until, heard)) start_ += until - heard;
-  const auto end = (until - start_) * hc::room::kSoundRate / 1'000'000'000;
+  const auto end = (until - start_) * hc::room::kSoundRate / std::chrono::seconds(1);
   if (end <= sample_) return;
   if (sound_.linked()) {
     auto draft = sound_.loan(1, static_cast<std::int32_t>(end - sample_));

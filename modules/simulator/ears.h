@@ -12,18 +12,18 @@ class Ears {
  public:
   using Output = hc::Output<decltype(hc::sound(2))>;
 
-  /// @param left, right  positions in the head's frame [m]. @param start  time of the first sample
-  /// [ns].
-  Ears(const Eigen::Vector3d& left, const Eigen::Vector3d& right, Output sound, std::int64_t start)
+  /// @param left, right  positions in the head's frame [m]. @param start  time of the first
+  /// sample.
+  Ears(const Eigen::Vector3d& left, const Eigen::Vector3d& right, Output sound, hc::Time start)
       : places_{left, right}, sound_(std::move(sound)), start_(start) {}
 
   /// Sends the sound since the last call, for this pose of the head; skips the time by which the
-  /// clock was set. @param until  [ns].
-  void hear_until(std::int64_t until, const Eigen::Isometry3d& T_world_head);
+  /// clock was set.
+  void hear_until(hc::Time until, const Eigen::Isometry3d& T_world_head);
 
  private:
   Eigen::Vector3d places_[2];
   Output sound_;
-  std::int64_t start_;
+  hc::Time start_;
   std::int64_t sample_ = 0;  // next
 };

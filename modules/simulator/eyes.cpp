@@ -30,11 +30,11 @@ void Eyes::take(Eye& eye, const Eigen::Isometry3d& T_head_eye, const View& view,
   hc::succeed_or_end(renderer_.draw(view.items, camera_, T_world_eye, light, rgb, depth));
   eye.sensor.apply(rgb, *parameters_.blur, *parameters_.noise,
                    static_cast<std::uint64_t>(view.number));
-  late_.emplace_back(view.time + hc::duration(*parameters_.latency).count(),
+  late_.emplace_back(view.time + hc::duration(*parameters_.latency),
                      Image{eye.output, std::move(draft)});
 }
 
-void Eyes::send_due(std::int64_t now) {
+void Eyes::send_due(hc::Time now) {
   for (; !late_.empty() && late_.front().first <= now; late_.pop_front())
     late_.front().second.output.send(std::move(late_.front().second.draft));
 }

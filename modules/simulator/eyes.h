@@ -15,7 +15,7 @@
 
 /// The scene of a pair of images.
 struct View {
-  std::int64_t time;    ///< [ns]
+  hc::Time time;
   std::int64_t number;  ///< of the pair
   Eigen::Isometry3d T_world_head;
   const std::vector<hc::graphics::Item>& items;
@@ -35,8 +35,8 @@ class Eyes {
   ///
   /// @param[out] depth  of the left image, (H, W) f32 [m], 0 for background; may be null.
   void take(const View& view, cv::Mat* depth);
-  /// Sends the images that are due [ns].
-  void send_due(std::int64_t now);
+  /// Sends the images that are due.
+  void send_due(hc::Time now);
   /// Whether all images have been sent.
   [[nodiscard]] bool empty() const { return late_.empty(); }
 
@@ -56,5 +56,5 @@ class Eyes {
   const hc::room::Head head_;
   const hc::graphics::PinholeCamera camera_;
   Eye left_, right_;
-  std::deque<std::pair<std::int64_t, Image>> late_;  // images and when to send them [ns]
+  std::deque<std::pair<hc::Time, Image>> late_;  // images and when to send them
 };

@@ -5,33 +5,35 @@
 // Pure.
 
 #include <algorithm>
-#include <cstdint>
+#include <chrono>
 #include <deque>
 #include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
 
+#include <hc/base/time.h>
+
 class Neck {
  public:
   struct Pose {
-    std::int64_t time;  ///< when the head takes it [ns]
+    hc::Time time;  ///< when the head takes it
     Eigen::Quaterniond R_robot_head;
   };
 
-  /// @param delay  over 0 [ns]. @param start  no pose has an earlier time [ns].
-  Neck(std::int64_t delay, std::int64_t start) : delay_(delay), newest_(start) {}
+  /// @param delay  over 0. @param start  no pose has an earlier time.
+  Neck(std::chrono::nanoseconds delay, hc::Time start) : delay_(delay), newest_(start) {}
 
   /// Takes in a pose; their times do not decrease.
-  void add(std::int64_t time, const Eigen::Quaterniond& R_robot_head) {
+  void add(hc::Time time, const Eigen::Quaterniond& R_robot_head) {
     newest_ = std::max(newest_, time);
-    poses_.push_back({time + delay_, R_robot_head});
+    poses_.push_back({hc::later(time, delay_), R_robot_head});
   }
   /// Whether all poses have arrived that the head takes until a time. A pose of the same time as
   /// the last may follow, so only a later one shows that.
-  [[nodiscard]] bool knows(std::int64_t time) const { return time - delay_ < newest_; }
+  [[nodiscard]] bool knows(hc::Time time) const { return time - delay_ < newest_; }
   /// The next pose that the head takes until a time, in the order in which they arrived.
-  std::optional<Pose> next(std::int64_t time) {
+  std::optional<Pose> next(hc::Time time) {
     if (poses_.empty() || poses_.front().time > time) return std::nullopt;
     std::optional<Pose> first = poses_.front();
     poses_.pop_front();
@@ -39,6 +41,7 @@ class Neck {
   }
 
  private:
-  std::int64_t delay_, newest_;
+  std::chrono::nanoseconds delay_;
+  hc::Time newest_;
   std::deque<Pose> poses_;  // not taken yet
 };

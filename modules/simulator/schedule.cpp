@@ -3,15 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
-std::int64_t period_end(std::int64_t number, double rate) {
-  return static_cast<std::int64_t>(static_cast<long double>(number) * 1e9L / rate);
+std::chrono::nanoseconds period_end(std::int64_t number, double rate) {
+  return std::chrono::nanoseconds(
+      static_cast<std::int64_t>(static_cast<long double>(number) * std::nano::den / rate));
 }
 
-bool was_set(std::int64_t now, std::int64_t expected) {
-  constexpr std::int64_t kMost = 30'000'000'000;  // three periods of the slowest rate, 0.1 Hz
-  return std::abs(now - expected) > kMost;
+bool was_set(hc::Time now, hc::Time expected) {
+  constexpr std::chrono::seconds kMost{30};  // three periods of the slowest rate, 0.1 Hz
+  return std::chrono::abs(now - expected) > kMost;
 }
 
 bool Schedule::begins_second() const {
@@ -19,7 +19,7 @@ bool Schedule::begins_second() const {
   return last_ < 0 || number_ / pairs > last_ / pairs;
 }
 
-void Schedule::catch_up(std::int64_t now) {
+void Schedule::catch_up(hc::Time now) {
   if (number_ == 0) return;
   if (was_set(now, time())) start_ += now - time();
   const double passed = hc::seconds(now - start_);

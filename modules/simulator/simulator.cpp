@@ -11,7 +11,7 @@
 namespace {
 
 constexpr double kTick = 250;  // how often the schedule is checked [Hz]
-constexpr auto kAll = std::numeric_limits<std::int64_t>::max();
+constexpr auto kAll = hc::Time::max();
 const Eigen::Vector3d kUnderground(0, 0, -10);  // position of an absent ball [m]
 
 }  // namespace
@@ -26,8 +26,8 @@ Simulator::Simulator(hc::Module& module) : module_(module) {
 void Simulator::start() {
   scene_ = make_scene();
   last_parameter_ = *parameters_.text;
-  const auto delay = hc::duration(*parameters_.neck_delay).count();
-  if (delay == 0 || *parameters_.paced) return;
+  const auto delay = hc::duration(*parameters_.neck_delay);
+  if (delay.count() == 0 || *parameters_.paced) return;
   neck_.emplace(delay, scene_->schedule.time());
   module_.generate({});  // `step` takes the images
 }
@@ -44,7 +44,7 @@ std::unique_ptr<Simulator::Scene> Simulator::make_scene() {
     return frames_.fixed("head", name).translation();
   };
   // Time starts only now, since making the world takes a while.
-  const std::int64_t start = *parameters_.start > 0 ? *parameters_.start : module_.now();
+  const auto start = *parameters_.start > 0 ? hc::unix_time(*parameters_.start) : module_.now();
   return std::unique_ptr<Scene>(new Scene{std::move(renderer), std::move(world),
                                           hc::room::Ball(parameters_.motion()), head,
                                           parameters_.camera(), Schedule(start, *parameters_.rate),
@@ -65,13 +65,13 @@ void Simulator::take_gaze(const hc::Message& message) {
   const auto q = hc::rotation_of(message);
   if (!q) return module_.log("gaze: " + q.error().detail);
   const auto time = message.header.time;
-  if (time <= 0) return;
+  if (time <= hc::Time()) return;
   if (!neck_) return turn(time, *q);
   neck_->add(time, *q);
   step_.restart(kNow);
 }
 
-void Simulator::turn(std::int64_t time, const Eigen::Quaterniond& R_robot_head) {
+void Simulator::turn(hc::Time time, const Eigen::Quaterniond& R_robot_head) {
   auto fed = frames_.feed("robot", "head", time, Eigen::Isometry3d(R_robot_head));
   if (!fed) module_.log("gaze: " + fed.error().detail);
 }
@@ -80,7 +80,7 @@ void Simulator::generate() {
   const bool is_paced = *parameters_.paced;
   if (is_paced) module_.keep_rate(kTick);
   write_parameter();
-  const std::int64_t now = module_.now();
+  const hc::Time now = module_.now();
   scene_->eyes.send_due(is_paced ? now : kAll);
   if (is_done()) return scene_->eyes.empty() ? module_.stop() : void();
   auto& schedule = scene_->schedule;

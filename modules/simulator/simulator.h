@@ -46,7 +46,7 @@ class Simulator {
   void write_parameter();
 
   void take_gaze(const hc::Message& message);
-  void turn(std::int64_t time, const Eigen::Quaterniond& R_robot_head);
+  void turn(hc::Time time, const Eigen::Quaterniond& R_robot_head);
   /// Takes images when they are due, or as fast as possible.
   void generate();
   /// In the time of messages: takes an image when all poses until then are known.

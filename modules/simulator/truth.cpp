@@ -16,7 +16,7 @@ hc::TransformationKind<double> in_world(std::int32_t frame) {
 }
 
 template <typename Output>
-void send_pose(Output& output, std::int64_t time, const Eigen::Isometry3d& pose) {
+void send_pose(Output& output, hc::Time time, const Eigen::Isometry3d& pose) {
   if (output.linked()) output.send(hc::numbers_of(pose), time);
 }
 
@@ -58,14 +58,14 @@ Truth::Truth(hc::Module& module)
                              "[m], x y z [m] and qx qy qz qw in the world")),
       board_(module.output("board", hc::string(), "truth: text on the board")) {}
 
-void Truth::send_poses(std::int64_t time, const Eigen::Isometry3d& T_world_head,
+void Truth::send_poses(hc::Time time, const Eigen::Isometry3d& T_world_head,
                        const hc::room::Head& head) {
   send_pose(head_pose_, time, T_world_head);
   send_pose(left_pose_, time, T_world_head * head.left_eye);
   send_pose(right_pose_, time, T_world_head * head.right_eye);
 }
 
-void Truth::send_ball(std::int64_t time, const hc::room::Ball::State& ball, bool is_there,
+void Truth::send_ball(hc::Time time, const hc::room::Ball::State& ball, bool is_there,
                       const Eigen::Isometry3d& T_world_left,
                       const hc::graphics::PinholeCamera& camera) {
   if (ball_.linked()) {
@@ -78,11 +78,11 @@ void Truth::send_ball(std::int64_t time, const hc::room::Ball::State& ball, bool
   ball_seen_.send({u, v, radius, is_there ? share : 0}, time);
 }
 
-void Truth::send_board(std::int64_t time, const std::string& text) {
+void Truth::send_board(hc::Time time, const std::string& text) {
   board_.send(text, time);
 }
 
-void Truth::send_markers(std::int64_t time, const std::vector<hc::room::RoomMarker>& markers) {
+void Truth::send_markers(hc::Time time, const std::vector<hc::room::RoomMarker>& markers) {
   auto draft = markers_.loan(static_cast<std::int32_t>(markers.size()), 10);
   draft.header.time = time;
   for (std::size_t i = 0; i < markers.size(); ++i)

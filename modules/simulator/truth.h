@@ -32,13 +32,12 @@ class Truth {
 
   hc::Output<decltype(hc::intensity_image<float>())> depth;
 
-  void send_poses(std::int64_t time, const Eigen::Isometry3d& T_world_head,
-                  const hc::room::Head& head);
+  void send_poses(hc::Time time, const Eigen::Isometry3d& T_world_head, const hc::room::Head& head);
   /// @param is_there  if false, the visible share is 0.
-  void send_ball(std::int64_t time, const hc::room::Ball::State& ball, bool is_there,
+  void send_ball(hc::Time time, const hc::room::Ball::State& ball, bool is_there,
                  const Eigen::Isometry3d& T_world_left, const hc::graphics::PinholeCamera& camera);
-  void send_board(std::int64_t time, const std::string& text);
-  void send_markers(std::int64_t time, const std::vector<hc::room::RoomMarker>& markers);
+  void send_board(hc::Time time, const std::string& text);
+  void send_markers(hc::Time time, const std::vector<hc::room::RoomMarker>& markers);
 
  private:
   using Poses = hc::Output<decltype(hc::transformation())>;

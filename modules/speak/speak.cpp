@@ -59,7 +59,7 @@ void Speak::speak(const WaitingText& next) {
 }
 
 void Speak::send(const Speech& speech, const WaitingText& text) {
-  const auto time = text.time != 0 ? text.time : module_.now();
+  const auto time = text.time != hc::Time() ? text.time : module_.now();
   const auto frames = speech.samples.size();
   auto draft = sound_.loan(1, static_cast<std::int32_t>(frames));
   draft.header.time = time;
@@ -71,8 +71,8 @@ void Speak::send(const Speech& speech, const WaitingText& text) {
   auto table = hc::make_rows(rows);
   table.header.time = time;
   table.header.mode = text.mode;
-  spoken_until_ = module_.monotonic() + std::chrono::nanoseconds(static_cast<std::int64_t>(frames) *
-                                                                 1'000'000'000 / kRate);
+  constexpr std::chrono::nanoseconds kSecond = std::chrono::seconds(1);
+  spoken_until_ = module_.monotonic() + static_cast<std::int64_t>(frames) * kSecond / kRate;
   ++said_;
   last_ = utf8(text.characters);
   words_.send({std::move(table)});  // first, since sending the sound may block while it plays

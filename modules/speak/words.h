@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include <hc/base/time.h>
+
 /// Text that is safe for the synthesiser: invalid UTF-8, control characters (which it would obey)
 /// and line ends become spaces; words are broken after 60 characters, and the text is cut after
 /// `most`.
@@ -20,7 +22,7 @@ bool is_blank(std::u32string_view characters);
 /// A queued text.
 struct WaitingText {
   std::u32string characters;
-  std::int64_t time = 0;  ///< of its message
+  hc::Time time;          ///< of its message
   std::int32_t mode = 0;  ///< of its message
 };
 

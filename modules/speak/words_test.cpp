@@ -66,13 +66,13 @@ TEST(Speakable, blank_is_nothing_to_say) {
 
 TEST(TextQueue, keeps_the_newest_in_their_order) {
   TextQueue queue;
-  EXPECT_FALSE(queue.push({U"a", 1, 0}, 2));
-  EXPECT_FALSE(queue.push({U"b", 2, 0}, 2));
-  EXPECT_TRUE(queue.push({U"c", 3, 7}, 2));
+  EXPECT_FALSE(queue.push({U"a", hc::unix_time(1), 0}, 2));
+  EXPECT_FALSE(queue.push({U"b", hc::unix_time(2), 0}, 2));
+  EXPECT_TRUE(queue.push({U"c", hc::unix_time(3), 7}, 2));
   EXPECT_EQ(queue.pop().characters, U"b");
   const auto last = queue.pop();
   EXPECT_EQ(last.characters, U"c");
-  EXPECT_EQ(last.time, 3);
+  EXPECT_EQ(last.time, hc::unix_time(3));
   EXPECT_EQ(last.mode, 7);
   EXPECT_TRUE(queue.empty());
 }

@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
       {.min = 0, .max = 1});
 
   std::optional<hc::vision::BoardViews> views;  // until the calibration
-  std::int64_t time = 0;                        // of the last view
+  hc::Time time;                                // of the last view
   auto finish = [&] {
     if (!views) return;
     const auto calibrated = hc::value_or_end(std::exchange(views, std::nullopt)->calibrate());

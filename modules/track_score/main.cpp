@@ -42,8 +42,8 @@ int main(int argc, char** argv) {
         const Eigen::Vector3d to = T_world_left_eye.inverse() * Eigen::Vector3d(p[0], p[1], p[2]) -
                                    frames.fixed("left_eye", "right_eye").translation() / 2;
         waits = 0;
-        track.add({hc::seconds(pose.header.time), std::atan2(to.head<2>().norm(), to.z()),
-                   share.numbers()[3]});
+        track.add({hc::seconds(pose.header.time.time_since_epoch()),
+                   std::atan2(to.head<2>().norm(), to.z()), share.numbers()[3]});
         if (track.duration() < *duration) return;
         const auto score = track.score(*within);
         result.send(score.numbers());

@@ -79,7 +79,7 @@ hc::Message withdrawn(const hc::Message& bid) {
 }  // namespace
 
 hc::Result<std::vector<Order>> Driver::take(hc::Message message,
-                                            const std::set<std::int32_t>& modes, std::int64_t wall,
+                                            const std::set<std::int32_t>& modes, hc::Time wall,
                                             hc::MonotonicTime now) {
   const auto src = message.header.src;
   const auto control = static_cast<Control>(src);
@@ -90,9 +90,8 @@ hc::Result<std::vector<Order>> Driver::take(hc::Message message,
   if (control == Control::Alive) return std::vector<Order>{};
   std::vector<Order> orders;
   auto& header = message.header;
-  if (control == Control::Target && header.time != 0) {
-    const auto limit = kOldest.count();
-    if (header.time < wall - limit || header.time > wall + limit)
+  if (control == Control::Target && header.time != hc::Time()) {
+    if (std::chrono::abs(header.time - wall) > kOldest)
       return hc::Error{hc::Code::Invalid,
                        "the image is not current: its time differs by more than 1 s"};
   } else {
@@ -118,7 +117,7 @@ hc::Result<std::vector<Order>> Driver::take(hc::Message message,
   return orders;
 }
 
-std::vector<Order> Driver::tick(std::int64_t wall, hc::MonotonicTime now) {
+std::vector<Order> Driver::tick(hc::Time wall, hc::MonotonicTime now) {
   if (now - heard_ > kSilence) return leave(wall);
   if (!bid_ || now - bid_sent_ < kBid) return {};
   bid_sent_ = now;
@@ -126,7 +125,7 @@ std::vector<Order> Driver::tick(std::int64_t wall, hc::MonotonicTime now) {
   return {{Control::Bid, *bid_}};
 }
 
-std::vector<Order> Driver::leave(std::int64_t wall) {
+std::vector<Order> Driver::leave(hc::Time wall) {
   std::vector<Order> orders;
   if (std::exchange(is_pushed_, false))
     orders.push_back({Control::Stick, hc::table().message({0.0, 0.0})});

@@ -34,13 +34,13 @@ class Driver {
   /// @returns  the commands to send. Errors: Malformed (does not match the table), Invalid (the
   ///     image of a target is too old; the target is ignored).
   hc::Result<std::vector<Order>> take(hc::Message message, const std::set<std::int32_t>& modes,
-                                      std::int64_t wall, hc::MonotonicTime now);
+                                      hc::Time wall, hc::MonotonicTime now);
 
   /// Call every few milliseconds: repeats the bid, or ends the commands after a silence.
-  std::vector<Order> tick(std::int64_t wall, hc::MonotonicTime now);
+  std::vector<Order> tick(hc::Time wall, hc::MonotonicTime now);
 
   /// Ends the commands when the driver leaves.
-  std::vector<Order> leave(std::int64_t wall);
+  std::vector<Order> leave(hc::Time wall);
 
  private:
   hc::MonotonicTime heard_{}, bid_sent_{};

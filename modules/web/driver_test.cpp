@@ -10,8 +10,9 @@
 namespace {
 
 using std::chrono::milliseconds;
+using namespace std::chrono_literals;
 
-constexpr std::int64_t kWall = 1'700'000'000'000'000'000;
+constexpr hc::Time kWall(1'700'000'000s);
 const std::set<std::int32_t> kModes = {1, 4, 5};
 
 hc::Message from(Control control, hc::Message message, std::int32_t coord = 0,
@@ -51,9 +52,8 @@ TEST(Driver, what_is_commanded_is_passed_on_with_a_time) {
 }
 
 TEST(Driver, what_comes_is_of_now_and_addressed_to_nobody) {
-  constexpr std::int64_t kHour = 3'600'000'000'000, kSecond = 1'000'000'000;
   Driver driver;
-  for (const std::int64_t time : {std::int64_t{1}, kWall - kHour, kWall + kHour}) {
+  for (const hc::Time time : {hc::unix_time(1), kWall - 1h, kWall + 1h, hc::Time::max()}) {
     hc::Message messages[] = {stick(1, 0), bid(1, 5),
                               from(Control::Text, hc::string().message("hello")),
                               from(Control::Rotation, hc::rotation().message({0., 0., 0.}), 14)};
@@ -68,9 +68,9 @@ TEST(Driver, what_comes_is_of_now_and_addressed_to_nobody) {
     auto target = from(Control::Target, hc::position().message({1., 1., 0.}), 7, 5);
     target.header.time = time;
     EXPECT_EQ(hc::refused(driver.take(target, kModes, kWall, {})).code, hc::Code::Invalid);
-    target.header.time = kWall - kSecond / 2;
+    target.header.time = kWall - 500ms;
     const auto orders = hc::must(driver.take(target, kModes, kWall, {}));
-    EXPECT_EQ(orders.front().message.header.time, kWall - kSecond / 2);
+    EXPECT_EQ(orders.front().message.header.time, kWall - 500ms);
     EXPECT_EQ(orders.front().message.header.mode, 0);
   }
 }
@@ -105,11 +105,11 @@ TEST(Driver, who_is_silent_for_200_ms_commands_nothing) {
   ASSERT_TRUE(driver.take(stick(1, 0), kModes, kWall, begin));
   ASSERT_TRUE(driver.take(bid(1, 5), kModes, kWall, begin));
   EXPECT_TRUE(driver.tick(kWall, begin + milliseconds(99)).empty());
-  const auto again = driver.tick(kWall + 1, begin + milliseconds(100));
+  const auto again = driver.tick(kWall + 1ns, begin + milliseconds(100));
   ASSERT_EQ(again.size(), 1U);  // the bid is repeated
   EXPECT_EQ(again[0].message.header.mode, 5);
   EXPECT_EQ(number(again[0]), 1);
-  EXPECT_EQ(again[0].message.header.time, kWall + 1);
+  EXPECT_EQ(again[0].message.header.time, kWall + 1ns);
   const auto ended = driver.tick(kWall, begin + milliseconds(201));
   ASSERT_EQ(ended.size(), 2U);
   EXPECT_EQ(ended[0].control, Control::Stick);

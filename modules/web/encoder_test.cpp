@@ -18,7 +18,7 @@ hc::Message ramp(int width, int height) {
     pixels.insert(pixels.end(), 3, static_cast<std::uint8_t>(i % width));
   hc::Message message = hc::rgb_image().message(height, width, pixels);
   message.header.seq = 7;
-  message.header.time = 5;
+  message.header.time = hc::unix_time(5);
   message.header.coord = hc::Coord::kLeftImage;
   return message;
 }
@@ -57,7 +57,7 @@ TEST(Vp8, frames_decode_to_what_was_encoded) {
     EXPECT_EQ(is_key_frame(*coded), i == 0);
     EXPECT_EQ(coded->header.info.type, hc::MatrixType::Table);
     EXPECT_EQ(coded->header.coord, hc::Coord::kLeftImage);
-    EXPECT_EQ(coded->header.time, 5);
+    EXPECT_EQ(coded->header.time, hc::unix_time(5));
     ASSERT_EQ(
         vpx_codec_decode(&decoder, reinterpret_cast<const std::uint8_t*>(coded->elements.data()),
                          static_cast<unsigned>(coded->elements.size()), nullptr, 0),

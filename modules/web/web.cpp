@@ -97,7 +97,7 @@ void Web::order_stop(bool stops_robot, Stop::Answer answer) {
   });
 }
 
-void Web::send_stop(Stop::Word word, std::int64_t said) {
+void Web::send_stop(Stop::Word word, hc::Time said) {
   stop_.send({static_cast<std::uint8_t>(word)}, said);
 }
 

@@ -54,7 +54,7 @@ class Web {
   [[nodiscard]] Page::Callbacks callbacks();
   void order_stop(bool stops_robot, Stop::Answer answer);
 
-  void send_stop(Stop::Word word, std::int64_t said);
+  void send_stop(Stop::Word word, hc::Time said);
   void repeat_stop();
   void show_stopped();
   /// Ends the program when no page has been open for long.
@@ -78,6 +78,6 @@ class Web {
   Robot robot_;
   std::optional<Stop> wanted_;
   hc::MonotonicTime seen_{};  // when a page was last open
-  std::int64_t ordered_ = 0;  // when a person last stopped the robot or cleared the stop [ns]
+  hc::Time ordered_;          // when a person last stopped the robot or cleared the stop
   std::unique_ptr<web::Service> service_;
 };

@@ -73,7 +73,7 @@ class Program {
   [[nodiscard]] hc::MonotonicTime made_at(const hc::Header& header) const;
   void report();
   void send_stopped();
-  void send_standings(hc::MonotonicTime now, std::int64_t time);
+  void send_standings(hc::MonotonicTime now, hc::Time time);
 
   hc::Module& module_;
   // Queues, since bids for several modes, and stops of several sources, may share a link.
@@ -160,7 +160,7 @@ void Program::decide() {
   workspace_.set_options(parameters_.options());
   if (workspace_.decide(now)) module_.log("focus: " + workspace_.last_change());
   report();
-  const std::int64_t time = module_.now();
+  const hc::Time time = module_.now();
   focus_.send({workspace_.focus()}, time);
   send_standings(now, time);
 }
@@ -177,8 +177,8 @@ void Program::read_names(const Checked& checked) {
 }
 
 hc::MonotonicTime Program::made_at(const hc::Header& header) const {
-  const auto age = header.time == 0 ? 0 : module_.now() - header.time;
-  return module_.monotonic() - std::chrono::nanoseconds(age);
+  const auto age = header.time == hc::Time() ? hc::MonotonicTime(0) : module_.now() - header.time;
+  return module_.monotonic() - age;
 }
 
 void Program::report() {
@@ -190,7 +190,7 @@ void Program::send_stopped() {
   stopped_.send({is_stopped}, module_.now());
 }
 
-void Program::send_standings(hc::MonotonicTime now, std::int64_t time) {
+void Program::send_standings(hc::MonotonicTime now, hc::Time time) {
   auto rows = workspace_.standings(now);
   auto draft = standings_.loan(static_cast<std::int32_t>(rows.size()), 5);
   draft.header.time = time;

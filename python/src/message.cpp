@@ -166,6 +166,9 @@ PyObject* get_field(PyObject* self, void*) {
   return PyLong_FromLongLong(message_of(self).header.*kField);
 }
 
+PyObject* get_time(PyObject* self, void*) {
+  return PyLong_FromLongLong(hc::unix_nanoseconds(message_of(self).header.time));
+}
 PyObject* get_components(PyObject* self, void*) {
   return PyLong_FromLong(message_of(self).header.info.components);
 }
@@ -187,7 +190,8 @@ PyObject* describe(PyObject* self) {
   const hc::Header& header = message_of(self).header;
   std::string text = "<Message " + hc::matrix_text(header.info, header.width, header.height);
   if (header.coord != 0) text += " in " + hc::coord_and_number(header.coord);
-  return decode(text + hc::format(", src {} seq {} at {}>", header.src, header.seq, header.time));
+  return decode(text + hc::format(", src {} seq {} at {}>", header.src, header.seq,
+                                  hc::unix_nanoseconds(header.time)));
 }
 
 PyGetSetDef fields[] = {
@@ -207,7 +211,7 @@ PyGetSetDef fields[] = {
      "Address of the receiver; 0: the linked inputs.", nullptr},
     {"seq", guarded<get_field<&hc::Header::seq>>, nullptr, "Counts up by one per src.", nullptr},
     {"ttl", guarded<get_field<&hc::Header::ttl>>, nullptr, "Routers left to pass.", nullptr},
-    {"time", guarded<get_field<&hc::Header::time>>, nullptr,
+    {"time", guarded<get_time>, nullptr,
      "Time of the sensed event [ns since the Unix epoch]; 0: unknown.", nullptr},
     {"mode", guarded<get_field<&hc::Header::mode>>, nullptr, "System mode of the sender; 0: none.",
      nullptr},

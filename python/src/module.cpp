@@ -191,11 +191,12 @@ class Frames {
   Frames(Program& program) : program_(program) { program.frames(); }
 
   py::object lookup(const py::object& target, const py::object& source, std::int64_t time) {
-    return array_of(
-        value_or_raise(program_.frames().lookup(frame_of(target), frame_of(source), time)));
+    return array_of(value_or_raise(
+        program_.frames().lookup(frame_of(target), frame_of(source), hc::unix_time(time))));
   }
   py::object nearest(const py::object& target, const py::object& source, std::int64_t time) {
-    return array_of(program_.frames().nearest(frame_of(target), frame_of(source), time));
+    return array_of(
+        program_.frames().nearest(frame_of(target), frame_of(source), hc::unix_time(time)));
   }
   void when_known(const py::object& target, const py::object& source, std::int64_t time,
                   const py::object& function) {
@@ -206,7 +207,8 @@ class Frames {
       program.call(held.get(), pose.ptr());
     };
     const auto to = frame_of(target), from = frame_of(source);
-    program_.work("when_known()", [&] { program_.frames().when_known(to, from, time, handler); });
+    program_.work("when_known()",
+                  [&] { program_.frames().when_known(to, from, hc::unix_time(time), handler); });
   }
 
  private:
@@ -334,7 +336,7 @@ void add_public(PyModule& module) {
           "Logs the first problem of a kind and counts the others; the counts are logged at the "
           "end.")
       .def(
-          "now", [](Program& self) { return self.module().now(); },
+          "now", [](Program& self) { return hc::unix_nanoseconds(self.module().now()); },
           "The time for new messages [ns since the Unix epoch]: the machine's, or with --clock "
           "messages that of the messages.")
       .def_property_readonly(

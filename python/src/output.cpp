@@ -189,7 +189,7 @@ struct Fields {
                          py::str(name).cast<std::string>());
   }
   void set(hc::Header& header) const {
-    if (time != nullptr) header.time = py::handle(time).cast<std::int64_t>();
+    if (time != nullptr) header.time = hc::unix_time(py::handle(time).cast<std::int64_t>());
     if (dst != nullptr) header.dst = py::handle(dst).cast<std::int32_t>();
     if (mode != nullptr) header.mode = py::handle(mode).cast<std::int32_t>();
     if (coord != nullptr) header.coord = coord_of(py::reinterpret_borrow<py::object>(coord));

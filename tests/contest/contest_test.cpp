@@ -193,7 +193,7 @@ class Contest {
       rules_.bid_of_person(who, salience, now);
     } else if (what == 3) {  // of another time: it changes nothing
       auto message = hc::table().message({salience});
-      message.header.time = clock_.wall() - pick(0, 1) * 7'200'000'000'000 + 3'600'000'000'000;
+      message.header.time = clock_.wall() + (pick(0, 1) == 0 ? 1 : -1) * std::chrono::hours(1);
       say(link, who, message);
     } else if (what == 4) {
       const auto word = static_cast<std::uint8_t>(
@@ -215,7 +215,7 @@ class Contest {
       offered_.push_back(mode);
       hc::Message message = hc::table().message({0.0});
       message.header.mode = mode;
-      message.header.time = static_cast<std::int64_t>(offered_.size());  // the actor reports it too
+      message.header.time = hc::unix_time(std::ssize(offered_));  // the actor reports it too
       if (last_holds && mode == modes.back())
         message = at_last(std::move(message), [this] { gate_.pass(); });
       EXPECT_TRUE(command_->send(message));
@@ -240,7 +240,7 @@ class Contest {
       if (offered_[checked_] == focus_) in_focus.push_back(checked_);
     hc::Message done;
     while (*done_->take(done) == hc::Got::Message) {
-      handled.push_back(static_cast<std::size_t>(done.header.time - 1));
+      handled.push_back(static_cast<std::size_t>(hc::unix_nanoseconds(done.header.time) - 1));
       const auto mode = offered_.at(handled.back());
       EXPECT_EQ(mode, focus_) << "the actor got a command out of focus";
     }

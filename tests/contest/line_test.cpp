@@ -22,7 +22,7 @@ using hc::pan_tilt::Neck;
 using std::chrono::milliseconds;
 
 constexpr std::int32_t kTasks = 3, kSenders = 3;  // from 1 on
-constexpr std::int64_t kWall = 1'700'000'000'000'000'000;
+constexpr hc::Time kWall{std::chrono::seconds(1'700'000'000)};
 
 /// A neck at its line, whose unit notes who has commanded it.
 class NeckAtLine {

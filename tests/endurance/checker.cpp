@@ -42,11 +42,12 @@ int main(int argc, char** argv) {
   });
   module.on_raw(in, [&](const hc::Message& message) {
     char line[128];
-    const int size = std::snprintf(line, sizeof line, "%lld %lld %016llx %lld\n",
-                                   static_cast<long long>(hc::SystemClock().monotonic().count()),
-                                   static_cast<long long>(message.header.seq),
-                                   static_cast<unsigned long long>(hash_of(message.elements)),
-                                   static_cast<long long>(message.header.time));
+    const int size =
+        std::snprintf(line, sizeof line, "%lld %lld %016llx %lld\n",
+                      static_cast<long long>(hc::SystemClock().monotonic().count()),
+                      static_cast<long long>(message.header.seq),
+                      static_cast<unsigned long long>(hash_of(message.elements)),
+                      static_cast<long long>(hc::unix_nanoseconds(message.header.time)));
     // One call, so that no kill leaves a part of a line.
     if (::write(file.get(), line, static_cast<std::size_t>(size)) != size)
       throw hc::ModuleError(*log + ": cannot be written");

@@ -11,9 +11,11 @@ int fuzz_frames(const std::uint8_t* data, std::size_t size) {
   }
   for (const auto& mover : frames->movers) {
     auto& tree = frames->tree;
-    HC_CHECK(!tree.lookup(mover.parent, mover.child, 1), mover.child);
-    HC_CHECK(tree.feed(mover.parent, mover.child, 1, Eigen::Isometry3d::Identity()).has_value());
-    HC_CHECK(tree.lookup(mover.child, mover.parent, 1).has_value(), mover.child);
+    constexpr auto kTime = hc::unix_time(1);
+    HC_CHECK(!tree.lookup(mover.parent, mover.child, kTime), mover.child);
+    HC_CHECK(
+        tree.feed(mover.parent, mover.child, kTime, Eigen::Isometry3d::Identity()).has_value());
+    HC_CHECK(tree.lookup(mover.child, mover.parent, kTime).has_value(), mover.child);
   }
   return 0;
 }

@@ -11,14 +11,13 @@
 
 namespace {
 
-constexpr std::int64_t kSameMoment = 100'000;  // [ns]
+constexpr std::chrono::microseconds kSameMoment{100};
 
-/// The wall clock past all libraries [ns].
-std::int64_t true_now() {
-  constexpr std::int64_t kSecond = 1'000'000'000;
+/// The wall clock past all libraries.
+hc::Time true_now() {
   timespec time{};
   ::syscall(SYS_clock_gettime, CLOCK_REALTIME, &time);
-  return time.tv_sec * kSecond + time.tv_nsec;
+  return hc::Time(std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec));
 }
 
 }  // namespace
@@ -36,7 +35,8 @@ int main(int argc, char** argv) {
   auto start = module.parameter("start", 0.0, "s", "when the true time began");
   // The true time and the module's; false where something has come in between them.
   struct Both {
-    std::int64_t truth, stamp, width;
+    hc::Time truth, stamp;
+    std::chrono::nanoseconds width;
     explicit operator bool() const { return width < kSameMoment; }
   };
   auto look = [&] {
@@ -45,17 +45,18 @@ int main(int argc, char** argv) {
   };
   module.on(in, [&](const auto& message) {
     if (const auto now = look())
-      ways.send({now.truth - message.numbers()[0], now.stamp - message.header.time});
+      ways.send({(now.truth - hc::unix_time(message.numbers()[0])).count(),
+                 (now.stamp - message.header.time).count()});
   });
   module.every(std::chrono::milliseconds(20), [&] {
     const auto now = look();
     if (!now) return;
-    moment.send({now.truth}, now.stamp);
+    moment.send({hc::unix_nanoseconds(now.truth)}, now.stamp);
     auto draft = pose.loan(4, 4);
     const auto T = draft.matrix();
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < 4; ++j) T.at(i, j) = i == j ? 1 : 0;
-    T.at(0, 3) = hc::seconds(now.truth - hc::duration(*start).count());
+    T.at(0, 3) = hc::seconds(now.truth - hc::Time(hc::duration(*start)));
     draft.header.time = now.stamp;
     pose.send(std::move(draft));
   });

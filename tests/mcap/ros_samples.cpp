@@ -19,7 +19,7 @@ using hc::MatrixType;
 using hc::Scalar;
 using hc::ros::Type;
 
-constexpr std::int64_t kTime = 1'763'683'200'123'456'789;
+constexpr hc::Time kTime = hc::unix_time(1'763'683'200'123'456'789);
 
 struct Case {
   Type type;
@@ -41,7 +41,7 @@ hc::Header header(MatrixType type, int components, Scalar scalar, std::int32_t w
 hc::Message message_of(const hc::Header& header, std::mt19937* random) {
   auto draft = hc::Draft::make(header);
   if (random != nullptr) {
-    draft.header.time = static_cast<std::int64_t>((*random)()) * 1'000'000'007 / 2;
+    draft.header.time = hc::unix_time(static_cast<std::int64_t>((*random)()) * 1'000'000'007 / 2);
     for (auto& each : draft.elements()) each = static_cast<std::byte>((*random)());
   } else {
     hc::visit_scalar(header.info.scalar, [&](auto zero) {

@@ -9,7 +9,9 @@ int main(int argc, char** argv) {
   auto words = module.input("words", hc::string(), "a text");
   auto times = module.output("times", hc::table<std::int64_t>(), "times of a set [ns]");
   module.on(hc::together(place, score, words), [&](const auto& a, const auto& b, const auto& c) {
-    times.send({a.header.time, b.header.time, c.header.time});
+    using hc::unix_nanoseconds;
+    times.send({unix_nanoseconds(a.header.time), unix_nanoseconds(b.header.time),
+                unix_nanoseconds(c.header.time)});
   });
   return module.run(argc, argv);
 }

@@ -36,7 +36,7 @@ inline std::int64_t checksum(const Header& header, std::span<const std::byte> el
 
 inline bool is_whole(const Message& message) {
   return message.elements.size() == message.header.element_bytes() &&
-         message.header.time == checksum(message.header, message.elements);
+         unix_nanoseconds(message.header.time) == checksum(message.header, message.elements);
 }
 
 /// A message of `bytes` that no other message of any publisher looks like, in memory of the sink
@@ -55,7 +55,7 @@ inline Message make_checked(Sink* sink, std::int32_t src, std::int64_t seq, std:
   auto word = static_cast<std::uint64_t>(src) * 1'000'003 + static_cast<std::uint64_t>(seq) * 7919;
   for (std::size_t at = 0; at < elements.size(); at += sizeof word, word += 0x0101'0101'0101'0101)
     std::memcpy(elements.data() + at, &word, std::min(sizeof word, elements.size() - at));
-  draft.header.time = checksum(header, elements);
+  draft.header.time = unix_time(checksum(header, elements));
   return std::move(draft).finish();
 }
 

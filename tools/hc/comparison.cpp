@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -17,7 +16,7 @@
 namespace tool {
 namespace {
 
-constexpr std::int64_t kDisorder = 1'000'000'000;  // [ns]
+constexpr std::chrono::seconds kDisorder{1};
 
 template <typename T>
 std::string both(std::string_view field, const T& recorded, const T& replayed) {
@@ -48,12 +47,12 @@ struct KeptMessage {
   hc::Message message;
   bool is_matched = false;
 };
-using Messages = std::multimap<std::int64_t, KeptMessage>;  // by time
+using Messages = std::multimap<hc::Time, KeptMessage>;  // by time
 
 /// Takes the next message. A message without a time gets that of the previous one.
-bool take(const NextMessage& next, std::int64_t& time, hc::Message& message) {
+bool take(const NextMessage& next, hc::Time& time, hc::Message& message) {
   if (!next(message)) return false;
-  if (message.header.time != 0) time = message.header.time;
+  if (message.header.time != hc::Time()) time = message.header.time;
   return true;
 }
 
@@ -104,10 +103,10 @@ class Comparer {
       : replayed_(replayed), tolerance_(tolerance), last_(last) {}
 
   /// Takes the next recorded message.
-  void compare(const hc::Message& recorded, std::int64_t time) {
+  void compare(const hc::Message& recorded, hc::Time time) {
     begin_ = begin_.value_or(time);
     ++result_.recorded;
-    const auto reach = time + tolerance_.time + kDisorder;
+    const auto reach = hc::later(time, tolerance_.time + kDisorder);
     while (has_more_ && (held_.empty() || std::prev(held_.end())->first <= reach))
       has_more_ = hold_next();
     drop_until(held_.lower_bound(time - tolerance_.time - kDisorder));
@@ -129,21 +128,21 @@ class Comparer {
   };
 
   /// The same message of the replay, else the nearest in time that has no match yet.
-  Match match(const hc::Message& recorded, std::int64_t time) {
+  Match match(const hc::Message& recorded, hc::Time time) {
     Match found;
-    std::int64_t distance = 0;
-    const auto end = held_.upper_bound(time + tolerance_.time);
+    std::chrono::nanoseconds distance{0};
+    const auto end = held_.upper_bound(hc::later(time, tolerance_.time));
     for (auto each = held_.lower_bound(time - tolerance_.time); each != end; ++each) {
       auto& candidate = each->second;
       // Without a tolerance of time, match one to one; otherwise a message may match several.
-      if (tolerance_.time == 0 && candidate.is_matched) continue;
+      if (tolerance_.time.count() == 0 && candidate.is_matched) continue;
       auto differs = difference(recorded, candidate.message, tolerance_);
       if (differs.empty()) {
         found.is_found = candidate.is_matched = true;
-        if (tolerance_.time == 0) break;
+        if (tolerance_.time.count() == 0) break;
       } else if (!candidate.is_matched &&
-                 (found.nearest == nullptr || std::abs(each->first - time) < distance)) {
-        distance = std::abs(each->first - time);
+                 (found.nearest == nullptr || std::chrono::abs(each->first - time) < distance)) {
+        distance = std::chrono::abs(each->first - time);
         found.nearest = &candidate;
         found.difference = std::move(differs);
       }
@@ -151,7 +150,7 @@ class Comparer {
     return found;
   }
 
-  void count(const hc::Message& recorded, std::int64_t time, const Match& match) {
+  void count(const hc::Message& recorded, hc::Time time, const Match& match) {
     if (match.is_found) {
       ++result_.same;
     } else if (match.nearest != nullptr) {
@@ -182,10 +181,10 @@ class Comparer {
     }
   }
 
-  void note(const hc::Header& header, std::int64_t at, const std::string& what) {
+  void note(const hc::Header& header, hc::Time at, const std::string& what) {
     if (result_.first.empty())
       result_.first = hc::format("seq {}, {:.3f} s after the first: {}", header.seq,
-                                 static_cast<double>(at - begin_.value_or(at)) * 1e-9, what);
+                                 hc::seconds(at - begin_.value_or(at)), what);
   }
 
   const NextMessage& replayed_;
@@ -194,8 +193,8 @@ class Comparer {
   Comparison result_;
   Messages held_;  // of the replay, within 1 s of the current recorded message
   bool has_more_ = true;
-  std::int64_t replayed_time_ = 0;
-  std::optional<std::int64_t> begin_;
+  hc::Time replayed_time_;
+  std::optional<hc::Time> begin_;
 };
 
 }  // namespace
@@ -203,7 +202,7 @@ class Comparer {
 Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
                    const Tolerance& tolerance, std::int64_t last) {
   Comparer comparer(replayed, tolerance, last);
-  std::int64_t time = 0;
+  hc::Time time;
   for (hc::Message message; take(recorded, time, message);) comparer.compare(message, time);
   return comparer.finish();
 }

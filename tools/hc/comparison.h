@@ -2,6 +2,7 @@
 #pragma once
 // Compares two recordings of an output. Pure.
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -14,9 +15,9 @@ namespace tool {
 
 /// Allowed differences.
 struct Tolerance {
-  double number = 0;      ///< difference of numbers
-  std::int64_t time = 0;  ///< difference of times, in both directions [ns]
-  double share = 1;       ///< least share of equal messages
+  double number = 0;                 ///< difference of numbers
+  std::chrono::nanoseconds time{0};  ///< difference of times, in both directions
+  double share = 1;                  ///< least share of equal messages
 };
 
 /// The first field in which two messages differ, with both values: "width: 4 recorded, 5 replayed".

@@ -11,11 +11,11 @@
 namespace tool {
 namespace {
 
-hc::Message number(std::int64_t time, double value, std::int32_t width = 1) {
+hc::Message number(std::chrono::nanoseconds time, double value, std::int32_t width = 1) {
   auto draft =
       hc::Draft::make({hc::MatrixType::Table, 1, hc::Scalar::F64, hc::Encoding::Text}, 1, width);
   for (auto& each : hc::view<double>(draft).numbers()) each = value;
-  draft.header.time = time;
+  draft.header.time = hc::Time(time);
   return std::move(draft).finish();
 }
 
@@ -33,30 +33,30 @@ Comparison compare_all(const std::vector<hc::Message>& recorded,
   return compare(from(recorded), from(replayed), tolerance, last);
 }
 
-constexpr std::int64_t kSecond = 1'000'000'000;
+using namespace std::chrono_literals;
 
 TEST(Comparison, NamesTheFirstField) {
-  auto one = number(1, 0.5), other = number(1, 0.5);
+  auto one = number(1ns, 0.5), other = number(1ns, 0.5);
   EXPECT_EQ(difference(one, other, {}), "");
   other.header.src = 3, other.header.seq = 9;
   EXPECT_EQ(difference(one, other, {}), "");
   other.header.mode = 2;
   EXPECT_EQ(difference(one, other, {}), "mode: 0 recorded, 2 replayed");
-  EXPECT_EQ(difference(one, number(1, 0.5, 2), {}), "width: 1 recorded, 2 replayed");
-  EXPECT_EQ(difference(one, number(1, 0.75), {}),
+  EXPECT_EQ(difference(one, number(1ns, 0.5, 2), {}), "width: 1 recorded, 2 replayed");
+  EXPECT_EQ(difference(one, number(1ns, 0.75), {}),
             "row 0, column 0, component 0: 0.5 recorded, 0.75 replayed");
-  EXPECT_EQ(difference(one, number(1, 0.75), {.number = 0.25}), "");
+  EXPECT_EQ(difference(one, number(1ns, 0.75), {.number = 0.25}), "");
   const std::vector<std::string> hello = {"HELLO"}, hallo = {"HALLO"};
   EXPECT_EQ(difference(hc::make_rows(hello), hc::make_rows(hallo), {}),
             "text: \"HELLO\" recorded, \"HALLO\" replayed");
 }
 
 TEST(Comparison, CountsWhatDiffersIsMissingAndIsMore) {
-  const std::vector<hc::Message> recorded = {number(kSecond, 1), number(2 * kSecond, 2),
-                                             number(3 * kSecond, 3), number(9 * kSecond, 4)};
+  const std::vector<hc::Message> recorded = {number(1s, 1), number(2s, 2), number(3s, 3),
+                                             number(9s, 4)};
   EXPECT_EQ(compare_all(recorded, recorded).text(), "4 messages, the same");
-  const auto result = compare_all(recorded, {number(kSecond, 1), number(2 * kSecond, 5),
-                                             number(9 * kSecond, 4), number(10 * kSecond, 6)});
+  const auto result =
+      compare_all(recorded, {number(1s, 1), number(2s, 5), number(9s, 4), number(10s, 6)});
   EXPECT_EQ(result.same, 2U);
   EXPECT_EQ(
       result.text(),
@@ -68,32 +68,28 @@ TEST(Comparison, CountsWhatDiffersIsMissingAndIsMore) {
 }
 
 TEST(Comparison, TimesMayGoBackWithinASecond) {
-  const std::vector<hc::Message> recorded = {number(2 * kSecond, 1), number(2 * kSecond - 5, 2),
-                                             number(2 * kSecond, 3)};
-  const std::vector<hc::Message> replayed = {number(2 * kSecond - 5, 2), number(2 * kSecond, 3),
-                                             number(2 * kSecond, 1)};
+  const std::vector<hc::Message> recorded = {number(2s, 1), number(2s - 5ns, 2), number(2s, 3)};
+  const std::vector<hc::Message> replayed = {number(2s - 5ns, 2), number(2s, 3), number(2s, 1)};
   EXPECT_EQ(compare_all(recorded, replayed).text(), "3 messages, the same");
   EXPECT_EQ(compare_all(replayed, recorded).text(), "3 messages, the same");
 }
 
 TEST(Comparison, EqualMessagesOfOneTimeAreCounted) {
-  const auto result = compare_all({number(1, 1), number(1, 1)}, {number(1, 1)});
+  const auto result = compare_all({number(1ns, 1), number(1ns, 1)}, {number(1ns, 1)});
   EXPECT_EQ(result.same, 1U);
   EXPECT_EQ(result.missing, 1U);
 }
 
 TEST(Comparison, ATimeMayDifferWhereThatIsAllowed) {
-  const std::vector<hc::Message> recorded = {number(kSecond, 1), number(2 * kSecond, 2)};
-  const std::vector<hc::Message> replayed = {number(kSecond + 100, 1),
-                                             number(2 * kSecond - 100, 2)};
+  const std::vector<hc::Message> recorded = {number(1s, 1), number(2s, 2)};
+  const std::vector<hc::Message> replayed = {number(1s + 100ns, 1), number(2s - 100ns, 2)};
   EXPECT_EQ(compare_all(recorded, replayed).missing, 2U);
-  EXPECT_EQ(compare_all(recorded, replayed, {.time = 99}).missing, 2U);
-  EXPECT_EQ(compare_all(recorded, replayed, {.time = 100}).text(), "2 messages, the same");
+  EXPECT_EQ(compare_all(recorded, replayed, {.time = 99ns}).missing, 2U);
+  EXPECT_EQ(compare_all(recorded, replayed, {.time = 100ns}).text(), "2 messages, the same");
 }
 
 TEST(Comparison, OfTheEndNotAllHasToBeReplayed) {
-  const std::vector<hc::Message> recorded = {number(kSecond, 1), number(2 * kSecond, 2),
-                                             number(3 * kSecond, 3)};
+  const std::vector<hc::Message> recorded = {number(1s, 1), number(2s, 2), number(3s, 3)};
   std::vector<hc::Message> numbered = recorded;
   for (std::size_t i = 0; i < numbered.size(); ++i)
     numbered[i].header.seq = static_cast<std::int64_t>(i);
@@ -108,8 +104,15 @@ TEST(Comparison, OfTheEndNotAllHasToBeReplayed) {
 
 TEST(Comparison, NothingIsTheSameAsNothing) {
   EXPECT_TRUE(compare_all({}, {}).is_same({}));
-  EXPECT_FALSE(compare_all({}, {number(1, 1)}).is_same({}));
-  EXPECT_FALSE(compare_all({number(1, 1)}, {}).is_same({}));
+  EXPECT_FALSE(compare_all({}, {number(1ns, 1)}).is_same({}));
+  EXPECT_FALSE(compare_all({number(1ns, 1)}, {}).is_same({}));
+}
+
+TEST(Comparison, DoesNotOverflow) {
+  constexpr auto kLatest = hc::Time::max().time_since_epoch();
+  const std::vector<hc::Message> all = {number(1ns, 1), number(kLatest, 2)};
+  EXPECT_EQ(compare_all(all, all).same, 2U);
+  EXPECT_EQ(compare_all(all, all, {.time = hc::duration(1e99)}).same, 2U);
 }
 
 }  // namespace

@@ -86,8 +86,9 @@ void observe(GraphFrames& frames, const FramesOptions& options,
     descriptors.push_back(sources.back()->descriptor());
   }
   auto is_known = [&] {
-    return options.time > 0 ? !frames.tree.is_ahead(options.target, options.source, options.time)
-                            : frames.tree.known(options.target, options.source).has_value();
+    return options.time > 0
+               ? !frames.tree.is_ahead(options.target, options.source, hc::unix_time(options.time))
+               : frames.tree.known(options.target, options.source).has_value();
   };
   using Clock = std::chrono::steady_clock;
   auto heard = Clock::now();
@@ -105,7 +106,9 @@ void observe(GraphFrames& frames, const FramesOptions& options,
 std::string text_of(const GraphFrames& frames, const FramesOptions& options) {
   const auto known = frames.tree.known(options.target, options.source);
   const bool is_fixed = known && *known == hc::frames::TimeSpan{};
-  const auto time = options.time > 0 || !known ? options.time : is_fixed ? 0 : known->last;
+  const auto time = options.time > 0 || !known ? hc::unix_time(options.time)
+                    : is_fixed                 ? hc::Time()
+                                               : known->last;
   const auto T =
       value_or_fail(frames.tree.lookup(options.target, options.source, time), options.graph.file);
   auto row = [](std::string_view what, const Eigen::Array3d& exact) {
@@ -117,7 +120,7 @@ std::string text_of(const GraphFrames& frames, const FramesOptions& options) {
   const auto chain =
       value_or_fail(frames.tree.chain(options.target, options.source), options.graph.file);
   return hc::format("{} to {}, {}\n", options.source, options.target,
-                    is_fixed ? "fixed" : hc::format("at {} ns", time)) +
+                    is_fixed ? "fixed" : hc::format("at {} ns", hc::unix_nanoseconds(time))) +
          row("translation [m]", T.translation()) + row("rotation", R.row(0)) + row("", R.row(1)) +
          row("", R.row(2)) +
          row("roll, pitch, yaw [degree]", hc::frames::angles_of(R) * (180 / std::numbers::pi)) +

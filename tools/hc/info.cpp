@@ -22,7 +22,8 @@ namespace {
 struct Sender {
   std::uint64_t messages = 0, bytes = 0;
   std::uint64_t lost = 0, repeated = 0, restarts = 0;
-  std::int64_t last_seq = -1, first_time = 0, last_time = 0;
+  std::int64_t last_seq = -1;
+  hc::Time first_time, last_time;
   std::set<std::string> types;
 
   void add(const hc::Message& message) {
@@ -37,15 +38,13 @@ struct Sender {
       if (header.seq < last_seq) ++restarts;
     }
     last_seq = header.seq;
-    if (header.time != 0 && first_time == 0) first_time = header.time;
-    if (header.time != 0) last_time = header.time;
+    if (header.time != hc::Time()) last_time = header.time;
+    if (first_time == hc::Time()) first_time = last_time;
     ++messages;
     bytes += message.elements.size();
   }
 
-  [[nodiscard]] double seconds() const {
-    return static_cast<double>(last_time - first_time) * 1e-9;
-  }
+  [[nodiscard]] double seconds() const { return hc::seconds(last_time - first_time); }
 };
 
 struct InfoOptions {
@@ -75,9 +74,8 @@ void print_senders(const std::map<std::int32_t, Sender>& senders) {
 }
 
 /// Prints the streams of a recording, and other topics.
-void print_streams(const std::vector<hc::record::StreamInfo>& streams, std::int64_t duration,
+void print_streams(const std::vector<hc::record::StreamInfo>& streams, double seconds,
                    const std::string& size) {
-  const double seconds = static_cast<double>(duration) * 1e-9;
   std::string text = hc::format("{:<32} {:>9} {:>8}  {}\n", "stream", "messages", "rate", "type");
   std::uint64_t messages = 0;
   for (const auto& each : streams) {
@@ -92,15 +90,16 @@ void print_streams(const std::vector<hc::record::StreamInfo>& streams, std::int6
 void print_folder(const hc::record::Place& place, std::uint64_t limit) {
   const auto streams = value_or_fail(
       open_recording({place}, limit)->streams(hc::record::StreamDetail::Counts), place.text());
-  std::int64_t begin = 0, end = 0;
+  hc::Time begin, end;
   std::uintmax_t size = 0;
   for (const auto& each : streams) {
-    if (each.begin != 0) begin = begin == 0 ? each.begin : std::min(begin, each.begin);
+    if (each.begin != hc::Time())
+      begin = begin == hc::Time() ? each.begin : std::min(begin, each.begin);
     end = std::max(end, each.end);
     std::error_code missing;
     size += std::filesystem::file_size(hc::record::stream_file(place.path, each.name), missing);
   }
-  print_streams(streams, end - begin, bytes_in_words(size));
+  print_streams(streams, hc::seconds(end - begin), bytes_in_words(size));
   bool is_whole = true;
   for (const auto& each : streams) {
     if (each.status) continue;
@@ -122,14 +121,11 @@ void print_mcap(const std::string& path) {
     if (shown.contains(id)) continue;
     const auto count = summary.counts.find(id);
     const auto schema = summary.schemas.find(channel.schema);
-    streams.push_back({channel.topic,
-                       schema == summary.schemas.end() ? channel.encoding : schema->second.name,
-                       count == summary.counts.end() ? 0 : count->second,
-                       0,
-                       0,
-                       {}});
+    const auto messages = count == summary.counts.end() ? 0 : count->second;
+    const auto& type = schema == summary.schemas.end() ? channel.encoding : schema->second.name;
+    streams.push_back({channel.topic, type, messages, {}, {}, {}});
   }
-  print_streams(streams, static_cast<std::int64_t>(summary.end - summary.begin),
+  print_streams(streams, static_cast<double>(summary.end - summary.begin) * 1e-9,
                 hc::format("{} in {} of {}", bytes_in_words(reader.size()),
                            counted(summary.chunks, "chunk"), bytes_in_words(summary.plain)));
   if (!summary.metadata.empty())

@@ -84,7 +84,7 @@ bool write_json(const hc::Message& message, const hc::Header& header, const Writ
   add("dst", header.dst);
   add("seq", header.seq);
   add("ttl", header.ttl);
-  add("time", header.time);
+  add("time", hc::unix_nanoseconds(header.time));
   add("info", header.info.code());
   add("mode", header.mode);
   add("coord", header.coord);

@@ -74,19 +74,19 @@ bool play_once(const PlayOptions& options, double speed, hc::Sink& sink, Progres
   auto reader = open_recording({place}, options.limit);
   std::error_code unknown;
   auto size = static_cast<double>(std::filesystem::file_size(place.path, unknown));
-  std::int64_t begin = 0;
+  hc::Time begin;
   if (place.kind != hc::record::Place::Kind::Link && options.from > 0) {
-    begin = value_or_fail(reader->next_time(), options.file).value_or(0);
-    reader->start_at(begin + hc::duration(options.from).count());
+    begin = value_or_fail(reader->next_time(), options.file).value_or(hc::Time());
+    reader->start_at(hc::later(begin, hc::duration(options.from)));
   }
   Pace pace(speed, options.gap);
   bool any = false;
   hc::Message message;
   while (receive(*reader, message, options.file)) {
     const auto time = reader->log_time();
-    if (begin == 0) begin = time;
-    if (time != 0) {  // messages before the first time are sent at once
-      const double seconds = static_cast<double>(time - begin) * 1e-9;
+    if (begin == hc::Time()) begin = time;
+    if (time != hc::Time()) {  // messages before the first time are sent at once
+      const double seconds = hc::seconds(time - begin);
       if (seconds < options.from) continue;
       if (seconds > options.to) break;
       if (!pace.wait_for(seconds)) return false;

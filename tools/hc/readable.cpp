@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <limits>
 
 #include <hc/base/format.h>
@@ -52,14 +51,14 @@ std::string rows_of(const hc::MatrixView<const T>& matrix) {
 
 }  // namespace
 
-std::string time_in_words(std::int64_t time) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  std::time_t seconds = time / kSecond;
-  std::tm parts{};
-  ::gmtime_r(&seconds, &parts);
-  return hc::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:09}", parts.tm_year + 1900,
-                    parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec,
-                    time % kSecond);
+std::string time_in_words(hc::Time time) {
+  const auto day = std::chrono::floor<std::chrono::days>(time);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss clock(time - day);
+  return hc::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:09}", static_cast<int>(date.year()),
+                    static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                    clock.hours().count(), clock.minutes().count(), clock.seconds().count(),
+                    clock.subseconds().count());
 }
 
 std::string to_readable(const hc::Message& message) {
@@ -70,7 +69,7 @@ std::string to_readable(const hc::Message& message) {
   if (header.dst != 0) text += hc::format(" dst {}", header.dst);
   if (header.mode != 0) text += hc::format(" mode {}", header.mode);
   if (header.coord != 0) text += " in " + hc::coord_text(header.coord);
-  if (header.time != 0) text += " at " + time_in_words(header.time);
+  if (header.time != hc::Time()) text += " at " + time_in_words(header.time);
   text += "\n";
   if (!message.plain())
     return text +

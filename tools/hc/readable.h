@@ -16,7 +16,7 @@ namespace tool {
 std::string to_readable(const hc::Message& message);
 
 /// "2025-11-21 04:20:00.123456789" (UTC)
-std::string time_in_words(std::int64_t time);
+std::string time_in_words(hc::Time time);
 
 /// Appends a number as in MTP's text encoding, in the shortest form with the same value: 0.1,
 /// 1e+05, -0, nan.

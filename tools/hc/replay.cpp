@@ -35,7 +35,7 @@ namespace tool {
 namespace {
 
 namespace fs = std::filesystem;
-using Key = std::tuple<std::int32_t, std::int64_t, std::int64_t>;  // src, seq, time
+using Key = std::tuple<std::int32_t, std::int64_t, hc::Time>;  // src, seq, time
 using What = hc::TraceEvent::What;
 
 constexpr const char* kFocus = "focus";
@@ -120,7 +120,7 @@ std::vector<hc::TraceEvent> read_events(const GraphRecording& recording,
 
 /// The module's clock at an event: the time of a message sent then with a new time, since that is
 /// when the module read its clock; otherwise the event's moment.
-std::int64_t clock_at(const std::vector<hc::TraceEvent>& events, std::size_t at) {
+hc::Time clock_at(const std::vector<hc::TraceEvent>& events, std::size_t at) {
   const auto& event = events[at];
   const bool is_handler = event.what == What::Began;
   for (auto next = is_handler ? at + 1 : at; next < events.size(); ++next) {
@@ -146,7 +146,7 @@ std::vector<hc::TraceEvent> steps_of(const std::vector<hc::TraceEvent>& events) 
   const auto last = whole_steps(events);
   for (std::size_t i = 0; i < events.size(); ++i) {
     const bool is_focus = events[i].what == What::Took && events[i].port == kFocus;
-    if (i == 0) steps.push_back({What::Took, "", 0, 0, 0, clock_at(events, i)});
+    if (i == 0) steps.push_back({What::Took, "", 0, 0, {}, clock_at(events, i)});
     if (!is_focus && events[i].what != What::Began) continue;
     if (i >= last) break;
     auto& step = steps.emplace_back(events[i]);
@@ -384,7 +384,7 @@ class Replay {
     auto replayed = [&](hc::Message& message) {
       return receive(*made, message, again) && expand(message, again);
     };
-    const Tolerance tolerance{numbers_.of(output), hc::duration(times_.of(output)).count(),
+    const Tolerance tolerance{numbers_.of(output), hc::duration(times_.of(output)),
                               shares_.of(output)};
     const auto last = last_.find(output);
     const auto result = last == last_.end() ? compare(recorded, replayed, tolerance)

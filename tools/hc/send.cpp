@@ -162,10 +162,7 @@ void run(const SendOptions& options) {
   header.width = message.header.width;
   header.height = message.header.height;
   header.ttl = static_cast<std::uint8_t>(options.ttl);
-  header.time = options.time >= 0 ? options.time
-                                  : std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                        std::chrono::system_clock::now().time_since_epoch())
-                                        .count();
+  header.time = options.time >= 0 ? hc::unix_time(options.time) : hc::SystemClock().wall();
   if (header.coord == 0) header.coord = message.header.coord;
   message.header = header;
   message.header.info.encoding = hc::Encoding::Binary;

@@ -148,8 +148,8 @@ Collected read_recording(const TraceOptions& options) {
   return collected;
 }
 
-std::string milliseconds(std::int64_t nanoseconds) {
-  const double value = static_cast<double>(nanoseconds) * 1e-6;
+std::string milliseconds(nanoseconds duration) {
+  const double value = static_cast<double>(duration.count()) * 1e-6;
   return value >= 100 ? hc::format("{:.0f}", value) : hc::format("{:.3g}", value);
 }
 
@@ -206,7 +206,7 @@ std::string json_of(const std::string& port, const std::vector<PathSummary>& sum
                     std::size_t messages, std::int64_t lost) {
   using nlohmann::json;
   auto pair = [](const Spread& spread) {
-    return json{static_cast<double>(spread.median) * 1e-9, static_cast<double>(spread.p99) * 1e-9};
+    return json{hc::seconds(spread.median), hc::seconds(spread.p99)};
   };
   json paths = json::array();
   for (const auto& summary : summaries) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -15,43 +14,43 @@ namespace tool {
 namespace {
 
 using What = hc::TraceEvent::What;
-using Key = std::tuple<std::int32_t, std::int64_t, std::int64_t>;  // src, seq, time
+using Key = std::tuple<std::int32_t, std::int64_t, hc::Time>;  // src, seq, time
 
 constexpr std::size_t kMostSteps = 64;
-constexpr std::int64_t kMaxAge = 1'000'000'000;  // older messages do not affect a new one [ns]
-constexpr int kMostVisited = 10'000;             // outputs, for one message
+constexpr std::chrono::seconds kMaxAge{1};  // older messages do not affect a new one
+constexpr int kMostVisited = 10'000;        // outputs, for one message
 
 Key key_of(const hc::TraceEvent& event) {
   return {event.src, event.seq, event.time};
 }
 
-/// A message at an input. [ns]
+/// A message at an input.
 struct Visit {
   std::string port;
   Key key;
-  std::int64_t took = 0;
-  std::optional<std::int64_t> began, ended;
+  hc::Time took;
+  std::optional<hc::Time> began, ended;
 };
 
 struct Sending {
   std::string module, port;
   Key key;
-  std::int64_t moment = 0;
+  hc::Time moment;
 };
 
 struct Module {
-  std::vector<Visit> visits;                                // in the order of arrival
-  std::vector<std::pair<std::int64_t, std::int64_t>> busy;  // disjoint periods, in order
-  std::multimap<std::int64_t, const Visit*> at_time;        // by time of the message
+  std::vector<Visit> visits;                        // in the order of arrival
+  std::vector<std::pair<hc::Time, hc::Time>> busy;  // disjoint periods, in order
+  std::multimap<hc::Time, const Visit*> at_time;    // by time of the message
   /// Handled messages with a time, by input, in the order of their handlers.
   std::map<std::string, std::vector<const Visit*>> handled;
 
   /// The time within a period during which a handler was running.
-  [[nodiscard]] std::int64_t busy_within(std::int64_t begin, std::int64_t end) const {
-    std::int64_t sum = 0;
+  [[nodiscard]] nanoseconds busy_within(hc::Time begin, hc::Time end) const {
+    nanoseconds sum{0};
     auto each = std::ranges::lower_bound(busy, begin, {}, [](const auto& b) { return b.second; });
     for (; each != busy.end() && each->first < end; ++each)
-      sum += std::max<std::int64_t>(std::min(end, each->second) - std::max(begin, each->first), 0);
+      sum += std::max(std::min(end, each->second) - std::max(begin, each->first), nanoseconds(0));
     return sum;
   }
 };
@@ -60,7 +59,7 @@ struct Module {
 Module read_module(const std::vector<hc::TraceEvent>& events) {
   Module module;
   std::map<std::pair<std::string, Key>, std::size_t> open;  // the newest visit of each message
-  std::int64_t begin = 0;
+  hc::Time begin;
   int depth = 0;  // synchronised messages are handled together
   for (const auto& event : events) {
     const auto name = std::pair(event.port, key_of(event));
@@ -75,13 +74,13 @@ Module read_module(const std::vector<hc::TraceEvent>& events) {
     } else if (event.what == What::Ended) {
       if (visit != nullptr) visit->ended = event.moment;
       depth = std::max(depth - 1, 0);  // the trace may begin within a handler
-      if (depth == 0 && begin != 0) module.busy.emplace_back(begin, event.moment);
+      if (depth == 0 && begin != hc::Time()) module.busy.emplace_back(begin, event.moment);
     }
   }
   for (const auto& visit : module.visits) {
     const auto time = std::get<2>(visit.key);
     module.at_time.emplace(time, &visit);
-    if (visit.began && time != 0) module.handled[visit.port].push_back(&visit);
+    if (visit.began && time != hc::Time()) module.handled[visit.port].push_back(&visit);
   }
   for (auto& [port, visits] : module.handled)
     std::ranges::stable_sort(visits, {}, [](const Visit* visit) { return *visit->began; });
@@ -109,13 +108,13 @@ class PathFinder {
     if (module == modules_.end()) return {};
     may_renew_at_ = 1;
     for (const auto& visit : module->second.visits)
-      if (visit.port == at && std::get<2>(visit.key) != 0)
+      if (visit.port == at && std::get<2>(visit.key) != hc::Time())
         collect([&] { arrive(name, visit); }, visit.took, std::get<2>(visit.key));
     if (!found_.empty()) return std::move(found_);
     may_renew_at_ = 0;
     for (const auto& [time, sendings] : sent_at_time_)
       for (const auto& sending : sendings)
-        if (time != 0 && sending.module == name && sending.port == at)
+        if (time != hc::Time() && sending.module == name && sending.port == at)
           collect([&] { leave(sending); }, sending.moment, time);
     return std::move(found_);
   }
@@ -123,7 +122,7 @@ class PathFinder {
  private:
   /// Walks backwards from a port; `back_` has the later steps.
   template <typename Walk>
-  void collect(const Walk& walk, std::int64_t end, std::int64_t time) {
+  void collect(const Walk& walk, hc::Time end, hc::Time time) {
     back_.clear();
     is_critical_ = true;
     end_ = end;
@@ -133,7 +132,7 @@ class PathFinder {
     walk();
   }
 
-  void finish(Step step, std::int64_t time) {
+  void finish(Step step, hc::Time time) {
     MessagePath path;
     path.steps.assign(back_.rbegin(), back_.rend());
     path.steps.insert(path.steps.begin(), std::move(step));
@@ -153,7 +152,7 @@ class PathFinder {
 
   /// Starts at an input.
   void arrive(const std::string& name, const Visit& visit) {
-    Step step{name, visit.port, "", false, 0, 0, 0};
+    Step step{name, visit.port, "", false, {}, {}, {}};
     if (visit.began) {
       step.waiting = *visit.began - visit.took;
       step.processing = visit.ended.value_or(*visit.began) - *visit.began;
@@ -208,9 +207,9 @@ class PathFinder {
                "",
                is_uri ? "" : from.substr(from.find('.') + 1),
                true,
-               0,
-               0,
-               0};
+               {},
+               {},
+               {}};
     back_.push_back(std::move(step));
     const auto time = std::get<2>(visit.key);
     std::map<std::string, const Sending*> inputs;  // last message sent to each input of the module
@@ -254,12 +253,11 @@ class PathFinder {
     const auto before_this = found_.size();
     follow(sending, inputs, renews);
     if (inputs.empty() || (renews && found_.size() == before_this))
-      finish({sending.module, "", sending.port, false, 0, 0, sending.moment - time}, time);
+      finish({sending.module, "", sending.port, false, {}, {}, sending.moment - time}, time);
   }
 
   /// The last message at each input within kMaxAge.
-  static std::map<std::string, const Visit*> last_handled(const Module& module,
-                                                          std::int64_t moment) {
+  static std::map<std::string, const Visit*> last_handled(const Module& module, hc::Time moment) {
     std::map<std::string, const Visit*> inputs;
     for (const auto& [port, visits] : module.handled) {
       const auto later = std::ranges::upper_bound(visits, moment, {},
@@ -281,7 +279,7 @@ class PathFinder {
       if (renews ? std::get<2>(visit->key) < std::get<2>(last->key) : visit->took > last->took)
         last = visit;
     for (const auto& [port, visit] : inputs) {
-      Step step{sending.module, port, sending.port, false, 0, 0, 0, renews};
+      Step step{sending.module, port, sending.port, false, {}, {}, {}, renews};
       // A handler that is still running counts up to the moment of sending.
       const auto running = visit->ended && *visit->ended <= sending.moment
                                ? module.busy_within(*visit->began, sending.moment)
@@ -295,12 +293,13 @@ class PathFinder {
   std::vector<std::pair<std::string, std::string>> links_;
   std::map<std::string, Module> modules_;
   std::map<Key, std::vector<Sending>> sent_;
-  std::map<std::int64_t, std::vector<Sending>> sent_at_time_;
+  std::map<hc::Time, std::vector<Sending>> sent_at_time_;
   std::vector<MessagePath> found_;
   std::vector<Step> back_;
   std::size_t may_renew_at_ = 0;  // number of later steps at which a module may renew the time
   bool is_critical_ = true;
-  std::int64_t end_ = 0, age_ = 0;
+  hc::Time end_;
+  nanoseconds age_{0};
   std::size_t first_ = 0;  // index of this message's first path
   int visited_ = 0;
 };
@@ -320,7 +319,7 @@ std::vector<MessagePath> find_paths(const Traced& traced, const std::string& por
   return PathFinder(traced).find(port);
 }
 
-Spread spread_of(std::vector<std::int64_t> durations) {
+Spread spread_of(std::vector<nanoseconds> durations) {
   if (durations.empty()) return {};
   std::ranges::sort(durations);
   return {durations[(durations.size() - 1) / 2], durations[(durations.size() - 1) * 99 / 100]};
@@ -342,7 +341,7 @@ std::vector<PathSummary> summarise(const std::vector<MessagePath>& paths) {
     summary.critical = static_cast<std::size_t>(
         std::ranges::count_if(same, [](const auto* path) { return path->is_critical; }));
     auto spread = [&](const auto& duration) {
-      std::vector<std::int64_t> all;
+      std::vector<nanoseconds> all;
       all.reserve(same.size());
       for (const auto* path : same) all.push_back(duration(*path));
       return spread_of(std::move(all));
@@ -393,11 +392,12 @@ class ChromeTrace {
   using json = nlohmann::json;
   struct Sender {
     int process;
-    std::int64_t moment;
+    hc::Time moment;
   };
 
   void add(const hc::TraceEvent& event) {
-    const json header = {{"src", event.src}, {"seq", event.seq}, {"time", event.time}};
+    const json header = {
+        {"src", event.src}, {"seq", event.seq}, {"time", hc::unix_nanoseconds(event.time)}};
     if (event.what == What::Began && event.port.empty()) {
       write("B", process_, "timer", event.moment, json::object());
       ++depth_;
@@ -426,20 +426,19 @@ class ChromeTrace {
     write("f", process_, "message", event.moment, {{"id", arrows_}, {"bp", "e"}});
   }
 
-  void write(const char* kind, int process, const std::string& what, std::int64_t moment,
-             json more) {
+  void write(const char* kind, int process, const std::string& what, hc::Time moment, json more) {
     more.update({{"ph", kind},
                  {"pid", process},
                  {"tid", 1},
                  {"cat", "message"},
                  {"name", what},
-                 {"ts", static_cast<double>(moment - first_) * 1e-3}});  // [µs]
+                 {"ts", static_cast<double>((moment - first_).count()) * 1e-3}});  // [µs]
     text_ += "\n" + more.dump() + ",";
   }
 
   std::string text_ = R"({"displayTimeUnit":"ms","traceEvents":[)";
   std::map<Key, std::vector<Sender>> senders_;
-  std::int64_t first_ = std::numeric_limits<std::int64_t>::max();
+  hc::Time first_ = hc::Time::max();
   int process_ = 0, arrows_ = 0;
   int depth_ = 0;  // of handlers; the trace may begin within one
 };

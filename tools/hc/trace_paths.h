@@ -3,7 +3,7 @@
 // Reconstructs the paths of messages through a graph from the traces of modules
 // (hc/contract/trace.h): what a message was derived from, and how long each step took. Pure.
 
-#include <cstdint>
+#include <chrono>
 #include <map>
 #include <string>
 #include <utility>
@@ -13,6 +13,8 @@
 
 namespace tool {
 
+using std::chrono::nanoseconds;
+
 /// The traces of modules.
 struct Traced {
   std::map<std::string, std::vector<hc::TraceEvent>> events;  ///< by module, in order
@@ -20,20 +22,20 @@ struct Traced {
   std::vector<std::pair<std::string, std::string>> links;
 };
 
-/// The part of a path within one module. [ns]
+/// The part of a path within one module.
 struct Step {
   std::string module;
-  std::string in;               ///< empty: the path begins here, at the message's time
-  std::string out;              ///< empty: the path ends here
-  bool is_outside = false;      ///< the module has no trace: all time is `processing`
-  std::int64_t link = 0;        ///< from the sender to the input, while the module was free
-  std::int64_t waiting = 0;     ///< for the module, a partner message, or a timer that sends
-  std::int64_t processing = 0;  ///< in handlers; in the first step since the message's time
+  std::string in;             ///< empty: the path begins here, at the message's time
+  std::string out;            ///< empty: the path ends here
+  bool is_outside = false;    ///< the module has no trace: all time is `processing`
+  nanoseconds link{0};        ///< from the sender to the input, while the module was free
+  nanoseconds waiting{0};     ///< for the module, a partner message, or a timer that sends
+  nanoseconds processing{0};  ///< in handlers; in the first step since the message's time
 
   /// The message sent has a new time; it was derived from the messages handled last.
   bool renews_time = false;
 
-  [[nodiscard]] std::int64_t sum() const { return link + waiting + processing; }
+  [[nodiscard]] nanoseconds sum() const { return link + waiting + processing; }
   [[nodiscard]] std::string text() const;
 };
 
@@ -43,8 +45,8 @@ std::string module_of(const std::string& port);
 /// A path of a message to the port in question.
 struct MessagePath {
   std::vector<Step> steps;   ///< from the origin
-  std::int64_t age = 0;      ///< of the message when taken by the input, or sent by the output [ns]
-  std::int64_t total = 0;    ///< time since the origin; more than `age` if a step renews the time
+  nanoseconds age{0};        ///< of the message when taken by the input, or sent by the output
+  nanoseconds total{0};      ///< time since the origin; more than `age` if a step renews the time
   bool is_critical = false;  ///< each step was entered by the input that came last
 };
 
@@ -59,11 +61,11 @@ struct MessagePath {
 std::vector<MessagePath> find_paths(const Traced& traced, const std::string& port);
 inline constexpr std::size_t kMostPaths = 64;
 
-/// Statistics of durations. [ns]
+/// Statistics of durations.
 struct Spread {
-  std::int64_t median = 0, p99 = 0;
+  nanoseconds median{0}, p99{0};
 };
-Spread spread_of(std::vector<std::int64_t> durations);
+Spread spread_of(std::vector<nanoseconds> durations);
 
 /// Statistics of messages with the same path.
 struct PathSummary {

@@ -10,14 +10,14 @@ namespace {
 
 using hc::TraceEvent;
 using What = TraceEvent::What;
+using namespace std::chrono_literals;
 
-constexpr std::int64_t kSeen = 1000, kLater = 2000;  // times of messages
+constexpr hc::Time kSeen = hc::unix_time(1000), kLater = hc::unix_time(2000);  // of messages
 
 /// Events of one module for messages of one time; moments are relative to it.
 class Events {
  public:
-  explicit Events(std::vector<TraceEvent>& events, std::int64_t seen)
-      : events_(events), seen_(seen) {}
+  explicit Events(std::vector<TraceEvent>& events, hc::Time seen) : events_(events), seen_(seen) {}
   Events& took(const std::string& port, int src, std::int64_t at) {
     return add(What::Took, port, src, at);
   }
@@ -36,27 +36,27 @@ class Events {
   }
   /// A timer handler.
   Events& busy(std::int64_t begin, std::int64_t end) {
-    events_.push_back({What::Began, "", 0, 0, 0, seen_ + begin});
-    events_.push_back({What::Ended, "", 0, 0, 0, seen_ + end});
+    events_.push_back({What::Began, "", 0, 0, {}, seen_ + nanoseconds(begin)});
+    events_.push_back({What::Ended, "", 0, 0, {}, seen_ + nanoseconds(end)});
     return *this;
   }
 
  private:
   Events& add(What what, const std::string& port, int src, std::int64_t at) {
-    events_.push_back({what, port, src, 5, seen_, seen_ + at});
+    events_.push_back({what, port, src, 5, seen_, seen_ + nanoseconds(at)});
     return *this;
   }
   std::vector<TraceEvent>& events_;
-  std::int64_t seen_;
+  hc::Time seen_;
 };
 
 struct Chain : ::testing::Test {
   Traced traced;
-  Events of(const std::string& module, std::int64_t seen = kSeen) {
+  Events of(const std::string& module, hc::Time seen = kSeen) {
     return Events(traced.events[module], seen);
   }
   /// Takes an image and sends a position.
-  void blob_follows_eye(std::int64_t seen = kSeen) {
+  void blob_follows_eye(hc::Time seen = kSeen) {
     of("eye", seen).sent("left", 1, 100);
     of("blob", seen).took("image", 1, 130).began("image", 1, 135).sent("target", 2, 180);
     of("blob", seen).ended("image", 1, 190);
@@ -73,14 +73,14 @@ struct Chain : ::testing::Test {
 std::string words(const MessagePath& path) {
   std::string text;
   for (const auto& step : path.steps)
-    text += (text.empty() ? "" : ", ") + step.text() + " " + std::to_string(step.link) + "/" +
-            std::to_string(step.waiting) + "/" + std::to_string(step.processing) +
-            (step.is_outside ? " outside" : "");
+    text += (text.empty() ? "" : ", ") + step.text() + " " + std::to_string(step.link.count()) +
+            "/" + std::to_string(step.waiting.count()) + "/" +
+            std::to_string(step.processing.count()) + (step.is_outside ? " outside" : "");
   return text;
 }
 
-std::int64_t sum(const MessagePath& path) {
-  std::int64_t all = 0;
+nanoseconds sum(const MessagePath& path) {
+  nanoseconds all{0};
   for (const auto& step : path.steps) all += step.sum();
   return all;
 }
@@ -90,16 +90,16 @@ TEST_F(Chain, StepsAddUpToTheAge) {
   of("neck").busy(150, 200).took("command", 2, 203).handled("command", 2, 204, 210);
   const auto path = path_to("neck.command");
   EXPECT_EQ(words(path), "eye.left 0/0/100, blob: image → target 30/5/45, neck.command 3/21/6");
-  EXPECT_EQ(path.age, 203);
+  EXPECT_EQ(path.age, 203ns);
   EXPECT_TRUE(path.is_critical);
-  EXPECT_EQ(sum(path) - 1 - 6, path.age);  // without the time after its arrival
+  EXPECT_EQ(sum(path) - 7ns, path.age);  // without the time after its arrival
 }
 
 TEST_F(Chain, OfAnOutputEndsWithItsSending) {
   blob_follows_eye();
   const auto path = path_to("blob.target");
   EXPECT_EQ(words(path), "eye.left 0/0/100, blob: image → target 30/5/45");
-  EXPECT_EQ(path.age, 180);
+  EXPECT_EQ(path.age, 180ns);
   EXPECT_EQ(sum(path), path.age);
 }
 
@@ -118,7 +118,7 @@ TEST_F(Chain, OfTwoInputsTheLaterOneIsCritical) {
   ASSERT_EQ(summaries.size(), 2U);
   EXPECT_EQ(summaries[0].steps[0].text(), "eyes.right");
   EXPECT_EQ(summaries[0].critical, 1U);
-  EXPECT_EQ(summaries[0].durations[1].link.median, 20);
+  EXPECT_EQ(summaries[0].durations[1].link.median, 20ns);
 }
 
 TEST_F(Chain, WhatATimerSendsHasWaitedForIt) {
@@ -140,13 +140,13 @@ TEST_F(Chain, OfAControllersNewTimeThePathGoesOnAtWhatItHandledLast) {
   ASSERT_EQ(paths.size(), 2U);
   EXPECT_EQ(words(paths[0]), "neck.pose 0/0/1, gaze: pose → command 4/15/1, neck.command 10/0/0");
   EXPECT_FALSE(paths[0].is_critical);
-  EXPECT_EQ(paths[0].total, 31);
+  EXPECT_EQ(paths[0].total, 31ns);
   EXPECT_EQ(words(paths[1]),
             "eye.left 0/0/100, gaze: target → command 20/190/11, neck.command 10/0/0");
   EXPECT_TRUE(paths[1].steps[1].renews_time);
   EXPECT_TRUE(paths[1].is_critical);  // sensed first
-  EXPECT_EQ(paths[1].age, 11);
-  EXPECT_EQ(paths[1].total, 331);
+  EXPECT_EQ(paths[1].age, 11ns);
+  EXPECT_EQ(paths[1].total, 331ns);
 }
 
 TEST_F(Chain, ASensorBehindTheNextModuleBegins) {
@@ -165,23 +165,22 @@ TEST_F(Chain, ASensorThatFeedsTheModuleOfAnOutputBegins) {
 }
 
 TEST_F(Chain, OfANewTimeTheLastMessageAtEachInputCountsForASecond) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
   auto& events = traced.events["gaze"];
-  auto handle = [&](const std::string& port, int seq, std::int64_t at) {
+  auto handle = [&](const std::string& port, int seq, nanoseconds after) {
+    const hc::Time at(after);
     events.push_back({What::Took, port, 1, seq, at, at});
     events.push_back({What::Began, port, 1, seq, at, at});
     events.push_back({What::Ended, port, 1, seq, at, at});
   };
-  handle("old", 1, kSecond);
-  handle("new", 2, 2 * kSecond - 100);
-  handle("new", 3, 2 * kSecond);
-  const auto sent = 2 * kSecond + 1;
+  handle("old", 1, 1s);
+  handle("new", 2, 2s - 100ns);
+  handle("new", 3, 2s);
+  const hc::Time sent(2s + 1ns);
   events.push_back({What::Sent, "command", 2, 0, sent, sent});
-  handle("new", 4, 2 * kSecond + 2);
-  traced.events["eye"] = {{What::Sent, "out", 1, 1, kSecond, kSecond},
-                          {What::Sent, "out", 1, 2, 2 * kSecond - 100, 2 * kSecond - 100},
-                          {What::Sent, "out", 1, 3, 2 * kSecond, 2 * kSecond},
-                          {What::Sent, "out", 1, 4, 2 * kSecond + 2, 2 * kSecond + 2}};
+  handle("new", 4, 2s + 2ns);
+  for (const auto& event : events)
+    if (event.what == What::Took)
+      traced.events["eye"].push_back({What::Sent, "out", 1, event.seq, event.time, event.moment});
   EXPECT_EQ(words(path_to("gaze.command")), "eye.out 0/0/0, gaze: new → command 0/1/0");
 }
 
@@ -225,11 +224,11 @@ TEST_F(Chain, BranchesAreBounded) {
 }
 
 TEST(Spread, IsOfAllDurations) {
-  EXPECT_EQ(spread_of({}).median, 0);
-  std::vector<std::int64_t> all;
-  for (int i = 0; i <= 200; ++i) all.push_back(200 - i);
-  EXPECT_EQ(spread_of(all).median, 100);
-  EXPECT_EQ(spread_of(all).p99, 198);
+  EXPECT_EQ(spread_of({}).median, 0ns);
+  std::vector<nanoseconds> all;
+  for (int i = 0; i <= 200; ++i) all.emplace_back(200 - i);
+  EXPECT_EQ(spread_of(all).median, 100ns);
+  EXPECT_EQ(spread_of(all).p99, 198ns);
 }
 
 TEST_F(Chain, IsWrittenForPerfetto) {

@@ -93,7 +93,8 @@ std::vector<Message> Supervised::catch_up() {
     for (const auto& command : *some) add(command);
   for (const auto& input : finished_) add({Verb::Finish, true, input, {}});
   for (const auto& [port, observed] : observed_) add({Verb::Link, false, observed.end.text(), {}});
-  if (wall_offset_ != 0) add({Verb::WallOffset, true, std::to_string(wall_offset_), {}});
+  if (wall_offset_.count() != 0)
+    add({Verb::WallOffset, true, std::to_string(wall_offset_.count()), {}});
   update_known();
   return commands;
 }
@@ -125,14 +126,14 @@ void Supervised::check_host() {
 
 /// Sends the clock offset to a module on another host.
 void Supervised::send_wall_offset() {
-  constexpr std::int64_t kNear = 20'000;  // [ns]
+  constexpr std::chrono::microseconds kNear{20};
   const auto there = takes_commands() && process_->runs() ? process_host_ : nullptr;
   if (!there || !there->state().is_connected) return;
   const auto wall_offset = there->wall_offset();
-  if (std::abs(wall_offset - wall_offset_) < kNear) return;
+  if (std::chrono::abs(wall_offset - wall_offset_) < kNear) return;
   wall_offset_ = wall_offset;
   if (process_->is_listening())
-    send_commands({{Verb::WallOffset, true, std::to_string(wall_offset), {}}});
+    send_commands({{Verb::WallOffset, true, std::to_string(wall_offset.count()), {}}});
 }
 
 Status Supervised::start() {
@@ -151,12 +152,13 @@ Status Supervised::start() {
   lines_.forget();
   restarts_.started(now());
   ++starts_;
-  wall_offset_ = there && takes_commands() ? there->wall_offset() : 0;
+  wall_offset_ = there && takes_commands() ? there->wall_offset() : std::chrono::nanoseconds(0);
   PlannedModule plan = plan_;
   // A workspace starts with the stops of its last process.
   if (const auto& stops = reports_.state().stops; !stops.empty() && plan.known.contains(kStops))
     plan.parameters.try_emplace(kStops, stops_text(stops));
-  if (there && takes_commands()) plan.add_option("--wall_offset", std::to_string(wall_offset_));
+  if (there && takes_commands())
+    plan.add_option("--wall_offset", std::to_string(wall_offset_.count()));
   if (takes_commands() && callbacks_.is_graph_running()) plan.options.emplace_back("--join");
   if (auto started = process_->start(plan.command(), plan.control_uri); !started)
     return Error{started.error().code, plan_.name + ": " + started.error().detail};

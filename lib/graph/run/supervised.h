@@ -152,7 +152,7 @@ class Supervised {
   Callbacks callbacks_;
   Hosts* hosts_;
   bool awaits_host_ = false;
-  std::int64_t wall_offset_ = 0;  // last sent to a process on another host [ns]
+  std::chrono::nanoseconds wall_offset_{0};  // last sent to a process on another host
   ModuleStatus status_ = ModuleStatus::Waiting;
   std::string detail_;
   Wish wish_ = Wish::None;

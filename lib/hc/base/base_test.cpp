@@ -48,14 +48,13 @@ TEST(Code, HasANameEach) {
 
 TEST(Clock, OnlyHandsMoveAManualOne) {
   ManualClock clock;
-  clock.set_wall(1000);
+  clock.set_wall(unix_time(1000));
   clock.advance(std::chrono::nanoseconds(50));
-  EXPECT_EQ(clock.wall(), 1050);
+  EXPECT_EQ(clock.wall(), unix_time(1050));
   EXPECT_EQ(clock.monotonic(), MonotonicTime(50));
 }
 
 TEST(Clock, SecondsAndBack) {
-  EXPECT_EQ(seconds(1'500'000'000), 1.5);
   EXPECT_EQ(seconds(std::chrono::milliseconds(250)), 0.25);
   EXPECT_EQ(duration(0.25), std::chrono::milliseconds(250));
   EXPECT_EQ(duration(0.0 / 0.0).count(), 0);
@@ -66,7 +65,7 @@ TEST(Clock, TheSystemsMonotonicOneNeverGoesBack) {
   SystemClock clock;
   auto before = clock.monotonic();
   EXPECT_LE(before, clock.monotonic());
-  EXPECT_GT(clock.wall(), 1'700'000'000'000'000'000);
+  EXPECT_GT(clock.wall(), unix_time(1'700'000'000'000'000'000));
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ Message image_of(std::int32_t width, std::int32_t height, std::uint8_t component
                  scalar_for<T>(), Encoding::Binary};
   header.width = width;
   header.height = height;
-  header.time = 12;
+  header.time = unix_time(12);
   header.coord = 7;
   Draft draft = Draft::make(header);
   std::copy(pixels.begin(), pixels.end(), view<T>(draft).numbers().begin());

@@ -21,8 +21,11 @@ std::optional<TraceEvent> parse_event(std::string_view row) {
   event.port = take_until(row, ' ');
   if (event.port == "-") event.port.clear();
   auto take = [&](auto& number) { return read_number(take_until(row, ' '), number); };
+  std::int64_t time = 0, moment = 0;
   const bool is_whole =
-      take(event.src) && take(event.seq) && take(event.time) && take(event.moment);
+      take(event.src) && take(event.seq) && take(time) && take(moment) && time >= 0 && moment >= 0;
+  event.time = unix_time(time);
+  event.moment = unix_time(moment);
   const bool is_numbered = row.empty() || take(event.number);
   return is_whole && is_numbered && row.empty() ? std::optional(event) : std::nullopt;
 }
@@ -35,7 +38,8 @@ Message make_trace(std::span<const TraceEvent> events) {
   for (const auto& event : events) {
     std::string& row = rows.emplace_back(kWhats[static_cast<std::size_t>(event.what)]);
     row.append(" ").append(event.port.empty() ? "-" : event.port);
-    for (const std::int64_t number : {std::int64_t{event.src}, event.seq, event.time, event.moment})
+    for (const std::int64_t number : {std::int64_t{event.src}, event.seq,
+                                      unix_nanoseconds(event.time), unix_nanoseconds(event.moment)})
       row.append(" ").append(std::to_string(number));
     if (event.number != 0) row.append(" ").append(std::to_string(event.number));
   }

@@ -28,8 +28,8 @@ struct TraceEvent {
   std::string port;
   std::int32_t src = 0;  ///< of the message's header, as seq and time
   std::int64_t seq = 0;
-  std::int64_t time = 0;    ///< [ns]
-  std::int64_t moment = 0;  ///< wall clock, advanced by the monotonic one [ns]
+  Time time;
+  Time moment;  ///< advanced by the monotonic clock
   /// Index of the port's link; with an empty port, of the timer (those of after() last), or
   /// kGenerator.
   std::int32_t number = 0;

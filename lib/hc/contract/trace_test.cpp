@@ -11,11 +11,12 @@ namespace {
 using What = TraceEvent::What;
 
 TEST(Trace, IsReadAsItWasWritten) {
-  const std::vector<TraceEvent> events = {{What::Took, "image", 3, 7, 1000, 2000},
-                                          {What::Began, "", 0, 0, 0, 2001, 2},
-                                          {What::Ended, "", 0, 0, 0, 2002},
-                                          {What::Sent, "target", 4, 8, -1000, 2003},
-                                          {What::Lost, "", 0, 12, 0, 2004}};
+  const std::vector<TraceEvent> events = {
+      {What::Took, "image", 3, 7, unix_time(1000), unix_time(2000)},
+      {What::Began, "", 0, 0, Time(), unix_time(2001), 2},
+      {What::Ended, "", 0, 0, Time(), unix_time(2002)},
+      {What::Sent, "target", 4, 8, Time::max(), Time::max()},
+      {What::Lost, "", 0, 12, Time(), unix_time(2004)}};
   const Message message = make_trace(events);
   EXPECT_EQ(rows_of(message)[0], "took image 3 7 1000 2000");
   EXPECT_EQ(rows_of(message)[1], "began - 0 0 0 2001 2");
@@ -29,9 +30,12 @@ TEST(Trace, MalformedRowsAreIgnored) {
                                          "jumped image 3 7 1000 2000",
                                          "took image 3 7.5 1000 2000",
                                          "took image 3000000000 7 1 2",
+                                         "took image 3 7 -1 2000",
+                                         "took image 3 7 1000 -9223372036854775808",
                                          "sent a 1 2 3 4",
                                          ""};
-  EXPECT_EQ(read_trace(make_rows(rows)), (std::vector<TraceEvent>{{What::Sent, "a", 1, 2, 3, 4}}));
+  EXPECT_EQ(read_trace(make_rows(rows)),
+            (std::vector<TraceEvent>{{What::Sent, "a", 1, 2, unix_time(3), unix_time(4)}}));
 }
 
 }  // namespace

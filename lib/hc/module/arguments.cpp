@@ -126,8 +126,11 @@ class Parser {
     return is_trace ? read_uri(value, arguments_.clock) : Status();
   }
   Status wall_offset(const std::string& value) {
-    return read_number(value, arguments_.wall_offset.emplace(),
-                       "--wall_offset needs a number of nanoseconds, not \"" + value + "\"");
+    std::int64_t offset = 0;
+    HC_TRY(read_number(value, offset,
+                       "--wall_offset needs a number of nanoseconds, not \"" + value + "\""));
+    arguments_.wall_offset = std::chrono::nanoseconds(offset);
+    return {};
   }
   Status join(const std::string&) {
     arguments_.joins = true;

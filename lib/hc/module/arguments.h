@@ -25,17 +25,17 @@ struct PortLink {
 struct Arguments {
   enum class Task { Run, Help, Describe };
   Task task = Task::Run;
-  std::string instance;                               ///< --name
-  std::vector<PortLink> inputs, outputs;              ///< --in, --out
-  std::vector<std::pair<std::string, Route>> routes;  ///< --route: "PORT=URI", and its route
-  Focus focus;                                        ///< --mode, --modes
-  bool by_messages = false;                           ///< --clock messages, or a trace
-  std::optional<Uri> clock;                           ///< --clock URI: of a trace
-  std::optional<std::int64_t> wall_offset;            ///< --wall_offset
-  bool joins = false;                                 ///< --join
-  std::optional<Uri> manage;                          ///< --manage
-  std::optional<Uri> control;                         ///< --control
-  Limits limits;                                      ///< --limit
+  std::string instance;                                 ///< --name
+  std::vector<PortLink> inputs, outputs;                ///< --in, --out
+  std::vector<std::pair<std::string, Route>> routes;    ///< --route: "PORT=URI", and its route
+  Focus focus;                                          ///< --mode, --modes
+  bool by_messages = false;                             ///< --clock messages, or a trace
+  std::optional<Uri> clock;                             ///< --clock URI: of a trace
+  std::optional<std::chrono::nanoseconds> wall_offset;  ///< --wall_offset
+  bool joins = false;                                   ///< --join
+  std::optional<Uri> manage;                            ///< --manage
+  std::optional<Uri> control;                           ///< --control
+  Limits limits;                                        ///< --limit
 };
 
 /// Reads the command line (without the program's name).

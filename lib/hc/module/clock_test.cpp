@@ -17,13 +17,12 @@ namespace {
 using namespace std::chrono_literals;
 using Log = std::vector<std::string>;
 
-constexpr std::int64_t kFirst = 1'700'000'000'000'000'000;
-constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr Time kFirst(1'700'000'000s);
 
 /// A message so many milliseconds behind kFirst.
 Message at(std::int64_t milliseconds, std::int32_t mode = 0) {
   auto message = table().message({static_cast<double>(milliseconds)});
-  message.header.time = kFirst + milliseconds * kMillisecond;
+  message.header.time = kFirst + milliseconds * 1ms;
   message.header.mode = mode;
   return message;
 }
@@ -47,8 +46,8 @@ class ByMessages : public RunningModule {
     log.push_back(what + " " + std::to_string(std::llround(message.matrix().numbers()[0])) + now());
   }
   std::string now() {
-    EXPECT_EQ(module.monotonic().count(), module.now());
-    return " at " + std::to_string((module.now() - kFirst) / kMillisecond);
+    EXPECT_EQ(Time(module.monotonic()), module.now());
+    return " at " + std::to_string((module.now() - kFirst) / 1ms);
   }
   /// Has the clock be that of a trace.
   void follow(const std::vector<TraceEvent>& events) {
@@ -164,11 +163,11 @@ TEST_F(ByMessages, ATraceSaysWhenEachMessageAndTimerComes) {
   auto timeout = module.after(1s, [&] { log.push_back("timeout" + now()); });
   module.on_start([&] { log.push_back("start" + now()); });
   const std::vector<TraceEvent> events = {
-      {Took, "", 0, 0, 0, moment(5)},          {Began, "", 0, 0, 0, moment(6), 1},
-      {Began, "focus", 0, 0, 0, moment(10)},   {Began, "a", 0, 0, 0, moment(11), 1},
-      {Began, "", 0, 0, 0, moment(12), 2},     {Began, "a", 0, 0, 0, moment(13)},
-      {Began, "", 0, 0, 0, moment(14), 0},     {Began, "", 0, 0, 0, moment(15), 7},
-      {Began, "a", 0, 0, 0, moment(10 + 121)},
+      {Took, "", 0, 0, Time(), moment(5)},          {Began, "", 0, 0, Time(), moment(6), 1},
+      {Began, "focus", 0, 0, Time(), moment(10)},   {Began, "a", 0, 0, Time(), moment(11), 1},
+      {Began, "", 0, 0, Time(), moment(12), 2},     {Began, "a", 0, 0, Time(), moment(13)},
+      {Began, "", 0, 0, Time(), moment(14), 0},     {Began, "", 0, 0, Time(), moment(15), 7},
+      {Began, "a", 0, 0, Time(), moment(10 + 121)},
   };
   follow(events);
   words.insert(words.end(), {"--exclusive", "a"});
@@ -180,10 +179,10 @@ TEST_F(ByMessages, ATraceSaysWhenEachMessageAndTimerComes) {
 TEST_F(ByMessages, ATraceSaysWhenAGeneratorIsCalledAndHasTheFocus) {
   feed("focus", {table<std::int32_t>().message({4})});
   const std::vector<TraceEvent> events = {
-      {TraceEvent::What::Began, "", 0, 0, 0, at(3).header.time, TraceEvent::kGenerator},
-      {TraceEvent::What::Began, "focus", 0, 0, 0, at(4).header.time},
-      {TraceEvent::What::Began, "", 0, 0, 0, at(9).header.time, TraceEvent::kGenerator},
-      {TraceEvent::What::Began, "", 0, 0, 0, at(12).header.time, TraceEvent::kGenerator}};
+      {TraceEvent::What::Began, "", 0, 0, Time(), at(3).header.time, TraceEvent::kGenerator},
+      {TraceEvent::What::Began, "focus", 0, 0, Time(), at(4).header.time},
+      {TraceEvent::What::Began, "", 0, 0, Time(), at(9).header.time, TraceEvent::kGenerator},
+      {TraceEvent::What::Began, "", 0, 0, Time(), at(12).header.time, TraceEvent::kGenerator}};
   follow(events);
   module.generate([&] {
     module.keep_rate(1);
@@ -191,6 +190,20 @@ TEST_F(ByMessages, ATraceSaysWhenAGeneratorIsCalledAndHasTheFocus) {
     if (log.size() >= 2) module.stop();
   });
   EXPECT_EQ(run(), Log({"look in 4 at 4", "look in 4 at 1004"}));
+}
+
+TEST_F(ByMessages, TheLatestTimeOverflowsNoTimer) {
+  auto last = at(1);
+  last.header.time = Time::max();
+  feed("a", {last, last});
+  module.every(10ms, [&] { module.keep_rate(0); });
+  int timeouts = 0;
+  auto timeout = module.after(1h, [&] { ++timeouts; });
+  module.on_start([&] { timeout.restart(); });
+  std::vector<Time> times;
+  module.on(a, [&](const auto& message) { times.push_back(message.header.time); });
+  EXPECT_EQ(run(), Log());
+  EXPECT_EQ(times, std::vector(2, Time::max()));
 }
 
 TEST_F(ByMessages, WhoIsBehindIsWaitedFor) {

@@ -37,8 +37,8 @@ Error misfit_of(const Inlet& inlet, const Message& message) {
 
 }  // namespace
 
-void Inlet::measure(std::int64_t sensed, MonotonicTime taken, std::int64_t wall_offset) {
-  if (sensed != 0) ages.add(taken.count() + wall_offset - sensed);
+void Inlet::measure(Time sensed, MonotonicTime taken, std::chrono::nanoseconds wall_offset) {
+  if (sensed != Time()) ages.add((Time(taken + wall_offset) - sensed).count());
   if (last_taken.count() != 0) gaps.add((taken - last_taken).count());
   last_taken = taken;
 }

@@ -39,8 +39,10 @@ struct Inlet {
   [[nodiscard]] bool is_open() const { return source != nullptr && !head && !is_full(); }
   /// Whether its message waits to be pulled. Those of several inputs queue up: see Delivery.
   [[nodiscard]] bool is_full() const { return inputs.size() == 1 && !inputs[0]->waiting.empty(); }
-  /// When its head is due.
-  [[nodiscard]] MonotonicTime time() const { return MonotonicTime(head->header.time); }
+  /// When its head is due, by the messages' clock.
+  [[nodiscard]] MonotonicTime time() const {
+    return std::min(head->header.time.time_since_epoch(), kLatest);
+  }
   [[nodiscard]] bool is_same(const Inlet& other) const {
     return uri == other.uri && inputs == other.inputs;
   }
@@ -51,7 +53,7 @@ struct Inlet {
   [[nodiscard]] TogetherState* together() const { return inputs.front()->together; }
 
   /// Adds the age of a message, and the gap before it. @param sensed  time in its header.
-  void measure(std::int64_t sensed, MonotonicTime taken, std::int64_t wall_offset);
+  void measure(Time sensed, MonotonicTime taken, std::chrono::nanoseconds wall_offset);
   /// A row of a report; ages and gaps start again.
   LinkCounters take_counters();
 };

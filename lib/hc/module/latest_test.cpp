@@ -11,7 +11,7 @@ namespace {
 
 Message numbered(std::int64_t time) {
   Message message = table().message({static_cast<double>(time)});
-  message.header.time = time;
+  message.header.time = unix_time(time);
   return message;
 }
 
@@ -29,7 +29,7 @@ class SlowPairs : public RunningModule {
     std::promise<void> sent;
     module.on(together(left, right), [&](const auto& l, const auto& r) {
       EXPECT_EQ(l.header.time, r.header.time);
-      times.push_back(l.header.time);
+      times.push_back(unix_nanoseconds(l.header.time));
       if (times.size() > 1) return;
       sent.get_future().wait();
       for (std::int64_t time = 2; time <= pairs; ++time) {

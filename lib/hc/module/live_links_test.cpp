@@ -107,7 +107,7 @@ TEST_F(RunningModule, ReportsAgesAndGaps) {
   Taker module{"counted"};
   auto sink = sink_of(uri("in"));
   auto reports = source_of(uri("reports"));
-  const std::int64_t hour = 3'600'000'000'000;
+  constexpr std::chrono::nanoseconds hour = std::chrono::hours(1);
   for (int i = 0; i < 3; ++i) {
     Message message = table().message({1.0});
     message.header.time = SystemClock().wall() - hour;
@@ -120,8 +120,8 @@ TEST_F(RunningModule, ReportsAgesAndGaps) {
   EXPECT_EQ(row[0], 3);
   EXPECT_EQ(row[7], 0);                  // omitted
   for (std::size_t i : {8U, 9U, 10U}) {  // ages
-    EXPECT_GE(row[i], hour);
-    EXPECT_LT(row[i], hour + hour / 7);
+    EXPECT_GE(row[i], hour.count());
+    EXPECT_LT(row[i], (hour + hour / 7).count());
   }
   for (std::size_t i : {11U, 12U, 13U}) EXPECT_GE(row[i], 0);  // gaps
 }

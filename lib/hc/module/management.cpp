@@ -19,7 +19,7 @@ std::vector<std::string> Management::take_commands() {
   return commands;
 }
 
-bool Management::send(Report report, Message message, std::int64_t time) {
+bool Management::send(Report report, Message message, Time time) {
   const std::lock_guard lock(mutex_);
   if (reports_ == nullptr) return false;
   message.header.src = static_cast<std::int32_t>(report);

@@ -28,7 +28,7 @@ class Management {
   std::vector<std::string> take_commands();
 
   /// Sends a report, or drops it if the reader is slow. From any thread. False: no reader.
-  bool send(Report report, Message message, std::int64_t time);
+  bool send(Report report, Message message, Time time);
 
  private:
   std::mutex mutex_;  // of reports_ and sent_

@@ -22,12 +22,12 @@ Matcher::Matcher(std::size_t inputs, Take take) : inputs_(inputs), take_(std::mo
 void Matcher::push(std::size_t input, Message message) {
   auto& [waiting, latest, ended, dropped] = inputs_[input];
   HC_CHECK(!ended, input);
-  const std::int64_t time = message.header.time;
-  if (time != 0 && time < latest) {
+  const Time time = message.header.time;
+  if (time != Time() && time < latest) {
     drop_waiting();
-    for (auto& each : inputs_) each.latest = 0;
+    for (auto& each : inputs_) each.latest = {};
   }
-  if (time != 0) latest = time;
+  if (time != Time()) latest = time;
   waiting.push_back(std::move(message));
   settle();
   while (waiting.size() > kMaxWaiting ||
@@ -55,12 +55,12 @@ bool Matcher::is_complete() const {
 
 void Matcher::settle() {
   while (is_complete()) {
-    std::int64_t time = 0;
+    Time time;
     for (const auto& input : inputs_) time = std::max(time, input.waiting.front().header.time);
     bool equal = true;
     for (auto& input : inputs_) {
-      const std::int64_t own = input.waiting.front().header.time;
-      if (own == 0 || own == time) continue;
+      const Time own = input.waiting.front().header.time;
+      if (own == Time() || own == time) continue;
       input.waiting.pop_front();
       ++input.dropped.unmatched;
       equal = false;

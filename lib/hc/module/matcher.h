@@ -23,7 +23,7 @@ namespace hc {
 ///
 /// A set is passed on as soon as it is complete, and older messages are dropped, since the times of
 /// an input normally never decrease. If they do, the writer has restarted: all waiting messages are
-/// dropped, and matching starts again with that message. A message without a time (0) matches any
+/// dropped, and matching starts again with that message. A message without a time matches any
 /// others: it is part of the next set.
 class Matcher {
  public:
@@ -70,7 +70,7 @@ class Matcher {
  private:
   struct Input {
     std::deque<Message> waiting;
-    std::int64_t latest = 0;  // time [ns]
+    Time latest;
     bool ended = false;
     Dropped dropped;
   };

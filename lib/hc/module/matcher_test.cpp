@@ -11,12 +11,12 @@
 namespace hc {
 namespace {
 
-using Times = std::vector<std::int64_t>;
+using Times = std::vector<int>;
 using Sets = std::vector<Times>;
 
-Message of_time(std::int64_t time) {
+Message of_time(int time) {
   Message message;
-  message.header.time = time;
+  message.header.time = unix_time(time);
   return message;
 }
 
@@ -27,7 +27,8 @@ struct Kept {
   explicit Kept(std::size_t inputs)
       : matcher(inputs, [this](std::span<const Message> set) {
           sets.emplace_back();
-          for (const auto& message : set) sets.back().push_back(message.header.time);
+          for (const auto& message : set)
+            sets.back().push_back(static_cast<int>(unix_nanoseconds(message.header.time)));
         }) {}
   void push(std::size_t input, const Times& times) {
     for (auto time : times) matcher.push(input, of_time(time));
@@ -57,7 +58,7 @@ TEST(Matcher, RandomInputsAreMatchedAsByTheirIntersection) {
     std::vector<Times> inputs(2 + up_to(2));
     const std::size_t drops = up_to(4);
     for (auto& times : inputs)
-      for (std::int64_t time = 1; time <= 12; ++time)
+      for (int time = 1; time <= 12; ++time)
         if (up_to(9) >= drops) times.insert(times.end(), 1 + up_to(5) / 5, time);
     Kept kept(inputs.size());
     std::vector<std::size_t> next(inputs.size(), 0), open(inputs.size());
@@ -118,7 +119,7 @@ TEST(Matcher, WithoutATimeTheOrderDecides) {
 TEST(Matcher, TheOldestIsDroppedForRoom) {
   Kept kept(2);
   Times all(Matcher::kMaxWaiting + 2);
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::int64_t>(i + 1);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i + 1);
   kept.push(0, {all.begin(), all.end() - 2});
   EXPECT_TRUE(kept.matcher.crowded(0));
   kept.push(0, {all.end() - 2, all.end()});
@@ -134,7 +135,7 @@ TEST(Matcher, TheOldestIsDroppedForRoom) {
 TEST(Matcher, LargeMessagesNeedRoomToo) {
   Kept kept(2);
   const std::vector<std::byte> bytes(1);
-  for (std::int64_t time : {1, 2}) {
+  for (int time : {1, 2}) {
     Message message = of_time(time);
     message.elements = {bytes.data(), Matcher::kMaxWaitingBytes};  // nobody looks at them
     kept.matcher.push(0, message);

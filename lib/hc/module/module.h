@@ -257,12 +257,12 @@ class Module {
   void log_once(const std::string& kind, std::string_view line, std::int64_t count = 1);
 
   /// Wall clock, for messages that begin here: the machine's, or with `--clock messages` that of
-  /// the messages which come. [ns since the Unix epoch]
-  [[nodiscard]] std::int64_t now() const { return message_time_ ? *message_time_ : clock_.wall(); }
+  /// the messages which come.
+  [[nodiscard]] Time now() const { return message_time_ ? *message_time_ : clock_.wall(); }
   /// The same clock for periods and time-outs, which never goes back. What is done in the time of
   /// messages goes by this; what talks to a device at the machine's pace has a clock of its own.
   [[nodiscard]] MonotonicTime monotonic() const {
-    return message_time_ ? MonotonicTime(*message_time_) : clock_.monotonic();
+    return message_time_ ? message_time_->time_since_epoch() : clock_.monotonic();
   }
 
   /// Number of the system mode in focus; 0: none, or the workspace has not repeated it for 120 ms.
@@ -348,7 +348,7 @@ class Module {
   internal::Focus focus_;
   Loop* loop_ = nullptr;                              // while it runs
   std::shared_ptr<internal::Management> management_;  // from then on
-  std::optional<std::int64_t> message_time_;          // with --clock messages [ns]
+  std::optional<Time> message_time_;                  // with --clock messages
   internal::Handled handled_;                         // the message being handled
   std::optional<MonotonicTime> last_period_;          // of keep_rate()
 };

@@ -16,8 +16,8 @@
 namespace hc {
 namespace {
 
-Message stamped(Message message, std::int64_t time, std::int32_t mode = 0) {
-  message.header.time = time;
+Message stamped(Message message, int time, std::int32_t mode = 0) {
+  message.header.time = unix_time(time);
   message.header.mode = mode;
   return message;
 }
@@ -66,7 +66,7 @@ TEST(Module, AnswersEachMessageAndKeepsItsTime) {
   for (int i = 1; i <= 3; ++i) {
     const Message& message = sent[static_cast<std::size_t>(i) - 1];
     EXPECT_EQ(view<double>(message)->at(0, 0, 0), 10.0 * i);
-    EXPECT_EQ(message.header.time, 1000 + i);
+    EXPECT_EQ(message.header.time, unix_time(1000 + i));
     EXPECT_EQ(message.header.seq, i - 1);
     EXPECT_EQ(message.header.src, 77);
     EXPECT_EQ(message.header.mode, 5);
@@ -82,7 +82,7 @@ TEST(Module, ConvertsForTheLinkThatSaysSoAlone) {
   module.generate([&] {
     auto draft = image.loan(48, 64);
     std::ranges::fill(draft.numbers(), std::uint8_t{100});
-    draft.header.time = 12;
+    draft.header.time = unix_time(12);
     image.send(std::move(draft));
     number.send({1.5});
     module.stop();
@@ -148,11 +148,10 @@ TEST(Module, ExpandsWhatIsCompressedAndCompressesWhenAsked) {
   EXPECT_EQ(view<std::uint8_t>(*expand(sent[0]))->at(3, 3), 99);
 }
 
-std::vector<Message> at_times(const std::vector<std::int64_t>& times) {
+std::vector<Message> at_times(const std::vector<int>& times) {
   std::vector<Message> messages;
   for (auto time : times)
-    messages.push_back(
-        stamped(table().message({static_cast<double>(time)}), time, static_cast<int>(time)));
+    messages.push_back(stamped(table().message({static_cast<double>(time)}), time, time));
   return messages;
 }
 
@@ -173,11 +172,10 @@ TEST(Module, TakesTwoInputsTogetherByTime) {
   auto sent = run_on(module, {{"left", at_times({1, 2, 3, 5})}, {"right", at_times({2, 4, 5, 6})}});
   ASSERT_EQ(sent.size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) {
-    const std::int64_t time = i == 0 ? 2 : 5;
-    EXPECT_EQ(sent[i].header.time, time);
+    const int time = i == 0 ? 2 : 5;
+    EXPECT_EQ(sent[i].header.time, unix_time(time));
     EXPECT_EQ(sent[i].header.mode, time);
-    for (auto number : view<double>(sent[i])->numbers())
-      EXPECT_EQ(number, static_cast<double>(time));
+    for (auto number : view<double>(sent[i])->numbers()) EXPECT_EQ(number, time);
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
             "pair: left: dropped: no matching message (further drops are counted)\n"
@@ -193,7 +191,7 @@ TEST(Module, R43_WhatIsMadeOfSeveralHasTheLatestTime) {
   auto three = module.input("three", anything(), "");
   auto out = module.output("out", table(), "");
   module.on(together(one, two, three), [&](const auto& a, const auto& b, const Message& c) {
-    EXPECT_EQ(a.header.time, 0);
+    EXPECT_EQ(a.header.time, Time());
     EXPECT_EQ(b.matrix().at(0, 0, 0), 0.5F);
     EXPECT_EQ(c.text(), "hello");
     out.send({1.0});
@@ -203,7 +201,7 @@ TEST(Module, R43_WhatIsMadeOfSeveralHasTheLatestTime) {
                       {"two", {stamped(position<float>().message({0.5F, 0.0F, 0.0F}), 130, 7)}},
                       {"three", {stamped(string().message("hello"), 0)}}});
   ASSERT_EQ(sent.size(), 1U);
-  EXPECT_EQ(sent[0].header.time, 130);
+  EXPECT_EQ(sent[0].header.time, unix_time(130));
   EXPECT_EQ(sent[0].header.mode, 7);
 }
 
@@ -211,7 +209,7 @@ TEST(Module, AnInputThatIsFarAheadWaitsToBeRead) {
   Pair module;
   module.on(together(module.left, module.right),
             [&](const auto&, const auto&) { module.out.send({1.0}); });
-  std::vector<std::int64_t> often, seldom;
+  std::vector<int> often, seldom;
   for (int i = 1; i <= 60; ++i) {
     often.push_back(i);
     if (i % 20 == 0) seldom.push_back(i);
@@ -259,7 +257,7 @@ TEST(Module, ASetOfOneCoordinateSystemKeepsIt) {
   auto two = module.input("two", position(), "");
   auto out = module.output("out", position(), "");
   module.on(together(one, two), [&](const auto&, const auto&) { out.send({1.0, 2.0, 3.0}); });
-  auto place = [](std::int32_t coord, std::int64_t time) {
+  auto place = [](std::int32_t coord, int time) {
     return stamped(position().in(coord).message({0, 0, 0}), time);
   };
   auto sent =
@@ -407,7 +405,7 @@ TEST(Module, ABadSetIsDropped) {
   Pair module;
   int handled = 0;
   module.on(together(module.left, module.right), [&](const auto& one, const auto&) {
-    if (one.header.time == 1) throw BadMessage("it does not belong");
+    if (one.header.time == unix_time(1)) throw BadMessage("it does not belong");
     ++handled;
   });
   ::testing::internal::CaptureStderr();

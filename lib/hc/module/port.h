@@ -87,7 +87,7 @@ struct InputState {
 
 /// What an output takes over from the message that is being handled.
 struct Handled {
-  std::int64_t time = 0;
+  Time time;
   std::int32_t mode = 0;
   std::int32_t coord = 0;
   MatrixType type{};  ///< of the message
@@ -192,22 +192,22 @@ class Output {
   ///     mean.send({average});
   ///     command.send({0, tilt, pan}, module.now());
   ///
-  /// @param time  when what they say happened [ns since the Unix epoch]; 0: see above.
+  /// @param time  when what they say happened; Time{}: see above.
   /// @param coord  their coordinate system; 0: see above.
-  void send(std::initializer_list<Scalar> numbers, std::int64_t time = 0, std::int32_t coord = 0) {
+  void send(std::initializer_list<Scalar> numbers, Time time = {}, std::int32_t coord = 0) {
     send(K(state_->type()).message(numbers), time, coord);
   }
-  void send(std::span<const Scalar> numbers, std::int64_t time = 0, std::int32_t coord = 0) {
+  void send(std::span<const Scalar> numbers, Time time = {}, std::int32_t coord = 0) {
     send(K(state_->type()).message(numbers), time, coord);
   }
   /// Sends one row of text.
-  void send(std::string_view text, std::int64_t time = 0,
+  void send(std::string_view text, Time time = {},
             std::int32_t coord = 0) requires(std::is_same_v<K, StringKind>) {
     send(K(state_->type()).message(text), time, coord);
   }
-  /// Sends a message; a time and a coord of 0 leave its own.
-  void send(MessageOf<K> message, std::int64_t time = 0, std::int32_t coord = 0) {
-    if (time != 0) message.header.time = time;
+  /// Sends a message; a time of Time{} and a coord of 0 leave its own.
+  void send(MessageOf<K> message, Time time = {}, std::int32_t coord = 0) {
+    if (time != Time()) message.header.time = time;
     if (coord != 0) message.header.coord = coord;
     internal::send(*state_, std::move(message));
   }

@@ -98,7 +98,7 @@ Status Module::Remote::carry_out(const ModuleCommand& command) {
   std::int64_t wall_offset = 0;
   if (!read_number(command.target, wall_offset))
     return Error{Code::Invalid, "wall_offset needs a number of nanoseconds"};
-  internal::distant_wall.set(wall_offset, module_.clock_.monotonic());
+  internal::distant_wall.set(std::chrono::nanoseconds(wall_offset), module_.clock_.monotonic());
   now_.read_wall();
   return {};
 }

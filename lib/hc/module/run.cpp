@@ -61,7 +61,7 @@ void Module::Run::begin(const std::vector<std::string>& words) {
   }
   if (!arguments_->instance.empty()) module_.instance_ = arguments_->instance;
   module_.message_time_.reset();
-  if (arguments_->by_messages) module_.message_time_ = 0;
+  if (arguments_->by_messages) module_.message_time_.emplace();
   if (module_.options_.background) {  // what is refused changes nothing but the speed
     static_cast<void>(::setpriority(PRIO_PROCESS, 0, kBackgroundNice));
     const sched_param none{};

@@ -186,7 +186,7 @@ class Module::Schedule::Replay final : public ByMessages {
   void begin() override {
     loop_.now.read();
     loop_.serve();
-    if (!events_.empty()) loop_.now.pass_to(MonotonicTime(events_.front().moment));
+    if (!events_.empty()) loop_.now.pass_to(events_.front().moment.time_since_epoch());
   }
 
   bool turn() override {
@@ -214,7 +214,7 @@ class Module::Schedule::Replay final : public ByMessages {
     const TraceEvent event = std::move(events_.front());
     events_.pop_front();
     if (event.what != TraceEvent::What::Began) return;
-    loop_.now.pass_to(std::max(loop_.now.time(), MonotonicTime(event.moment)));
+    loop_.now.pass_to(std::max(loop_.now.time(), event.moment.time_since_epoch()));
     loop_.delivery.expire_focus();
     if (!event.port.empty())
       handle_head_of(event);

@@ -57,7 +57,7 @@ bool send_to_each(internal::OutputState& output, const SendOne& send_one) {
 
 void internal::Trace::flush() {
   flushed_ = clock_.monotonic();
-  if (lost_ > 0) events_.push_back({TraceEvent::What::Lost, "", 0, lost_, 0, clock_.wall()});
+  if (lost_ > 0) events_.push_back({TraceEvent::What::Lost, "", 0, lost_, Time(), clock_.wall()});
   lost_ = 0;
   if (events_.empty()) return;
   Message message = make_trace(events_);
@@ -80,7 +80,7 @@ void internal::send(OutputState& output, Message&& message) {
   if (header.mode == 0) header.mode = module.focus_.mode_of(module.handled_.mode);
   if (header.coord == 0) header.coord = output.type().coord;
   if (header.coord == 0) header.coord = module.handled_.coord_for(header.info.type);
-  if (header.time == 0) header.time = module.handled_.time;
+  if (header.time == Time()) header.time = module.handled_.time;
   auto wanted = output.encoding.value_or(output.type().info.encoding);
   if (message.plain() && (wanted == Encoding::Text || wanted == Encoding::Binary))
     header.info.encoding = wanted;  // the same in memory

@@ -16,17 +16,19 @@ namespace internal {
 /// The time, by the messages' clock or by the machine's, which is read once per message.
 struct Now {
   const Clock& clock;
-  std::optional<std::int64_t>& message_time;  ///< the module's; none: by the machine's clock
-  MonotonicTime machine{0};                   ///< when the clock was last read
-  std::int64_t wall_offset = 0;               ///< from monotonic to wall clock [ns]
+  std::optional<Time>& message_time;        ///< the module's; none: by the machine's clock
+  MonotonicTime machine{0};                 ///< when the clock was last read
+  std::chrono::nanoseconds wall_offset{0};  ///< from monotonic to wall clock
 
   [[nodiscard]] MonotonicTime time() const {
-    return message_time ? MonotonicTime(*message_time) : machine;
+    return message_time ? message_time->time_since_epoch() : machine;
   }
   void read() { machine = clock.monotonic(); }
-  void read_wall() { wall_offset = clock.wall() - clock.monotonic().count(); }
+  void read_wall() { wall_offset = clock.wall().time_since_epoch() - clock.monotonic(); }
   /// Sets the clock of the messages.
-  void pass_to(MonotonicTime time) { message_time = time.count(); }
+  void pass_to(MonotonicTime time) {
+    message_time = Time(std::clamp(time, MonotonicTime(0), kLatest));
+  }
 };
 
 }  // namespace internal

@@ -15,7 +15,7 @@ namespace {
 using What = TraceEvent::What;
 
 Message at(Message message, std::int64_t time, std::int64_t seq) {
-  message.header.time = time;
+  message.header.time = unix_time(time);
   message.header.seq = seq;
   return message;
 }
@@ -23,7 +23,7 @@ Message at(Message message, std::int64_t time, std::int64_t seq) {
 /// Events in words, without their moments, which must not go back.
 std::vector<std::string> words(const std::vector<TraceEvent>& events) {
   std::vector<std::string> all;
-  std::int64_t moment = 0;
+  Time moment;
   for (const auto& event : events) {
     EXPECT_GE(event.moment, std::exchange(moment, event.moment));
     const auto row = rows_of(make_trace(std::span(&event, 1)))[0];
@@ -62,8 +62,8 @@ TEST_F(RunningModule, ReportsWhenItTookHandledAndSent) {
   EXPECT_EQ(join(), 0);
   EXPECT_EQ(words(events), (std::vector<std::string>{"took in 0 7 1000", "began in 0 7 1000",
                                                      "sent out 1 0 1000", "ended in 0 7 1000"}));
-  EXPECT_EQ(events[2].moment - events[1].moment, 3'000'000);
-  EXPECT_EQ(events[3].moment - events[2].moment, 1'000'000);
+  EXPECT_EQ(events[2].moment - events[1].moment, std::chrono::milliseconds(3));
+  EXPECT_EQ(events[3].moment - events[2].moment, std::chrono::milliseconds(1));
 }
 
 TEST_F(RunningModule, ReportsEachMessageThatIsTakenTogether) {
@@ -130,9 +130,9 @@ TEST_F(RunningModule, GoesOnWhenNobodyReadsItsTrace) {
 class CountingClock final : public Clock {
  public:
   [[nodiscard]] MonotonicTime monotonic() const override { return MonotonicTime(kBegin); }
-  [[nodiscard]] std::int64_t wall() const override {
+  [[nodiscard]] Time wall() const override {
     ++looks;
-    return kBegin.count();
+    return Time(kBegin);
   }
   mutable std::int64_t looks = 0;
 

@@ -33,7 +33,7 @@ Message random_message(std::mt19937_64& random) {
   header.dst = static_cast<std::int32_t>(random());
   header.seq = static_cast<std::int64_t>(random() >> (1 + pick(63)));
   header.ttl = static_cast<std::uint8_t>(random());
-  header.time = static_cast<std::int64_t>(random() >> (1 + pick(63)));
+  header.time = unix_time(static_cast<std::int64_t>(random() >> (1 + pick(63))));
   header.coord = static_cast<std::int32_t>(random() >> (33 + pick(31)));
   header.width = static_cast<std::int32_t>(pick(4));
   header.height = static_cast<std::int32_t>(pick(4));
@@ -105,7 +105,7 @@ TEST(Codec, APositionTakesAtMost96Bytes) {
   header.src = 1234;
   header.dst = 5678;
   header.seq = 1'000'000;
-  header.time = 1'763'683'200'123'456'789;
+  header.time = unix_time(1'763'683'200'123'456'789);
   header.mode = 12;
   header.coord = 3;
   header.width = header.height = 1;

@@ -79,7 +79,7 @@ Header header_of(const Fields& values, const Info& info) {
   header.dst = static_cast<std::int32_t>(values[Dst]);
   header.seq = values[Seq];
   header.ttl = static_cast<std::uint8_t>(values[Ttl]);
-  header.time = values[Time];
+  header.time = unix_time(values[Field::Time]);
   header.info = info;
   header.mode = static_cast<std::int32_t>(values[Mode]);
   header.coord = static_cast<std::int32_t>(values[Coord]);
@@ -160,7 +160,7 @@ Result<Header> parse_header(std::string_view line, const Limits& limits, std::ui
 Status check(const Header& header, const Limits& limits) {
   // Fast path: nearly all headers are valid, and need not be formatted and parsed for this.
   bool below_0 = (header.src | header.mode | header.coord | header.width | header.height) < 0 ||
-                 (header.seq | header.time) < 0;
+                 (header.seq | unix_nanoseconds(header.time)) < 0;
   if (!below_0 && broken_rule(header.info) == 0 && !has_shape_rule(header.info) &&
       fits_limits(header, limits))
     return {};
@@ -171,9 +171,10 @@ Status check(const Header& header, const Limits& limits) {
 }
 
 std::size_t format_header(const Header& header, std::span<char, kMaxHeaderBytes> line) {
-  const Fields values = {kVersion,     header.src,   header.dst,         header.seq,
-                         header.ttl,   header.time,  header.info.code(), header.mode,
-                         header.coord, header.width, header.height};
+  const Fields values = {kVersion,           header.src,   header.dst,
+                         header.seq,         header.ttl,   unix_nanoseconds(header.time),
+                         header.info.code(), header.mode,  header.coord,
+                         header.width,       header.height};
   char* at = line.data();
   for (auto value : values) {
     at = internal::write_integer(at, value);

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include <hc/base/result.h>
+#include <hc/base/time.h>
 #include <hc/mtp/element.h>
 
 namespace hc {
@@ -23,7 +24,7 @@ struct Header {
   std::int32_t dst = 0;     ///< > 0: one port, 0: along the links, -1: broadcast, < -1: a group
   std::int64_t seq = 0;     ///< incremented by one for each message of a src
   std::uint8_t ttl = 8;     ///< routers that may still forward it
-  std::int64_t time = 0;    ///< when the data was measured [ns since the Unix epoch]; 0: unknown
+  Time time;                ///< when the data was measured; Time{}: unknown
   Info info;                ///< type and encoding of the elements
   std::int32_t mode = 0;    ///< system mode of the sender; 0: none
   std::int32_t coord = 0;   ///< coordinate system of the elements; 0: none

@@ -66,8 +66,10 @@ bool HeaderMemo::matches(std::string_view line) const {
 bool HeaderMemo::parse_repeated(std::string_view line, Header& header) const {
   if (!matches(line)) return false;
   header = header_;
-  return parse_number(line.data() + seq_.begin, seq_.size, header.seq) &&
-         parse_number(line.data() + time_.begin, time_.size, header.time);
+  std::int64_t time = 0;
+  if (!parse_number(line.data() + time_.begin, time_.size, time)) return false;
+  header.time = unix_time(time);
+  return parse_number(line.data() + seq_.begin, seq_.size, header.seq);
 }
 
 Result<Header> HeaderMemo::parse(std::string_view line, const Limits& limits, std::uint64_t byte) {
@@ -88,10 +90,11 @@ std::size_t HeaderMemo::format(const Header& header, std::span<char, kMaxHeaderB
     return value >= 0 && static_cast<std::uint64_t>(value) >= digits.min &&
            static_cast<std::uint64_t>(value) <= digits.max;
   };
-  if (size_ > 0 && header == header_ && fits(seq_, header.seq) && fits(time_, header.time)) {
+  const std::int64_t time = unix_nanoseconds(header.time);
+  if (size_ > 0 && header == header_ && fits(seq_, header.seq) && fits(time_, time)) {
     for (std::size_t i = 0; i <= size_; i += kWord)
       std::memcpy(line.data() + i, frame_.data() + i, kWord);
-    for (auto [digits, value] : {std::pair(&seq_, header.seq), std::pair(&time_, header.time)})
+    for (auto [digits, value] : {std::pair(&seq_, header.seq), std::pair(&time_, time)})
       put_number(static_cast<std::uint64_t>(value), line.data(), digits->begin, digits->size);
     return size_ + 1;
   }

@@ -21,7 +21,7 @@ class Stream {
   Header next() {
     constexpr auto kLast = std::numeric_limits<std::int64_t>::max();
     header_.seq = header_.seq == kLast ? 0 : header_.seq + 1;
-    header_.time += 33'000'000;
+    header_.time += std::chrono::milliseconds(33);
     switch (below(60)) {
       case 0:
         header_.src = below(3) * 1000;
@@ -36,10 +36,10 @@ class Stream {
         header_.seq = kLast - 1;
         break;
       case 4:
-        header_.time = 0;
+        header_.time = {};
         break;
       case 5:
-        header_.time = 999'999'999;
+        header_.time = unix_time(999'999'999);
         break;
       case 6:
         header_.dst = below(3) - 1;
@@ -56,7 +56,7 @@ class Stream {
     Header header;
     header.info = {MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary};
     header.width = header.height = 40;
-    header.time = 1'763'683'200'123'456'789;
+    header.time = unix_time(1'763'683'200'123'456'789);
     return header;
   }();
   std::mt19937 random_{1};
@@ -111,7 +111,7 @@ TEST(HeaderMemo, NumbersOfEveryLengthAreAsAlways) {
         for (int i = 0; i < 12; ++i) {  // the memo takes effect after a few
           header.src = src;
           header.seq = numbers_of(seq_digits)[static_cast<std::size_t>(i) % 3];
-          header.time = numbers_of(time_digits)[static_cast<std::size_t>(i) / 3 % 3];
+          header.time = unix_time(numbers_of(time_digits)[static_cast<std::size_t>(i) / 3 % 3]);
           char line[kMaxHeaderBytes];
           std::string_view ours(line, writing.format(header, line));
           ASSERT_EQ(ours, text(header) + "\n");
@@ -134,7 +134,7 @@ TEST(HeaderMemo, GoesBackAndForthBetweenHeaders) {
     for (int i = 0; i < 40 * row; ++i) {
       Header& header = headers[static_cast<std::size_t>(i / row) % 3];
       ++header.seq;
-      header.time += 1'000'000'007;
+      header.time += std::chrono::nanoseconds(1'000'000'007);
       char line[kMaxHeaderBytes];
       std::string_view ours(line, writing.format(header, line));
       ASSERT_EQ(ours, text(header) + "\n");
@@ -156,7 +156,8 @@ TEST(HeaderMemo, LongLinesAreAsAlways) {
   const Limits limits{std::uint64_t{1} << 40};
   HeaderMemo writing, reading;
   for (int i = 0; i < 40; ++i) {
-    header.seq = header.time = std::numeric_limits<std::int64_t>::max() - i;
+    header.seq = std::numeric_limits<std::int64_t>::max() - i;
+    header.time = unix_time(header.seq);
     char line[kMaxHeaderBytes];
     std::string ours(line, writing.format(header, line) - 1);
     ASSERT_EQ(ours, text(header));
@@ -185,7 +186,7 @@ TEST(HeaderMemo, DigitsAloneAreNumbers) {
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(memo.parse(line, {}, 0));
   for (const char* number : {"0234567890123456789", "9223372036854775808", "9999999999999999999",
                              "-234567890123456789", "123456789012345678/", "1234567:90123456789"})
-    for (std::int64_t field : {header.seq, header.time}) {
+    for (std::int64_t field : {header.seq, unix_nanoseconds(header.time)}) {
       std::string wrong = line;
       wrong.replace(wrong.find(std::to_string(field)), std::strlen(number), number);
       auto ours = memo.parse(wrong, {}, 5), wanted = parse_header(wrong, {}, 5);

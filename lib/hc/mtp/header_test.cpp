@@ -12,7 +12,7 @@ Header example() {
   Header header;
   header.src = 12;
   header.seq = 1042;
-  header.time = 1763683200123456789;
+  header.time = unix_time(1763683200123456789);
   header.mode = 1;
   header.coord = 3;
   header.width = header.height = 1;
@@ -40,7 +40,7 @@ TEST(Header, ComesBackFromItsLine) {
     header.dst = static_cast<std::int32_t>(random());
     header.seq = up_to(INT64_MAX);
     header.ttl = static_cast<std::uint8_t>(random());
-    header.time = up_to(INT64_MAX);
+    header.time = unix_time(up_to(INT64_MAX));
     header.mode = static_cast<std::int32_t>(up_to(kMost));
     header.coord = static_cast<std::int32_t>(up_to(kMost));
     header.width = static_cast<std::int32_t>(up_to(4000));
