@@ -131,11 +131,11 @@ TEST_F(Chain, WhatATimerSendsHasWaitedForIt) {
 TEST_F(Chain, OfAControllersNewTimeThePathGoesOnAtWhatItHandledLast) {
   of("eye").sent("left", 1, 100);
   of("gaze").took("target", 1, 120).handled("target", 1, 130, 140);
-  const auto again = kSeen + 300;  // a newer pose, and a command
+  const auto again = kSeen + 300ns;  // a newer pose, and a command
   of("neck", again).sent("pose", 3, 1);
   of("gaze", again).took("pose", 3, 5).handled("pose", 3, 6, 7);
-  of("gaze", again + 20).sent("command", 2, 1);
-  of("neck", again + 20).took("command", 2, 11);
+  of("gaze", again + 20ns).sent("command", 2, 1);
+  of("neck", again + 20ns).took("command", 2, 11);
   const auto paths = find_paths(traced, "neck.command");
   ASSERT_EQ(paths.size(), 2U);
   EXPECT_EQ(words(paths[0]), "neck.pose 0/0/1, gaze: pose → command 4/15/1, neck.command 10/0/0");
