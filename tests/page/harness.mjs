@@ -78,7 +78,7 @@ export class Graph {
 
   /** Its state as `hc top` sees it. */
   state() {
-    const { stdout } = spawnSync(hc, ["top", "--json", "--once", this.name], {
+    const { stdout } = spawnSync(hc, ["top", "--json", "--once", "--of", this.name], {
       encoding: "utf8",
       timeout: watchdog,
     });

@@ -174,7 +174,7 @@ parameters.script = "0:0.1"
         name = "two_%d" % os.getpid()
         process = self.start("exec hc run two.toml --as %s 2>errors" % name)
         focus = "left_judge: look, right_judge: rest"
-        top = lambda: self.shell("hc top --once %s 2>&1 || true" % name)
+        top = lambda: self.shell("hc top --once --of %s 2>&1 || true" % name)
         self.wait_for(lambda: ", focus " + focus in top(), "errors")
         self.wait_for(lambda: "bids: left_judge: look 0.90 *, " in top(), "errors")
         self.wait_for(lambda: focus in self.shell("hc ps"), "errors")
@@ -223,7 +223,7 @@ mode = "look"
         say(1)
         self.assertEqual(wait_focus(None)["stopped"], ["workspace"])
         self.assertIn(", stopped", self.shell("hc ps"))
-        self.assertIn(", stopped", self.shell("hc top --once " + name))
+        self.assertIn(", stopped", self.shell("hc top --once --of " + name))
         os.kill(workspace, signal.SIGKILL)
         wait_until(lambda: "stopped by source 12, before the restart" in self.read("errors"))
         state = self.state(

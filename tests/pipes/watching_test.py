@@ -319,7 +319,7 @@ class Watching(Graphs):
         pid, terminal = pty.fork()
         if pid == 0:
             os.environ.update(self.environment)
-            os.execvp("hc", ["hc", "top", name])
+            os.execvp("hc", ["hc", "top", "--of", name])
         shown = b""
         while shown.count(b"camera.left") < 2:  # two pages
             shown += os.read(terminal, 65536)

@@ -18,6 +18,7 @@ HUNG = 60 if IS_FULL else 0  # at least, before the stop [s]
 SLOW = 6  # a queue that takes longer to fill is not waited for [s]
 OLD = 0.5  # how old the state of the graph may be [s]
 RING = 2048  # messages that a queue without a number holds
+WAITS = 4  # shorter than modules that wait for one that hangs are held up by it [s]
 SOON = 10  # after which `hc run` restarts a module of the head, where the file says no other [s]
 MORE = 2100  # messages than a queue holds
 WAY = ("web", "workspace", "head_neck", "head_unit")  # of whatever a person drives by
@@ -85,8 +86,11 @@ class Hung(Safety):
         """Which modules wait for one that hangs, or have stopped sending, and do not need it: once
         its queues are full."""
         time.sleep(filled)
-        flows = self.flows(max(1, HUNG - filled))
-        lost = {output.split(".")[0] for output in self.outputs if not flows.get(output)}
+        begun, before, silent = time.monotonic(), self.head.sent(), set(self.outputs)
+        while (passed := time.monotonic() - begun) < HUNG - filled or silent and passed < WAITS:
+            after = self.head.sent()
+            silent = {each for each in silent if after.get(each, 0) == before.get(each, 0)}
+        lost = {output.split(".")[0] for output in silent}
         lost |= {
             each["name"]
             for each in self.head.state_now()["modules"]
