@@ -116,7 +116,7 @@ void Calibrator::fail(const std::string& why) {
   tour_->restart();
   attempts_.sent = {};
   attempts_.are_over = ++attempts_.failed >= *parameters_.tries;
-  attempts_.paused_until = module_.now() + hc::duration(*parameters_.pause);
+  attempts_.paused_until = hc::later(module_.now(), hc::duration(*parameters_.pause));
   module_.log("not calibrated: " + why + (attempts_.are_over ? "; giving up" : "; retrying"));
 }
 

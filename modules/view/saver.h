@@ -14,7 +14,7 @@ class Saver {
   /// @param module  must outlive it.
   explicit Saver(hc::Module& module) : module_(module) {}
 
-  /// Saves an image, (H, W, 3) u8 blue, green, red.
+  /// Saves an image, u8: (H, W, 3) blue, green, red, or (H, W) grey.
   /// @param to  a file, or folder/.
   void save(const std::string& to, const hc::Header& header, const cv::Mat& bgr);
   /// Saves the latest image that is not in the file yet.

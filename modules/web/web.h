@@ -50,7 +50,7 @@ class Web {
   void log_how_to_open(const std::string& url);
   void turn_on_readable(hc::Loop& loop);
 
-  // On the server's thread.
+  /// What the server calls on its thread, as order_stop().
   [[nodiscard]] Page::Callbacks callbacks();
   void order_stop(bool stops_robot, Stop::Answer answer);
 

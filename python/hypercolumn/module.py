@@ -4,6 +4,7 @@
 import atexit
 import os
 import sys
+import threading
 from typing import Any, Callable, List, Optional, Sequence, TypeVar, Union
 
 from hypercolumn import _hypercolumn
@@ -33,7 +34,7 @@ class Module(_hypercolumn.Module):
 
     Its handlers run one after another on the thread that calls run(). It has all options of a
     module in C++, such as --help, --describe, --in and --out (doc/modules.md). A script needs
-    neither: `for message in input:` runs the module while it waits for the next message.
+    neither handlers nor run(): `for message in input:` works while it waits for the next message.
     """
 
     def __init__(
@@ -184,14 +185,19 @@ class Module(_hypercolumn.Module):
         ends with the interpreter, so that a script can still send after its loop."""
         if port.name in self._handled:
             raise Error("Invalid: input %s has a handler" % port.name, "Invalid")
+        if threading.current_thread() is not threading.main_thread():
+            raise Error("Invalid: only the main thread can take messages in a loop", "Invalid")
         if not self._is_pulled:
             sys.stdout = sys.stderr
-            atexit.register(self._end_script)
+            atexit.register(self._end_script, os.getpid())
             self._begin(sys.argv[1:])
         return Messages(self, port)
 
-    def _end_script(self) -> None:
-        status = self._end()
-        if status != 0:  # at exit nothing else can tell it
-            sys.stderr.flush()
-            os._exit(status)
+    def _end_script(self, process: int) -> None:
+        if os.getpid() != process:  # a fork of it
+            return
+        try:
+            status = self._end(hasattr(sys, "last_value"))
+        except SystemExit as error:  # of a handler
+            status = error.code if isinstance(error.code, int) else int(error.code is not None)
+        _hypercolumn.exit_with(status)

@@ -313,7 +313,7 @@ void add_public(PyModule& module) {
            "For generators: waits until the next period of a rate begins [Hz].")
       .def(
           "stop", [](Program& self) { self.module().stop(); },
-          "Ends the module when the handler that calls this has returned.")
+          "Ends the module when the handler that calls this has returned; in a script, its loop.")
       .def(
           "log",
           [](const Program& self, const std::string& line, const std::string& level) {
@@ -359,6 +359,7 @@ void add_modules(py::module_& extension) {
   PyModule module(extension, "Module", "Base of hypercolumn.Module.");
   add_private(module);
   add_public(module);
+  extension.def("exit_with", exit_with);
 }
 
 }  // namespace python

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program.h"
 
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
 #include <hc/module/ending.h>
 
 namespace python {
@@ -11,6 +15,8 @@ hc::ModuleError module_error(const std::string& text, std::string_view code) {
   error.is_usage = code == hc::name(hc::Code::Invalid);
   return error;
 }
+
+int exit_status = 0;
 
 /// Where an exception was raised: " (redness, line 12)".
 std::string place_of(const py::error_already_set& raised) {
@@ -23,6 +29,14 @@ std::string place_of(const py::error_already_set& raised) {
 }
 
 }  // namespace
+
+void exit_with(int status) {
+  exit_status = status;
+  Py_AtExit([] {
+    std::fflush(nullptr);
+    if (exit_status != 0) std::_Exit(exit_status);
+  });
+}
 
 Function hold(const py::object& function) {
   return {function.inc_ref().ptr(), [](PyObject* held) {
@@ -64,7 +78,8 @@ void Program::begin(const std::vector<std::string>& words) {
   thread_ = std::this_thread::get_id();
   for (const auto& input : hc::ModuleAccess::inputs(module_)) input->is_pulled = !input->handler;
   work("begin()", [&] { run_ = std::make_unique<hc::ModuleAccess::Run>(module_, words); });
-  raise_exit();
+  is_in_script_ = true;
+  exit_if_over();
 }
 
 std::optional<hc::Message> Program::next(const std::string& input) {
@@ -72,23 +87,34 @@ std::optional<hc::Message> Program::next(const std::string& input) {
   const auto named = [&](const auto& each) { return each->name == input; };
   auto& state = **std::find_if(inputs.begin(), inputs.end(), named);
   std::optional<hc::Message> message;
-  is_in_script_ = false;
-  work("next()", [&] { message = run_->next(state); });
-  is_in_script_ = true;
-  raise_exit();
-  if (!run_->has_status()) return message;
-  PyErr_SetObject(PyExc_SystemExit, py::int_(end()).ptr());
-  throw py::error_already_set();
+  check_thread();
+  if (run_ != nullptr && !is_in_script_)
+    raise({hc::Code::Invalid, "a handler cannot take messages in a loop"});
+  if (run_ == nullptr) return message;
+  work_in_loop([&] { message = run_->next(state); });
+  exit_if_over();
+  return message;
 }
 
-int Program::end() {
+int Program::end(bool has_failed) {
   if (run_ == nullptr) return 0;
+  check_thread();
   int status = 0;
-  is_in_script_ = false;
-  work("end()", [&] { status = run_->end(); });
+  if (has_failed) run_->fail();
+  work_in_loop([&] { status = run_->end(); });
   run_.reset();
-  is_running_ = false;
+  is_running_ = is_in_script_ = false;
+  raise_exit();
   return status;
+}
+
+/// Ends the interpreter where a handler wants it, the module has failed, or has done what was
+/// asked.
+void Program::exit_if_over() {
+  raise_exit();
+  if (!run_->has_status()) return;
+  PyErr_SetObject(PyExc_SystemExit, py::int_(end(false)).ptr());
+  throw py::error_already_set();
 }
 
 /// Raises the exception with which a handler has ended the interpreter.
@@ -130,15 +156,17 @@ void Program::refuse_thread() {
          "thread pass its data, and use them in a handler, e.g. of every()"});
 }
 
-/// Raises the failure. One that ends the module cleanly is kept for end_by_error(); a script goes
-/// on, and gets no further message.
+/// Raises the failure. One that ends the module cleanly is kept for end_by_error(). A script goes
+/// on, and gets no further message; it exits the next time.
 void Program::raise_failure() {
   try {
     std::rethrow_exception(failure_);
   } catch (const hc::internal::Stopped&) {
     if (is_in_script_) {
       failure_ = nullptr;
-      return run_->stop();
+      if (!run_->is_stopped()) return run_->stop();
+      PyErr_SetObject(PyExc_SystemExit, py::int_(0).ptr());
+      throw py::error_already_set();
     }
     set_current_exception();
   } catch (...) {

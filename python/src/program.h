@@ -59,11 +59,13 @@ class Program {
 
   /// Begins a run in which the inputs without a handler are pulled: next().
   void begin(const std::vector<std::string>& words);
-  /// The next message of an input, while the handlers of others are called; none at its end. The
-  /// interpreter ends where the module has failed.
+  /// The next message of an input, while the handlers of others are called; none at its end. If the
+  /// module has failed, the interpreter exits.
   std::optional<hc::Message> next(const std::string& input);
-  /// Ends the run that begin() has begun, if there is one. @returns  the exit status.
-  int end();
+  /// Ends the run that begin() has begun, if there is one.
+  /// @param has_failed  by an exception: on_end() is not called.
+  /// @returns  the exit status.
+  int end(bool has_failed);
   [[nodiscard]] bool is_pulled() const { return run_ != nullptr; }
 
   /// Calls a handler from the loop, with the GIL. A hypercolumn.BadMessage or an IndexError drops
@@ -105,8 +107,9 @@ class Program {
   void work(const char* name, const Work& work) {
     check_thread();
     if (!is_running_)
-      raise({hc::Code::Invalid,
-             std::string(name) + " may only be called in handlers of a running module"});
+      raise({hc::Code::Invalid, std::string(name) +
+                                    " may only be called in handlers of a running module, or in a "
+                                    "script once its loop has begun"});
     release();
     try {
       work();
@@ -128,6 +131,15 @@ class Program {
   [[noreturn]] static void refuse_thread();
   void raise_failure();
   void raise_exit();
+  void exit_if_over();
+  /// Works in the loop of a script, which calls handlers.
+  template <typename Work>
+  void work_in_loop(const Work& do_work) {
+    is_in_script_ = false;
+    failure_ = nullptr;
+    work("next()", do_work);
+    is_in_script_ = true;
+  }
 
   hc::Module module_;
   std::unique_ptr<hc::ModuleAccess::Run> run_;  // of a script
@@ -139,5 +151,8 @@ class Program {
   std::exception_ptr failure_;                 // passes through Python, then ends the module
   std::optional<py::error_already_set> exit_;  // with which a handler ends the interpreter
 };
+
+/// Has the interpreter exit with a status, after all that it does at its end; 0: with its own.
+void exit_with(int status);
 
 }  // namespace python

@@ -7,6 +7,6 @@
 int main() {
   auto tree = hc::frames::Tree::standard();
   if (hc::pose_of(hc::Message())) return 1;  // a message without elements
-  auto found = tree.lookup("head", "world", 1);
+  auto found = tree.lookup("head", "world", hc::unix_time(1));
   std::cout << (found ? "found" : found.error().detail) << "\n";
 }

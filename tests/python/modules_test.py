@@ -475,6 +475,64 @@ out.send(sum(held), time=1)
         self.shell("%s --in left=%s | head -c 100" % (program, self.numbers("left", 3)))
         self.assertEqual(self.err, "")
 
+    def test_a_handler_takes_no_loop(self):
+        body = """
+@module.every(0.001)
+def tick():
+    for message in right: pass
+for message in left: pass
+"""
+        self.pull(body, 1, arguments="--clock messages")
+        self.assertIn("a handler cannot take messages in a loop", self.err)
+
+    def test_a_handler_that_comes_late_is_called(self):
+        body = """
+it = iter(left)
+module.on(right)(lambda message: out.send(message.numbers[0]))
+for message in it: pass
+"""
+        self.assertEqual([number for _, number in self.pull(body)], [0, 10, 20])
+
+    def test_two_links_are_read_in_turn(self):
+        one, two = self.numbers("left", 3), self.numbers("right", 3, first=100)
+        program = self.write_module(
+            "module", self.SCRIPT % "print(*(int(m.numbers[0]) for m in left))"
+        )
+        self.shell("%s --in left=%s --in left=%s" % (program, one, two))
+        self.assertEqual(self.err, "0 100 1 101 2 102\n")
+
+    def test_what_it_writes_elsewhere_is_kept_when_it_fails_at_its_end(self):
+        self.write("bad", "1 1 0 0 8 1 60100 0 0 1 1\n1\n")
+        body = "open_file = open('log', 'w')\nfor message in left: pass\nopen_file.write('all')"
+        program = self.write_module("module", self.SCRIPT % body)
+        self.shell("%s --in left=%s" % (program, self.path("bad")), 1)
+        self.assertEqual(self.read("log"), "all")
+
+    def test_its_end_is_not_called_after_an_exception(self):
+        end = "module.on_end(lambda: print('end called'))\n"
+        self.pull(end + "for message in left: pass\nout.send(1, time=1)")
+        self.assertIn("end called", self.err)
+        self.pull(end + "for message in left: raise ValueError('no')", 1)
+        self.assertNotIn("end called", self.err)
+        self.pull("import sys\nmodule.on_end(lambda: sys.exit(3))\nfor message in left: pass", 3)
+
+    def test_a_thread_takes_no_loop(self):
+        body = """
+import threading
+thread = threading.Thread(target=lambda: list(left))
+thread.start()
+thread.join()
+"""
+        program = self.write_module("module", self.SCRIPT % body)
+        self.shell(program + " </dev/null")
+        self.assertIn("only the main thread can take messages in a loop", self.err)
+
+    def test_without_a_reader_it_exits(self):
+        body = "for message in left: pass\nwhile True: out.send(1); module.keep_rate(1000)"
+        program = self.write_module("module", self.SCRIPT % body)
+        self.shell("%s --in left=%s | head -c 100" % (program, self.numbers("left", 3)))
+        self.assertEqual(self.err, "")
+
     def test_of_those_that_share_standard_input_the_newest_wait(self):
         script = self.SCRIPT.replace('"right", hc.table()', '"right", hc.string()')
         body = "print(sum(1 for _ in left), *(m.text for m in right))"

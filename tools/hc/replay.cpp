@@ -302,7 +302,8 @@ class Replay {
     const auto events = read_events(recording_, module.name);
     auto steps = steps_of(events);
     // A trace has the machine's moments, which say nothing of a module in the messages' time.
-    const bool is_in_their_time = std::ranges::find(words, "--clock") != words.end();
+    const std::array by_messages = {std::string("--clock"), std::string("messages")};
+    const bool is_in_their_time = !std::ranges::search(words, by_messages).empty();
     const bool is_known = !steps.empty() && !is_in_their_time;
     if (is_known)
       for (const auto& port : recorded_outputs(module)) last_[module.name + "." + port] = -1;

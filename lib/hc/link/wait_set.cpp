@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <utility>
 
 #include <hc/link/shm/spin.h>
 
@@ -102,7 +103,7 @@ Status WaitSet::watch(std::span<const int> descriptors) {
 
 /// Waits for the watched descriptors.
 Result<bool> WaitSet::sleep(nanoseconds timeout) {
-  has_looked_ = true;
+  if (!std::exchange(has_looked_, true)) woken_by_ = files_;
   std::array<epoll_event, 8> events;
   const int count = HC_TRY(system_call(
       "epoll_pwait2", "", [&] { return wait_for_events(poll_.get(), events, timeout); }));
@@ -134,7 +135,6 @@ Result<bool> WaitSet::wait(std::span<Source* const> sources, std::span<const int
   was_short_ = spin_->was_short();
   if (!found || *found) return found;
   const auto begin = Clock::now();
-  woken_by_ = files_;
   bool is_ready = !files_.empty();
   for (Source* source : sources) is_ready = !source->prepare_wait() || is_ready;
   if (is_ready) timeout = nanoseconds(0);  // `stop` takes precedence

@@ -92,7 +92,7 @@ void Module::Delivery::call(Inlet& inlet, internal::InputState& input, Message& 
     ++inlet.ignored;
     return module_.log_once("not finite", input.name + ": dropped: NaN or infinity");
   }
-  if (input.is_pulled) return keep_waiting(inlet, input, message);
+  if (!input.handler) return keep_waiting(inlet, input, message);
   module_.handled_ = internal::Handled(message.header, &inlet.route.peer);
   call_or_drop(inlet, input.name, [&] {
     if (!trace_.is_linked() || input.together != nullptr) [[likely]]
@@ -105,13 +105,14 @@ void Module::Delivery::call(Inlet& inlet, internal::InputState& input, Message& 
   module_.handled_ = {};
 }
 
-/// Only standard input has messages of several inputs, of which one may never be asked for.
+/// A link of one input waits as long as a message of it does. Standard input has messages of
+/// several, of which a script may not read one.
 void Module::Delivery::keep_waiting(Inlet& inlet, internal::InputState& input, Message& message) {
   constexpr std::size_t kMost = 16;
   input.waiting.push_back({std::move(message).keep(), inlet.number});
-  if (input.waiting.size() <= kMost) return;
+  if (inlet.inputs.size() == 1 || input.waiting.size() <= kMost) return;
   input.waiting.pop_front();
-  module_.log_once("not pulled", input.name + ": dropped: no one asks for its messages");
+  module_.log_once("not read", input.name + ": dropped: the script does not read it");
 }
 
 /// Calls a handler. Any exception except ModuleError means a bad message: also those of libraries

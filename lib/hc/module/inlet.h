@@ -37,8 +37,11 @@ struct Inlet {
 
   /// Whether its next message is to be taken.
   [[nodiscard]] bool is_open() const { return source != nullptr && !head && !is_full(); }
-  /// Whether its message waits to be pulled. Those of several inputs queue up: see Delivery.
-  [[nodiscard]] bool is_full() const { return inputs.size() == 1 && !inputs[0]->waiting.empty(); }
+  /// Whether a message of it waits to be pulled. Those of several inputs queue up: see Delivery.
+  [[nodiscard]] bool is_full() const {
+    return inputs.size() == 1 &&
+           std::ranges::count(inputs[0]->waiting, number, &Waiting::inlet) > 0;
+  }
   /// When its head is due, by the messages' clock.
   [[nodiscard]] MonotonicTime time() const {
     return std::min(head->header.time.time_since_epoch(), kLatest);

@@ -77,6 +77,8 @@ void Module::Loop::work() {
 
 std::optional<Message> Module::Loop::next(internal::InputState& input) {
   end_pulled();
+  if (module.is_done_) return std::nullopt;
+  if (stop_requested()) throw internal::Stopped();
   for (asked_ = &input; input.waiting.empty();)
     if (has_asked_ended() || !turn()) return std::nullopt;
   auto [message, inlet] = std::move(input.waiting.front());
@@ -148,8 +150,8 @@ void Module::Loop::generate() {
   trace.note(TraceEvent::What::Ended, TraceEvent::kGenerator);
 }
 
-/// Calls the handlers of the module's own descriptors that are readable: the wait before has said
-/// which, unless messages kept the module from waiting.
+/// Calls the handlers of the module's own descriptors that are readable. The last wait has found
+/// which; without one, they are polled.
 void Module::Loop::read_watched() {
   const bool is_known = std::exchange(has_waited_, false) && waits_.has_looked();
   if (!is_known && now.machine - looked_ < kLookPeriod) return;

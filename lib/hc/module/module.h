@@ -231,7 +231,7 @@ class Module {
   /// failed, between messages. Does not keep a module running whose inputs have ended; a generator
   /// is not woken by it.
   /// @param descriptor  asked each time before the module waits; below 0: none now.
-  /// @param handler  reads without waiting.
+  /// @param handler  reads without waiting; there may be nothing to read.
   void on_readable(std::function<int()> descriptor, std::function<void()> handler) {
     watches_.push_back({std::move(descriptor), std::move(handler)});
   }

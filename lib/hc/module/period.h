@@ -12,8 +12,8 @@ namespace hc::internal {
 /// Means never, and can be added to a time without overflow: 30 years.
 constexpr MonotonicTime kLongestPeriod = std::chrono::seconds(1'000'000'000);
 
-/// The latest time of the messages' clock, to which periods can be added, in the year 2198: a
-/// message may be later.
+/// The latest time of the messages' clock, to which periods can be added (2198). Messages may have
+/// later times.
 constexpr MonotonicTime kLatest = MonotonicTime::max() - 2 * kLongestPeriod;
 
 /// @param rate  [Hz]; if it is 0, negative or NaN, the period is the longest.

@@ -33,10 +33,10 @@ void Module::Run::attempt(const Work& work) {
   } catch (const internal::Stopped&) {
     is_stopped_ = true;
   } catch (const ModuleError& error) {
-    module_.log(error.what());
+    error_ = error.what();
     status_ = error.is_usage ? kUsage : kFailure;
   } catch (const std::exception& error) {
-    module_.log(internal::thrown_in_words(error));
+    error_ = internal::thrown_in_words(error);
     status_ = kFailure;
   }
 }
@@ -44,7 +44,7 @@ void Module::Run::attempt(const Work& work) {
 void Module::Run::begin(const std::vector<std::string>& words) {
   auto arguments = internal::parse_arguments(module_, words);
   if (!arguments) {
-    module_.log(arguments.error().text());
+    error_ = arguments.error().text();
     status_ = kUsage;
     return;
   }
@@ -86,9 +86,10 @@ int Module::Run::end() {
   if (!status_ && is_stopped_ && module_.options_.finish_when_stopped)
     attempt([&] { loop_->take_rest(); });
   if (!status_) attempt([&] { loop_->close(); });
-  // As has been logged. What is dropped in a replay was dropped when it was recorded.
-  if (!status_ && loop_->has_failed_input() && !arguments_->clock) status_ = kFailure;
+  // As has been logged. By the messages' clock a recording is repeated, with what was dropped then.
+  if (!status_ && loop_->has_failed_input() && !arguments_->by_messages) status_ = kFailure;
   loop_.reset();
+  if (!error_.empty()) module_.log(error_);
   module_.log_counts();
   return status_.value_or(kDone);
 }

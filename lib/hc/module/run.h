@@ -23,10 +23,14 @@ class Module::Run {
 
   /// Calls handlers until the end.
   void work();
-  /// The next message of an input, while handlers are called for others; none: all have come.
+  /// The next message of an input, while handlers are called for others. None: the input or the run
+  /// has ended.
   std::optional<Message> next(internal::InputState& input);
   /// No further message is given: an output has lost its readers.
   void stop() { is_stopped_ = true; }
+  [[nodiscard]] bool is_stopped() const { return is_stopped_; }
+  /// An error elsewhere ends it: on_end() is not called.
+  void fail() { status_ = 1; }
   /// Whether it has failed, or done what it was asked for, such as --help.
   [[nodiscard]] bool has_status() const { return status_.has_value(); }
   /// Closes the links.
@@ -43,6 +47,7 @@ class Module::Run {
   std::unique_ptr<internal::Arguments> arguments_;
   std::unique_ptr<Loop> loop_;
   bool is_stopped_ = false;  // no reader is left, or it was asked to stop: a clean end
+  std::string error_;        // logged at the end, after what its links have to say
   std::optional<int> status_;
 };
 
