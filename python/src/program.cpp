@@ -112,8 +112,11 @@ int Program::end(bool has_failed) {
 /// asked.
 void Program::exit_if_over() {
   raise_exit();
-  if (!run_->has_status()) return;
-  PyErr_SetObject(PyExc_SystemExit, py::int_(end(false)).ptr());
+  if (run_->has_status()) exit_by(end(false));
+}
+
+void Program::exit_by(int status) {
+  PyErr_SetObject(PyExc_SystemExit, py::int_(status).ptr());
   throw py::error_already_set();
 }
 
@@ -157,16 +160,15 @@ void Program::refuse_thread() {
 }
 
 /// Raises the failure. One that ends the module cleanly is kept for end_by_error(). A script goes
-/// on, and gets no further message; it exits the next time.
+/// on, and gets no further message; its next call exits.
 void Program::raise_failure() {
   try {
     std::rethrow_exception(failure_);
   } catch (const hc::internal::Stopped&) {
     if (is_in_script_) {
       failure_ = nullptr;
-      if (!run_->is_stopped()) return run_->stop();
-      PyErr_SetObject(PyExc_SystemExit, py::int_(0).ptr());
-      throw py::error_already_set();
+      is_stopped_ = true;
+      return run_->stop();
     }
     set_current_exception();
   } catch (...) {

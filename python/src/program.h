@@ -106,6 +106,7 @@ class Program {
   template <typename Work>
   void work(const char* name, const Work& work) {
     check_thread();
+    if (is_in_script_ && is_stopped_) exit_by(0);
     if (!is_running_)
       raise({hc::Code::Invalid, std::string(name) +
                                     " may only be called in handlers of a running module, or in a "
@@ -132,6 +133,7 @@ class Program {
   void raise_failure();
   void raise_exit();
   void exit_if_over();
+  [[noreturn]] static void exit_by(int status);
   /// Works in the loop of a script, which calls handlers.
   template <typename Work>
   void work_in_loop(const Work& do_work) {
@@ -148,6 +150,7 @@ class Program {
   std::thread::id thread_;
   bool is_running_ = false;
   bool is_in_script_ = false;                  // rather than in the loop
+  bool is_stopped_ = false;                    // as a call of the script has found
   std::exception_ptr failure_;                 // passes through Python, then ends the module
   std::optional<py::error_already_set> exit_;  // with which a handler ends the interpreter
 };

@@ -28,7 +28,6 @@ class Module::Run {
   std::optional<Message> next(internal::InputState& input);
   /// No further message is given: an output has lost its readers.
   void stop() { is_stopped_ = true; }
-  [[nodiscard]] bool is_stopped() const { return is_stopped_; }
   /// An error elsewhere ends it: on_end() is not called.
   void fail() { status_ = 1; }
   /// Whether it has failed, or done what it was asked for, such as --help.
