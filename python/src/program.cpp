@@ -164,18 +164,15 @@ void Program::refuse_thread() {
 void Program::raise_failure() {
   try {
     std::rethrow_exception(failure_);
-  } catch (const hc::internal::Stopped&) {
-    if (is_in_script_) {
-      failure_ = nullptr;
-      is_stopped_ = true;
-      return run_->stop();
-    }
-    set_current_exception();
   } catch (...) {
     set_current_exception();
   }
-  if (PyErr_ExceptionMatches(stopped_type()) == 0) failure_ = nullptr;
-  throw py::error_already_set();
+  const bool is_stopped = PyErr_ExceptionMatches(stopped_type()) != 0;
+  if (!is_stopped || is_in_script_) failure_ = nullptr;
+  if (!is_stopped || !is_in_script_) throw py::error_already_set();
+  PyErr_Clear();
+  is_stopped_ = true;
+  run_->stop();
 }
 
 }  // namespace python
