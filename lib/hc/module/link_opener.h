@@ -5,6 +5,7 @@
 #include <deque>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <hc/module/module.h>
 
@@ -15,8 +16,8 @@ namespace hc {
 class Module::LinkOpener {
  public:
   /// @param options  of all links.
-  LinkOpener(const Module& module, const LinkOptions& options)
-      : module_(module), options_(options) {}
+  LinkOpener(const Module& module, LinkOptions options)
+      : module_(module), options_(std::move(options)) {}
 
   /// Opens a source; ends the module if that fails.
   std::unique_ptr<Source> open(const Uri& uri, const std::string& port);
