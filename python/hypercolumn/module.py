@@ -5,6 +5,7 @@ import atexit
 import os
 import sys
 import threading
+import weakref
 from typing import Any, Callable, List, Optional, Sequence, TypeVar, Union
 
 from hypercolumn import _hypercolumn
@@ -13,6 +14,12 @@ from hypercolumn.errors import Error
 
 Handler = TypeVar("Handler", bound=Callable[..., Any])
 Value = TypeVar("Value", bool, int, float, str)
+
+
+def _warn_of_unused(module: "weakref.ref[Module]") -> None:
+    found = module()
+    if found is not None and found._handled and not found._has_begun:
+        found.log("its handlers were never called: end the program with module.run()")
 
 
 class Together:
@@ -55,6 +62,8 @@ class Module(_hypercolumn.Module):
         """
         super().__init__(name, summary, background, keep_running, finish_when_stopped)
         self._handled: List[str] = []
+        self._has_begun = False
+        atexit.register(_warn_of_unused, weakref.ref(self))
 
     def input(
         self, name: str, kind: Kind, doc: str, *, actor: bool = False, keep: int = 0
@@ -171,6 +180,7 @@ class Module(_hypercolumn.Module):
 
         Output of handlers goes to standard error, since standard output belongs to the links.
         """
+        self._has_begun = True
         words = sys.argv if arguments is None else [self.name, *arguments]
         outside, sys.stdout = sys.stdout, sys.stderr
         try:
@@ -187,6 +197,7 @@ class Module(_hypercolumn.Module):
             raise Error("Invalid: input %s has a handler" % port.name, "Invalid")
         if threading.current_thread() is not threading.main_thread():
             raise Error("Invalid: only the main thread can take messages in a loop", "Invalid")
+        self._has_begun = True
         if not self._is_pulled:
             sys.stdout = sys.stderr
             atexit.register(self._end_script, os.getpid())

@@ -48,7 +48,10 @@ Function hold(const py::object& function) {
 }
 
 int Program::run(const std::vector<std::string>& words) {
-  if (is_running_) raise({hc::Code::Invalid, "the module is already running"});
+  if (is_running_)
+    raise({hc::Code::Invalid, run_ == nullptr ? "the module is already running"
+                                              : "the module is already running: one that takes "
+                                                "messages in a loop needs no run()"});
   std::vector<std::string> copies = words;
   std::vector<char*> pointers;
   pointers.reserve(copies.size() + 1);

@@ -387,6 +387,13 @@ module.run()
             hc.ModuleFrames(module).lookup("head", "head", 5).tolist(), numpy.eye(4).tolist()
         )
 
+    def test_handlers_that_never_run_are_said(self):
+        text = ECHO % ("table()", "out.send(message)")
+        self.run_module(text.replace("module.run()", ""), data=IN)
+        self.assertIn("never called: end the program with module.run()", self.err)
+        self.echo("table()", "out.send(message)")
+        self.assertNotIn("never called", self.err)
+
 
 class Pulled(Modules):
     SCRIPT = """
