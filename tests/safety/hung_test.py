@@ -18,7 +18,9 @@ HUNG = 60 if IS_FULL else 0  # at least, before the stop [s]
 SLOW = 6  # a queue that takes longer to fill is not waited for [s]
 OLD = 0.5  # how old the state of the graph may be [s]
 RING = 2048  # messages that a queue without a number holds
-WAITS = 4  # shorter than modules that wait for one that hangs are held up by it [s]
+# After which an output that sends nothing is silent: before `hc run` restarts the module that hangs,
+# or the page closes a connection that answers no ping [s].
+WAITS = 6
 SOON = 10  # after which `hc run` restarts a module of the head, where the file says no other [s]
 MORE = 2100  # messages than a queue holds
 WAY = ("web", "workspace", "head_neck", "head_unit")  # of whatever a person drives by
@@ -87,7 +89,8 @@ class Hung(Safety):
         its queues are full."""
         time.sleep(filled)
         begun, before, silent = time.monotonic(), self.head.sent(), set(self.outputs)
-        while (passed := time.monotonic() - begun) < HUNG - filled or silent and passed < WAITS:
+        most = max(1, WAITS - filled)
+        while (passed := time.monotonic() - begun) < HUNG - filled or silent and passed < most:
             after = self.head.sent()
             silent = {each for each in silent if after.get(each, 0) == before.get(each, 0)}
         lost = {output.split(".")[0] for output in silent}
