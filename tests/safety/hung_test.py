@@ -20,7 +20,7 @@ OLD = 0.5  # how old the state of the graph may be [s]
 RING = 2048  # messages that a queue without a number holds
 # After which an output that sends nothing is silent: before `hc run` restarts the module that hangs,
 # or the page closes a connection that answers no ping [s].
-WAITS = 6
+WAITS = 5
 SOON = 10  # after which `hc run` restarts a module of the head, where the file says no other [s]
 MORE = 2100  # messages than a queue holds
 WAY = ("web", "workspace", "head_neck", "head_unit")  # of whatever a person drives by
@@ -88,19 +88,21 @@ class Hung(Safety):
         """Which modules wait for one that hangs, or have stopped sending, and do not need it: once
         its queues are full."""
         time.sleep(filled)
-        begun, before, silent = time.monotonic(), self.head.sent(), set(self.outputs)
+        # The page's server sends what a person wants.
+        others = {each for each, needed in self.needs.items() if name not in needed}
+        others -= set() if is_driven else {"web"}
+        begun, before = time.monotonic(), self.head.sent()
+        silent = {each for each in self.outputs if each.split(".")[0] in others}
         most = max(1, WAITS - filled)
         while (passed := time.monotonic() - begun) < HUNG - filled or silent and passed < most:
             after = self.head.sent()
             silent = {each for each in silent if after.get(each, 0) == before.get(each, 0)}
         lost = {output.split(".")[0] for output in silent}
-        lost |= {
+        lost |= others & {
             each["name"]
             for each in self.head.state_now()["modules"]
             if each["detail"].startswith("blocked")
         }
-        lost = {each for each in lost if name not in self.needs[each]}
-        lost -= set() if is_driven else {"web"}  # which sends what a person wants
         self.note("lost", len(lost), "%s %s" % (name, sorted(lost)))
 
     def stop_beside(self, name):
