@@ -96,7 +96,7 @@ std::string Comparison::text() const {
 
 namespace {
 
-/// Compares two streams of messages, ordered by time but for kDisorder.
+/// Compares two streams of messages, each in the order of time within kDisorder.
 class Comparer {
  public:
   Comparer(const NextMessage& replayed, const Tolerance& tolerance, std::int64_t last)
