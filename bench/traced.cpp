@@ -38,7 +38,7 @@ double run(bool is_traced) {
   hc::Module module{"double", "Doubles."};
   auto in = module.input("in", hc::table(), "");
   auto out = module.output("out", hc::table(), "");
-  module.on(in, [&](const auto& message) { out.send({2 * message.numbers()[0]}); });
+  module.on(in, [&](const auto& message) { out.send(2 * message.numbers()[0]); });
   std::vector<std::string> words = {"double", "--in=" + name + "in", "--out=out=" + name + "out"};
   std::vector<std::thread> readers;
   readers.push_back(drain(name + "out"));

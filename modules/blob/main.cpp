@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
         search.look(hc::as_mat(message), {*hue, *hue_width, *saturation, *value}, *min_area);
     if (!blob) return;
     target.send({blob->x, blob->y, blob->radius}, {}, message.header.coord);
-    area.send({blob->area});
+    area.send(blob->area);
   });
   const int status = module.run(argc, argv);
   if (const auto summary = search.summary(); !summary.empty())

@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
     const auto pixels = image.pixels();
     if (pixels.empty()) return;
     const auto sum = std::accumulate(pixels.begin(), pixels.end(), std::uint64_t{0});
-    mean.send({static_cast<double>(sum) / static_cast<double>(pixels.size())});
+    mean.send(static_cast<double>(sum) / static_cast<double>(pixels.size()));
   });
   return module.run(argc, argv);
 }

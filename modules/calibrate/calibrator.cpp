@@ -85,7 +85,7 @@ void Calibrator::steer() {
   // Bids for the head only while images of both eyes arrive with a known head pose.
   const bool sees = now - last_pair_ < kSilent;
   const bool wants = !attempts_.are_over && now >= attempts_.paused_until && (sees || computes());
-  bid_.send({wants ? *parameters_.salience : 0.0}, now);
+  bid_.send(wants ? *parameters_.salience : 0.0, now);
   if (!wants) {
     attempts_.sent = {};
     return;

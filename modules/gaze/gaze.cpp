@@ -107,7 +107,7 @@ void Gaze::send(const std::optional<hc::gaze::Angles>& to) {
 void Gaze::send_bid() {
   was_wanted_ = controller_->wants_head(module_.now());
   const double salience = was_wanted_ ? *parameters_.salience : *parameters_.idle_salience;
-  bid_.send({salience}, module_.now());
+  bid_.send(salience, module_.now());
 }
 
 hc::gaze::Angles Gaze::measured() {

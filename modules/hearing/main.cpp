@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
     const auto rate = hc::audio::rate_of(message.header.coord);
     if (!rate) return;
     const auto heard = hc::audio::hear(message.numbers(), *rate, *base);
-    level.send({heard.level});
+    level.send(heard.level);
     if (heard.pan && heard.level >= *min_level)
       direction.send({0.0, 0.0, *heard.pan}, hc::Time(), hc::Coord::kHead);
   });

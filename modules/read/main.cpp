@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
     const hc::Time time = message.header.time != hc::Time() ? message.header.time : module.now();
     const auto reading = reader->read_when_due(pixels, block, time, *rate);
     if (!reading) return;
-    confidence.send({reading->confidence});
+    confidence.send(reading->confidence);
     if (announcer.take(reading->text, reading->confidence, time, {*least, *repeat, *again},
                        module.has_focus()))
       text.send(reading->text);

@@ -98,7 +98,7 @@ void Web::order_stop(bool stops_robot, Stop::Answer answer) {
 }
 
 void Web::send_stop(Stop::Word word, hc::Time said) {
-  stop_.send({static_cast<std::uint8_t>(word)}, said);
+  stop_.send(static_cast<std::uint8_t>(word), said);
 }
 
 void Web::repeat_stop() {

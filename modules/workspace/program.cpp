@@ -161,7 +161,7 @@ void Program::decide() {
   if (workspace_.decide(now)) module_.log("focus: " + workspace_.last_change());
   report();
   const hc::Time time = module_.now();
-  focus_.send({workspace_.focus()}, time);
+  focus_.send(workspace_.focus(), time);
   send_standings(now, time);
 }
 
@@ -187,7 +187,7 @@ void Program::report() {
 
 void Program::send_stopped() {
   const std::uint8_t is_stopped = workspace_.brake.is_stopped() ? 1 : 0;
-  stopped_.send({is_stopped}, module_.now());
+  stopped_.send(is_stopped, module_.now());
 }
 
 void Program::send_standings(hc::MonotonicTime now, hc::Time time) {

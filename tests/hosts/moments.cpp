@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
   module.every(std::chrono::milliseconds(20), [&] {
     const auto now = look();
     if (!now) return;
-    moment.send({hc::unix_nanoseconds(now.truth)}, now.stamp);
+    moment.send(hc::unix_nanoseconds(now.truth), now.stamp);
     auto draft = pose.loan(4, 4);
     const auto T = draft.matrix();
     for (std::size_t i = 0; i < 4; ++i)

@@ -89,7 +89,7 @@ TEST_F(RunningModule, InAGraphAReaderThatTakesNothingIsGivenUp) {
   auto out = module.output("out", table(), "");
   std::atomic<bool> is_enough{false};
   module.generate([&] {
-    out.send({1.0});
+    out.send(1.0);
     if (is_enough) module.stop();
   });
   const auto reader = source_of(uri("out"));  // and never reads
@@ -229,7 +229,7 @@ TEST_F(RunningModule, ATasksMessagesAreOfItsModeAndGoToAnAddress) {
   Module module{"task", "Commands."};
   auto in = module.input("in", table(), "");
   auto out = module.output("command", table(), "");
-  module.on(in, [&](const auto&) { out.send({1.0}); });
+  module.on(in, [&](const auto&) { out.send(1.0); });
   auto sink = sink_of(uri("in"));
   auto source = source_of(uri("out"));
   ASSERT_TRUE(sink->send(in_mode(table().message({1.0}), 9)));

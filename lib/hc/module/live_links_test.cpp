@@ -45,7 +45,7 @@ TEST_F(RunningModule, ReportsThatItWaitsForAReader) {
     Module module{"early", "Sends at once."};
     auto out = module.output("out", table(), "");
     module.generate([&] {
-      out.send({1.0});
+      out.send(1.0);
       module.stop();
     });
     auto reports = source_of(uri("reports"));
@@ -68,8 +68,8 @@ TEST_F(RunningModule, ObeysWhileItWaitsForAReader) {
   auto out = module.output("out", table(), "");
   auto factor = module.parameter("factor", 2.0, "", "");
   module.generate([&] {
-    out.send({*factor});
-    out.send({*factor});
+    out.send(*factor);
+    out.send(*factor);
     module.stop();
   });
   start_managed(module, {"--out=" + link});
@@ -89,7 +89,7 @@ TEST_F(RunningModule, ObeysWhileItWaitsForRoom) {
   constexpr int kCount = 5000;  // more than wait for a reader
   int sent = 0;
   module.generate([&] {
-    out.send({static_cast<double>(sent)});
+    out.send(static_cast<double>(sent));
     if (++sent >= kCount) module.stop();
   });
   start_managed(module, {"--out=" + link, "--out=" + other});

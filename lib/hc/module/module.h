@@ -6,7 +6,7 @@
 //       hc::Module module{"brightness", "Measures how bright images are."};
 //       auto image = module.input("image", hc::image(), "any image");
 //       auto mean = module.output("mean", hc::table(), "mean intensity, 0 … 255");
-//       module.on(image, [&](const hc::Image& image) { mean.send({average(image.pixels())}); });
+//       module.on(image, [&](const hc::Image& image) { mean.send(average(image.pixels())); });
 //       return module.run(argc, argv);
 //     }
 //

@@ -84,7 +84,7 @@ TEST(Module, ConvertsForTheLinkThatSaysSoAlone) {
     std::ranges::fill(draft.numbers(), std::uint8_t{100});
     draft.header.time = unix_time(12);
     image.send(std::move(draft));
-    number.send({1.5});
+    number.send(1.5);
     module.stop();
   });
   auto whole = source_of("inproc:m9-whole"), small = source_of("inproc:m9-small"),
@@ -194,7 +194,7 @@ TEST(Module, R43_WhatIsMadeOfSeveralHasTheLatestTime) {
     EXPECT_EQ(a.header.time, Time());
     EXPECT_EQ(b.matrix().at(0, 0, 0), 0.5F);
     EXPECT_EQ(c.text(), "hello");
-    out.send({1.0});
+    out.send(1.0);
   });
   auto sent =
       run_on(module, {{"one", {stamped(table().message({1.0}), 0, 3)}},
@@ -208,7 +208,7 @@ TEST(Module, R43_WhatIsMadeOfSeveralHasTheLatestTime) {
 TEST(Module, AnInputThatIsFarAheadWaitsToBeRead) {
   Pair module;
   module.on(together(module.left, module.right),
-            [&](const auto&, const auto&) { module.out.send({1.0}); });
+            [&](const auto&, const auto&) { module.out.send(1.0); });
   std::vector<int> often, seldom;
   for (int i = 1; i <= 60; ++i) {
     often.push_back(i);
@@ -244,7 +244,7 @@ TEST(Module, AScoreOfAnImageIsNotInItsCoordinateSystem) {
   Module module{"score", "Scores images."};
   auto in = module.input("in", rgb_image(), "");
   auto out = module.output("out", table(), "");
-  module.on(in, [&](const auto&) { out.send({1.0}); });
+  module.on(in, [&](const auto&) { out.send(1.0); });
   const std::uint8_t pixel[] = {1, 2, 3};
   auto sent = run_on(module, {{"in", {rgb_image().in(Coord::kRightImage).message(pixel)}}});
   ASSERT_EQ(sent.size(), 1U);
@@ -459,7 +459,7 @@ TEST(Module, AFileWithBadMessagesIsReadToItsEndAndAFailure) {
 TEST(Module, EndsWhenNobodyReadsItAnyMore) {
   Module module{"source", "Makes numbers."};
   auto out = module.output("out", table(), "");
-  module.generate([&] { out.send({1.0}); });
+  module.generate([&] { out.send(1.0); });
   auto source = source_of("inproc:m5");
   std::thread reader([&] {
     for (int i = 0; i < 10; ++i) next(*source);

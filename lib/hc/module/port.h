@@ -137,6 +137,12 @@ struct OutputState {
   [[nodiscard]] const PortType& type() const { return types.at(0); }
 };
 
+/// A number that a scalar holds: without narrowing, or an integer as floating point.
+template <typename Number, typename Scalar>
+concept HeldBy = std::is_arithmetic_v<Number> &&
+    ((std::floating_point<Scalar> && std::integral<Number>) ||
+     requires(Number number) { Scalar{number}; });
+
 /// Completes the header and sends to all links. What fails ends the module.
 void send(OutputState& output, Message&& message);
 
@@ -187,19 +193,27 @@ class Output {
 
   explicit Output(std::shared_ptr<internal::OutputState> state) : state_(std::move(state)) {}
 
+  /// Sends one number, which the port's scalar can hold.
+  ///
+  ///     mean.send(average);
+  ///
+  /// @param time  when what it says happened; Time{}: see above.
+  /// @param coord  its coordinate system; 0: see above.
+  template <internal::HeldBy<Scalar> Number>
+  void send(Number number, Time time = {}, std::int32_t coord = 0) {
+    send({static_cast<Scalar>(number)}, time, coord);
+  }
   /// Sends numbers, row by row, in the shape of the port: see Kind::message().
   ///
-  ///     mean.send({average});
   ///     command.send({0, tilt, pan}, module.now());
-  ///
-  /// @param time  when what they say happened; Time{}: see above.
-  /// @param coord  their coordinate system; 0: see above.
   void send(std::initializer_list<Scalar> numbers, Time time = {}, std::int32_t coord = 0) {
     send(K(state_->type()).message(numbers), time, coord);
   }
   void send(std::span<const Scalar> numbers, Time time = {}, std::int32_t coord = 0) {
     send(K(state_->type()).message(numbers), time, coord);
   }
+  /// 0 is no text.
+  void send(std::nullptr_t, Time time = {}, std::int32_t coord = 0) = delete;
   /// Sends one row of text.
   void send(std::string_view text, Time time = {},
             std::int32_t coord = 0) requires(std::is_same_v<K, StringKind>) {

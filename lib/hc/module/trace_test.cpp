@@ -160,7 +160,7 @@ class TracedEffort : public RunningModule {
       ++handled;
       if (handled == kBegin) begin = {hc::allocations.count, clock.looks, 0};
       if (handled == kEnd) end = {hc::allocations.count, clock.looks, 0};
-      out.send({2 * message.numbers()[0]});
+      out.send(2 * message.numbers()[0]);
     });
     std::filesystem::remove(trace_);
     std::vector<std::string> words = {"--in=file:" + in_, "--out=out=file:" + out_};

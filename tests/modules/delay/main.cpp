@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     std::this_thread::sleep_for(hc::duration(*seconds));
     const double number = message.matrix().at(0, 0);
     if (number > *most) throw hc::BadMessage("it is too large");
-    out.send({*factor * number});
+    out.send(*factor * number);
   });
   return module.run(argc, argv);
 }

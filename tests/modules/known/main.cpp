@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
     image.send(hc::rgb_image().message(kHeight, kWidth, pixels), now, hc::Coord::kLeftImage);
     depth.send(hc::intensity_image<float>().message(kHeight, kWidth, metres), now,
                hc::Coord::kDepth);
-    number.send({42.5}, now);
+    number.send(42.5, now);
     constexpr std::array<double, 6> kGrid = {1, 2, 3, 4, 5, 6};
     grid.send(hc::table().message(2, 3, kGrid), now);
     text.send("red green blue grey", now);
