@@ -27,7 +27,8 @@ struct Parameters {
       "motion; an image waits for all poses up to its time",
       {.min = 0, .max = 10, .fixed = true});
   hc::Parameter<std::int64_t> start = module.parameter(
-      "start", 0, "ns", "time of the first image, 0: now", {.min = 0, .fixed = true});
+      "start", 0, "ns", "time of the first image, 0: now",
+      {.min = 0, .max = 4e18, .fixed = true});  // 2096, so that no time after it overflows
 
   hc::Parameter<std::int64_t> width = module.parameter("width", 800, "px", "of the images",
                                                        {.min = 16, .max = 8192, .fixed = true});
