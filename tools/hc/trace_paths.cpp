@@ -55,7 +55,8 @@ struct Module {
   }
 };
 
-/// Groups the events of a module by message.
+/// Groups the events of a module by message. A moment before the one that it follows (the clock was
+/// set, or the trace is forged) counts as none.
 Module read_module(const std::vector<hc::TraceEvent>& events) {
   Module module;
   std::map<std::pair<std::string, Key>, std::size_t> open;  // the newest visit of each message
@@ -70,11 +71,14 @@ Module read_module(const std::vector<hc::TraceEvent>& events) {
       module.visits.push_back({event.port, key_of(event), event.moment, {}, {}});
     } else if (event.what == What::Began) {
       if (depth++ == 0) begin = event.moment;
-      if (visit != nullptr) visit->began = event.moment;
+      if (visit != nullptr && event.moment >= visit->took) visit->began = event.moment;
     } else if (event.what == What::Ended) {
-      if (visit != nullptr) visit->ended = event.moment;
+      if (visit != nullptr && visit->began && event.moment >= *visit->began)
+        visit->ended = event.moment;
       depth = std::max(depth - 1, 0);  // the trace may begin within a handler
-      if (depth == 0 && begin != hc::Time()) module.busy.emplace_back(begin, event.moment);
+      const hc::Time last = module.busy.empty() ? hc::Time() : module.busy.back().second;
+      if (depth == 0 && begin != hc::Time() && last <= begin && begin <= event.moment)
+        module.busy.emplace_back(begin, event.moment);
     }
   }
   for (const auto& visit : module.visits) {

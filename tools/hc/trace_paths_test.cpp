@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <nlohmann/json.hpp>
 
 namespace tool {
@@ -221,6 +223,24 @@ TEST_F(Chain, BranchesAreBounded) {
     events.ended("a", src - 1, at + 4).ended("b", src, at + 4);
   }
   EXPECT_EQ(find_paths(traced, "m8.a").size(), kMostPaths);
+}
+
+TEST_F(Chain, MomentsThatGoBackCountForNothing) {
+  constexpr std::int64_t kEnd = std::numeric_limits<std::int64_t>::max() - 1000;
+  of("eye").sent("left", 1, 100);
+  auto blob = of("blob");
+  for (int i = 0; i < 3; ++i) blob.busy(200, kEnd);  // the same period
+  blob.took("image", 1, kEnd).handled("image", 1, 300, 200).sent("position", 2, kEnd);
+  of("gaze").took("target", 2, kEnd).handled("target", 2, 100, kEnd);
+  for (const auto& path : find_paths(traced, "gaze.target")) {
+    nanoseconds sum{0};
+    for (const auto& step : path.steps) {
+      EXPECT_GE(step.waiting.count(), 0);
+      EXPECT_GE(step.link.count(), 0);
+      sum += step.waiting + step.link + step.processing;
+    }
+    EXPECT_EQ(sum, path.total);
+  }
 }
 
 TEST(Spread, IsOfAllDurations) {
