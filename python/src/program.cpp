@@ -28,6 +28,14 @@ std::string place_of(const py::error_already_set& raised) {
   return " (" + line.file_name() + ", line " + std::to_string(line.number) + ")";
 }
 
+/// The name of an exception that means a bad message, as in C++: an index that a message does not
+/// have, or an image that OpenCV refuses; empty for others.
+std::string refusal(const py::error_already_set& raised) {
+  if (raised.matches(PyExc_IndexError)) return "IndexError";
+  const py::object opencv = py::module_::import("sys").attr("modules").attr("get")("cv2");
+  return !opencv.is_none() && raised.matches(opencv.attr("error")) ? "cv2.error" : "";
+}
+
 }  // namespace
 
 void exit_with(int status) {
@@ -139,8 +147,8 @@ void Program::end_by_error() {
   py::error_already_set raised;
   const auto text = py::str(raised.value()).cast<std::string>();
   if (raised.matches(bad_message_type())) throw hc::BadMessage(text);
-  if (raised.matches(PyExc_IndexError))  // as std::out_of_range in C++
-    throw hc::BadMessage("IndexError: " + text + place_of(raised));
+  if (const auto name = refusal(raised); !name.empty())
+    throw hc::BadMessage(name + ": " + text.substr(0, text.find('\n')) + place_of(raised));
   if (raised.matches(error_type())) {
     const py::object code = py::getattr(raised.value(), "code", py::str(""));
     throw module_error(text, py::str(code).cast<std::string>());

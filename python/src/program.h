@@ -68,9 +68,10 @@ class Program {
   int end(bool has_failed);
   [[nodiscard]] bool is_pulled() const { return run_ != nullptr; }
 
-  /// Calls a handler from the loop, with the GIL. A hypercolumn.BadMessage or an IndexError drops
-  /// the message. Any other exception ends the module, with the text of a hypercolumn.Error, or
-  /// with the name and text of another exception, whose traceback goes to standard error.
+  /// Calls a handler from the loop, with the GIL. A hypercolumn.BadMessage, an IndexError or a
+  /// cv2.error drops the message. Any other exception ends the module, with the text of a
+  /// hypercolumn.Error, or with the name and text of another exception, whose traceback goes to
+  /// standard error.
   template <typename... Arguments>
   py::object call(PyObject* handler, Arguments... arguments) {
     PyObject* const all[] = {nullptr, arguments...};

@@ -235,6 +235,16 @@ class Ended(Modules):
                 )
                 self.assertEqual(total, "echo: total: 1 bad at numbers")
 
+    def test_an_image_that_opencv_refuses_is_dropped(self):
+        empty = b"1 7 0 0 8 55 120190 0 0 0 0\n\n"
+        body = "import cv2; cv2.resize(message.matrix, (2, 2)); out.send(1)"
+        out = self.echo("table()", body, "", empty + IN, status=1)
+        self.assertEqual(len(out.splitlines()), 2)
+        dropped, total = self.err.splitlines()
+        self.assertIn("echo: numbers: dropped: cv2.error: OpenCV(", dropped)
+        self.assertIn("(module, line 10)", dropped)
+        self.assertEqual(total, "echo: total: 1 bad at numbers")
+
     def test_an_index_error_without_a_message_ends_it(self):
         text = """
 import hypercolumn as hc
