@@ -12,15 +12,16 @@
 #include <vector>
 
 #include <graph/hosts.h>
-#include <graph/log_limit.h>
 #include <graph/module_process.h>
 #include <graph/run/change.h>
-#include <graph/run/lines.h>
+#include <graph/run/commanded_process.h>
+#include <graph/run/liveness.h>
+#include <graph/run/module_log.h>
+#include <graph/run/observed_outputs.h>
 #include <graph/run/reports.h>
 #include <graph/run/restarts.h>
 #include <hc/base/clock.h>
 #include <hc/contract/graph_state.h>
-#include <hc/os/procfs.h>
 
 namespace hc::internal {
 
@@ -76,11 +77,10 @@ class Supervised {
   /// Notes that a linked module is interrupted. A module without `control` ends then, as if its
   /// work were done, and is restarted.
   void note_interruption();
-  /// Opens an output for observers, under a unique name; closes it after kObserved without readers.
-  ///
-  /// @returns  the URI for observers. Errors: Closed (its host is not connected).
-  Result<std::string> observe(const std::string& port, const std::string& name);
-  static constexpr std::chrono::seconds kObserved{5};
+  /// Opens an output for observers: see ObservedOutputs::open().
+  Result<std::string> observe(const std::string& port, const std::string& name) {
+    return observed_.open(plan_, port, name, now());
+  }
 
   /// Starts it if it waits for its host, and the host is connected.
   void check_host();
@@ -89,7 +89,7 @@ class Supervised {
   /// Measures the CPU time and memory of its processes.
   void measure(MonotonicTime now, bool with_memory);
   /// Checks whether its process has ended, without waiting for the event.
-  void check_end() { process_->check_end(); }
+  void check_end() { process_.process().check_end(); }
 
   [[nodiscard]] const PlannedModule& plan() const { return plan_; }
   [[nodiscard]] ModuleStatus status() const { return status_; }
@@ -114,25 +114,10 @@ class Supervised {
   /// Why its process has been asked to end.
   enum class Wish { None, End, Restart, Dismissal };
 
-  struct Observed {
-    PlannedEnd end;
-    std::string uri;  // for observers
-    MonotonicTime until{0};
-    std::shared_ptr<const HeldPort> held = {};  // if the module is on another host
-  };
-
-  [[nodiscard]] std::shared_ptr<Host> host() const;
-  Status make_process();
-  void send_wall_offset();
-  Status open_observed(Observed& observed, const std::string& name);
-  void end_observations(MonotonicTime time);
-  std::vector<Message> catch_up();
-  void update_known();
+  void send(const std::optional<ModuleCommand>& command);
   [[nodiscard]] bool takes_commands() const { return !plan_.control_uri.empty(); }
   void change(ModuleStatus status, const std::string& detail = "");
   void ask_to_end();
-  bool take_text(std::string_view text);
-  void take_line(Level level, std::string text);
   void note_dropped_lines(MonotonicTime time);
   void take_report(const Message& message);
   void check_silent();
@@ -147,12 +132,9 @@ class Supervised {
 
   Loop& loop_;
   PlannedModule plan_;
-  PlannedModule known_;  // the plan as known to its process, possibly with older URIs of links
   SupervisionLimits limits_;
   Callbacks callbacks_;
-  Hosts* hosts_;
   bool awaits_host_ = false;
-  std::chrono::nanoseconds wall_offset_{0};  // last sent to a process on another host
   ModuleStatus status_ = ModuleStatus::Waiting;
   std::string detail_;
   Wish wish_ = Wish::None;
@@ -161,24 +143,13 @@ class Supervised {
   std::optional<int> exit_;
   int starts_ = 0;
   Restarts restarts_;
-  Lines lines_;
-  LogLimit log_limit_;
-  int results_ = 0;  // results and errors so far
-  Level last_level_ = Level::Info;
-  MonotonicTime last_line_time_{0};
+  ModuleLog log_;
   Reports reports_;
-  MonotonicTime reported_{0};  // time of this process's last report; 0: none
-  MonotonicTime checked_{0};   // time of the last check
-  MonotonicTime silence_{0};   // duration without reports, as far as checked
-  MonotonicTime blocked_{0};   // start of its wait for a reader; 0: it does not wait
-  std::string hung_;           // why this process was killed, "hung for 5 s"; empty: it was not
-  Usage usage_;
-  MonotonicTime measured_{0};
-  double processor_ = 0;
-  std::set<std::string> finished_;            // inputs whose writers have ended for good
-  std::map<std::string, Observed> observed_;  // by output
-  std::shared_ptr<Host> process_host_;        // null: this host
-  std::unique_ptr<ModuleProcess> process_;
+  Liveness liveness_;
+  std::string hung_;  // why this process was killed, "hung for 5 s"; empty: it was not
+  ProcessorMeter meter_;
+  ObservedOutputs observed_;
+  CommandedProcess process_;
   Loop::Handle timer_;
 };
 

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Signs of life of a process. Pure: the time is a parameter. Internal to graph.
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include <hc/base/clock.h>
+#include <hc/os/procfs.h>
+
+namespace hc::internal {
+
+/// For how long a process has not reported, and for how long it has waited for a reader.
+class Liveness {
+ public:
+  void reported(bool is_blocked, MonotonicTime now) {
+    reported_ = now;
+    silence_ = MonotonicTime(0);
+    blocked_ = is_blocked ? blocked_.value_or(now) : std::optional<MonotonicTime>();
+  }
+
+  /// Called now and then. The time between two calls counts at most 1 s as silence, since this
+  /// process itself may have been stopped or starved.
+  void check(bool is_running, MonotonicTime now) {
+    constexpr MonotonicTime kMostAtOnce = std::chrono::seconds(1);
+    const auto before = std::exchange(checked_, now);
+    if (is_running && before) silence_ += std::min(now - *before, kMostAtOnce);
+  }
+
+  /// Its silence has another cause.
+  void excuse() { silence_ = MonotonicTime(0); }
+  /// The process has ended.
+  void forget() { *this = Liveness(checked_); }
+
+  [[nodiscard]] bool has_reported() const { return reported_.has_value(); }
+  /// Since the last report; it has reported.
+  [[nodiscard]] MonotonicTime since_report(MonotonicTime now) const { return now - *reported_; }
+  /// Without reports, as far as checked.
+  [[nodiscard]] MonotonicTime silence() const { return silence_; }
+  [[nodiscard]] std::optional<MonotonicTime> blocked_since() const { return blocked_; }
+
+  Liveness() = default;
+
+ private:
+  explicit Liveness(std::optional<MonotonicTime> checked) : checked_(checked) {}
+
+  std::optional<MonotonicTime> reported_, checked_;
+  MonotonicTime silence_{0};
+  std::optional<MonotonicTime> blocked_;  // since then
+};
+
+/// The share of a processor that a process and its descendants use.
+class ProcessorMeter {
+ public:
+  /// @param usage  measured `now`.
+  void measure(const Usage& usage, MonotonicTime now) {
+    if (measured_ && now > *measured_)
+      processor_ = std::max(0.0, std::chrono::duration<double>(usage.processor - usage_.processor) /
+                                     std::chrono::duration<double>(now - *measured_));
+    usage_ = usage;
+    measured_ = now;
+  }
+
+  [[nodiscard]] double processor() const { return processor_; }
+  [[nodiscard]] const Usage& usage() const { return usage_; }
+
+ private:
+  Usage usage_;
+  std::optional<MonotonicTime> measured_;
+  double processor_ = 0;
+};
+
+}  // namespace hc::internal
