@@ -11,57 +11,22 @@
 #include <hc/base/format.h>
 
 namespace hc::internal {
-
-GraphState Runner::state() const {
-  GraphState state;
-  state.name = options_.name;
-  state.file = options_.file;
-  state.process = ::getpid();
-  state.uptime = std::chrono::duration<double>(SystemClock().monotonic() - begun_).count();
-  state.is_stopping = is_stopping_;
-  for (const auto& workspace : plan_.workspaces) state.focus[workspace] = 0;
-  state.modes = plan_.modes;
-  state.addresses = plan_.addresses;
-  for (const auto& declared : graph_.hosts)
-    if (const auto host = options_.hosts == nullptr ? nullptr : options_.hosts->find(declared.name))
-      state.hosts.push_back(host->state());
-  for (const auto& planned : plan_.modules) {
-    const auto* module = find(planned.name);
-    if (module == nullptr) continue;
-    state.modules.push_back(module->state());
-    // A stop outlives the process that reported it.
-    if (any_stops(module->reports().state().stops)) state.stopped.insert(planned.name);
-    // The focus, as reported by modules that receive or decide it; stale unless they run.
-    if (module->status() != ModuleStatus::Running) continue;
-    const bool decides = plan_.workspaces.contains(planned.name);
-    const auto focus = state.focus.find(decides ? planned.name : planned.workspace);
-    if (focus != state.focus.end() && focus->second == 0)
-      focus->second = module->reports().state().focus;
-  }
-  for (auto& module : state.modules)
-    if (module.waits) module.waits_for = waited_for(module.name);
-  for (const auto& link : plan_.links) state.links.push_back(state_of(link));
-  std::map<std::string, std::string> focus;
-  for (const auto& [name, number] : state.focus) focus[name] = state.mode_name(number);
-  const auto workspace = global_workspace(plan_, focus);
-  for (auto& module : state.modules) module.in_workspace = workspace.modules.contains(module.name);
-  for (auto number : workspace.links) state.links.at(number).in_workspace = true;
-  return state;
-}
+namespace {
 
 /// The input for which a module waits. If several share the sending end: those with keep = "all",
 /// and among them those that do not run.
-std::string Runner::waited_for(const std::string& name) const {
+std::string waited_for(const std::string& name, const Plan& plan, const RunningModules& modules) {
   std::vector<const PlannedLink*> links;
-  for (const auto& link : plan_.links)
-    if (link.from.starts_with(name + ".") && find(name)->waits_on(link)) links.push_back(&link);
+  for (const auto& link : plan.links)
+    if (link.from.starts_with(name + ".") && modules.find(name)->waits_on(link))
+      links.push_back(&link);
   auto keep_some = [&](const auto& is_wanted) {
     if (std::ranges::any_of(links, is_wanted))
       std::erase_if(links, [&](const auto* link) { return !is_wanted(link); });
   };
   keep_some([](const auto* link) { return link->keep == "all"; });
-  keep_some([this](const auto* link) {
-    const auto* reader = at(link->to);
+  keep_some([&](const auto* link) {
+    const auto* reader = modules.at(link->to);
     return reader != nullptr && reader->status() != ModuleStatus::Running;
   });
   std::vector<std::string> inputs;
@@ -70,7 +35,7 @@ std::string Runner::waited_for(const std::string& name) const {
   return joined(inputs, " or ");
 }
 
-LinkState Runner::state_of(const PlannedLink& link) const {
+LinkState state_of(const PlannedLink& link, const RunningModules& modules, bool is_stopping) {
   LinkState state;
   state.from = link.from;
   state.to = link.to;
@@ -79,14 +44,14 @@ LinkState Runner::state_of(const PlannedLink& link) const {
   state.transport = inside.substr(0, inside.find_first_of("-:"));
   if (auto rate = link.policy.find("rate"); rate != link.policy.end())
     state.rate = std::atof(rate->second.c_str());
-  for (const auto* module : {at(link.from), at(link.to)}) {
+  for (const auto* module : {modules.at(link.from), modules.at(link.to)}) {
     const auto status = module == nullptr ? ModuleStatus::Running : module->status();
     const bool is_up = status == ModuleStatus::Running || status == ModuleStatus::Ended;
-    if (!is_up && !is_stopping_)
+    if (!is_up && !is_stopping)
       state.status = module->plan().name + ": " + std::string(name(status));
   }
   auto report_of = [&](bool is_input) {
-    const auto* module = at(is_input ? link.to : link.from);
+    const auto* module = modules.at(is_input ? link.to : link.from);
     return module == nullptr ? nullptr : module->reports().find(link.end(is_input));
   };
   const auto *sender = report_of(false), *reader = report_of(true);
@@ -100,7 +65,7 @@ LinkState Runner::state_of(const PlannedLink& link) const {
   // Between modules, their states explain why nothing passes.
   const bool is_input = link.sender_uri.empty();
   const bool is_outside = is_input || link.reader_uri.empty();
-  const auto* inner = at(is_input ? link.to : link.from);
+  const auto* inner = modules.at(is_input ? link.to : link.from);
   if (is_outside && state.status.empty() && inner != nullptr &&
       inner->reports().peers_of(link.end(is_input)) == 0)
     state.status = "not connected";
@@ -122,6 +87,46 @@ LinkState Runner::state_of(const PlannedLink& link) const {
   };
   state.age = seconds(reader->age);
   state.gap = seconds(reader->gap);
+  return state;
+}
+
+}  // namespace
+
+GraphState Runner::state() const {
+  GraphState state;
+  state.name = options_.name;
+  state.file = options_.file;
+  state.process = ::getpid();
+  state.uptime = std::chrono::duration<double>(SystemClock().monotonic() - begun_).count();
+  state.is_stopping = is_stopping_;
+  for (const auto& workspace : plan_.workspaces) state.focus[workspace] = 0;
+  state.modes = plan_.modes;
+  state.addresses = plan_.addresses;
+  for (const auto& declared : changes_.graph().hosts)
+    if (const auto host = options_.hosts == nullptr ? nullptr : options_.hosts->find(declared.name))
+      state.hosts.push_back(host->state());
+  for (const auto& planned : plan_.modules) {
+    const auto* module = modules_.find(planned.name);
+    if (module == nullptr) continue;
+    state.modules.push_back(module->state());
+    // A stop outlives the process that reported it.
+    if (any_stops(module->reports().state().stops)) state.stopped.insert(planned.name);
+    // The focus, as reported by modules that receive or decide it; stale unless they run.
+    if (module->status() != ModuleStatus::Running) continue;
+    const bool decides = plan_.workspaces.contains(planned.name);
+    const auto focus = state.focus.find(decides ? planned.name : planned.workspace);
+    if (focus != state.focus.end() && focus->second == 0)
+      focus->second = module->reports().state().focus;
+  }
+  for (auto& module : state.modules)
+    if (module.waits) module.waits_for = waited_for(module.name, plan_, modules_);
+  for (const auto& link : plan_.links)
+    state.links.push_back(state_of(link, modules_, is_stopping_));
+  std::map<std::string, std::string> focus;
+  for (const auto& [name, number] : state.focus) focus[name] = state.mode_name(number);
+  const auto workspace = global_workspace(plan_, focus);
+  for (auto& module : state.modules) module.in_workspace = workspace.modules.contains(module.name);
+  for (auto number : workspace.links) state.links.at(number).in_workspace = true;
   return state;
 }
 
