@@ -36,6 +36,14 @@ void take(Gathered& gathered, const espeak_EVENT& event) {
   if (event.type != espeakEVENT_WORD || event.text_position < 1 || event.length < 1) return;
   const auto begin = static_cast<std::size_t>(event.text_position) - 1;
   if (begin >= gathered.text.size()) return;
+  if (!gathered.begins.empty()) {
+    // Each part of "3.50" or "12345" is an event within the same word.
+    auto& last = gathered.speech.words.back();
+    if (begin >= gathered.begins.back() && begin < gathered.begins.back() + last.word.size()) {
+      last.end = last.start;  // the next event sets it
+      return;
+    }
+  }
   SpokenWord word;
   word.start = word.end = time;
   word.word = gathered.text.substr(begin, static_cast<std::size_t>(event.length));
@@ -47,15 +55,19 @@ bool is_punctuation(char32_t c) {
   return c < 0x80 ? std::isalnum(static_cast<int>(c)) == 0 : c < 0xC0;
 }
 
+std::u32string_view without_punctuation(std::u32string_view word) {
+  while (!word.empty() && is_punctuation(word.front())) word.remove_prefix(1);
+  while (!word.empty() && is_punctuation(word.back())) word.remove_suffix(1);
+  return word;
+}
+
 /// The words of a text between spaces, without the punctuation around them.
 std::vector<std::u32string_view> words_in(std::u32string_view text) {
   std::vector<std::u32string_view> words;
   while (!text.empty()) {
-    auto word = text.substr(0, text.find(U' '));
+    const auto word = text.substr(0, text.find(U' '));
     text.remove_prefix(std::min(text.size(), word.size() + 1));
-    while (!word.empty() && is_punctuation(word.front())) word.remove_prefix(1);
-    while (!word.empty() && is_punctuation(word.back())) word.remove_suffix(1);
-    if (!word.empty()) words.push_back(word);
+    if (const auto plain = without_punctuation(word); !plain.empty()) words.push_back(plain);
   }
   return words;
 }
@@ -72,8 +84,9 @@ std::vector<SpokenWord> split_joined(std::u32string_view text, const std::vector
     // Text that follows without a space belongs to the same word.
     const auto space = std::min(next, text.find(U' ', end));
     const auto after = words_in(text.substr(space, next - space));
+    const auto word = without_punctuation(text.substr(begins[i], space - begins[i]));
     std::vector<std::u32string_view> group = before;
-    group.push_back(words[i].word);
+    group.push_back(word.empty() ? words[i].word : word);
     group.insert(group.end(), after.begin(), after.end());
     std::size_t letters = 0, done = 0;
     for (const auto& word : group) letters += word.size();

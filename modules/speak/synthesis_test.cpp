@@ -5,6 +5,8 @@
 #include <cctype>
 #include <cstdlib>
 #include <random>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -71,6 +73,30 @@ TEST_F(SynthesisTest, joined_words_have_their_times) {
     expected += ' ';
     if (const auto at = expected.find("  "); at != expected.npos) expected.erase(at, 1);
     EXPECT_EQ(said, expected);
+  }
+}
+
+TEST_F(SynthesisTest, what_is_said_in_several_parts_has_rows_that_do_not_overlap) {
+  const std::pair<std::string, std::string> cases[] = {
+      {"12345", "12345"},
+      {"it costs 3.50 EUR or 1000000 YEN", "it costs 3.50 EUR or 1000000 YEN"},
+      {"the 2nd of 3", "the 2nd of 3"},
+      {"192.168.0.1 is home", "192.168.0.1 is home"},
+      {"at 10:30 on 1/2/2026", "at 10 30 on 1 / 2 / 2026"},
+      {"x86 and AT&T", "x 86 and AT&T"},
+      {"100% of 007", "100 % of 007"}};
+  for (const auto& [text, rows] : cases) {
+    const auto speech = say(text);
+    std::string said;
+    double last = 0;
+    for (const auto& word : speech.words) {
+      said += (said.empty() ? "" : " ") + utf8(word.word);
+      EXPECT_GE(word.start, last - 1e-9) << text;
+      EXPECT_GT(word.end, word.start) << text;
+      last = word.end;
+    }
+    EXPECT_EQ(said, rows);
+    EXPECT_GT(last, 0.7 * seconds(speech)) << text;
   }
 }
 
