@@ -13,6 +13,7 @@ struct Vertex {
   Eigen::Vector3f position;                           ///< object's frame [m]
   Eigen::Vector3f normal;                             ///< outwards, of length 1
   Eigen::Vector2f texture = Eigen::Vector2f::Zero();  ///< 0 … 1 over the image, row 0 at the top
+  Eigen::Vector3f colour = Eigen::Vector3f::Ones();   ///< factor of the image's red, green, blue
 };
 
 /// Triangles of three indices each, counter-clockwise as seen from outside.

@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <assimp/Importer.hpp>
+#include <cctype>
+#include <cmath>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include <opencv2/imgcodecs.hpp>
@@ -23,14 +26,37 @@ constexpr std::size_t kMostVertices = 10'000'000;
 // assimp reads more formats, but some readers trust a file's counts and run for hours.
 constexpr std::array<std::string_view, 4> kFormats = {".obj", ".stl", ".gltf", ".glb"};
 
-Mesh mesh_of(const aiMesh& from) {
+/// The ending of a file's name, in small letters.
+std::string ending_of(const fs::path& path) {
+  std::string ending = path.extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+/// A linear part of a colour as it is in images (sRGB, IEC 61966-2-1). Both 0 … 1.
+float srgb(float linear) {
+  const float value = std::clamp(linear, 0.0F, 1.0F);
+  return value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1 / 2.4F) - 0.055F;
+}
+
+Eigen::Vector3f colour_of(float r, float g, float b, bool is_linear) {
+  return is_linear ? Eigen::Vector3f(srgb(r), srgb(g), srgb(b)) : Eigen::Vector3f(r, g, b);
+}
+
+/// @param is_linear  its colours are linear, as those of glTF.
+Mesh mesh_of(const aiMesh& from, bool is_linear) {
   Mesh mesh;
   mesh.vertices.reserve(from.mNumVertices);
   for (unsigned i = 0; i < from.mNumVertices; ++i) {
     const auto &p = from.mVertices[i], &n = from.mNormals[i];
-    Vertex vertex{{p.x, p.y, p.z}, {n.x, n.y, n.z}, {0, 0}};
+    Vertex vertex{{p.x, p.y, p.z}, {n.x, n.y, n.z}};
     if (from.HasTextureCoords(0))
       vertex.texture = {from.mTextureCoords[0][i].x, from.mTextureCoords[0][i].y};
+    if (from.HasVertexColors(0)) {
+      const auto& c = from.mColors[0][i];
+      vertex.colour = colour_of(c.r, c.g, c.b, is_linear);
+    }
     mesh.vertices.push_back(vertex);
   }
   for (unsigned i = 0; i < from.mNumFaces; ++i) {
@@ -41,18 +67,40 @@ Mesh mesh_of(const aiMesh& from) {
   return mesh;
 }
 
+/// The file that a model names: on Windows with backslashes, in glTF as a part of a URI.
+fs::path file_named(std::string name, const fs::path& folder) {
+  std::error_code none;
+  if (fs::exists(folder / name, none)) return folder / name;
+  std::ranges::replace(name, '\\', '/');
+  std::string plain;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const bool is_escape = name[i] == '%' && i + 2 < name.size() &&
+                           std::isxdigit(static_cast<unsigned char>(name[i + 1])) != 0 &&
+                           std::isxdigit(static_cast<unsigned char>(name[i + 2])) != 0;
+    plain += is_escape ? static_cast<char>(std::stoi(name.substr(i + 1, 2), nullptr, 16)) : name[i];
+    if (is_escape) i += 2;
+  }
+  return folder / (fs::exists(folder / plain, none) ? plain : name);
+}
+
 /// A texture of a model, embedded or in the model's folder; empty if it cannot be read.
 cv::Mat read_texture(const aiScene& scene, const char* name, const fs::path& folder) {
   const aiTexture* inside = scene.GetEmbeddedTexture(name);
-  if (inside == nullptr) return cv::imread((folder / name).string(), cv::IMREAD_COLOR);
+  if (inside == nullptr) {
+    const auto file = file_named(name, folder);
+    std::error_code none;
+    return fs::is_regular_file(file, none) ? cv::imread(file.string(), cv::IMREAD_COLOR)
+                                           : cv::Mat();
+  }
   const bool is_packed = inside->mHeight == 0;  // PNG or JPEG; these model formats have no others
   if (!is_packed || inside->mWidth == 0) return {};
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(inside->pcData);
   return cv::imdecode(std::vector<std::uint8_t>(bytes, bytes + inside->mWidth), cv::IMREAD_COLOR);
 }
 
-Result<cv::Mat> texture_of(const aiScene& scene, const aiMaterial& material,
-                           const fs::path& folder) {
+/// @param is_linear  its plain colour is linear, as those of glTF.
+Result<cv::Mat> texture_of(const aiScene& scene, const aiMaterial& material, const fs::path& folder,
+                           bool is_linear) {
   aiString name;
   if (material.GetTexture(aiTextureType_DIFFUSE, 0, &name) == AI_SUCCESS) {
     cv::Mat image = read_texture(scene, name.C_Str(), folder);
@@ -62,8 +110,9 @@ Result<cv::Mat> texture_of(const aiScene& scene, const aiMaterial& material,
     return image;
   }
   aiColor3D colour(0.8F, 0.8F, 0.8F);
-  material.Get(AI_MATKEY_COLOR_DIFFUSE, colour);
-  return cv::Mat(1, 1, CV_8UC3, cv::Scalar(255 * colour.r, 255 * colour.g, 255 * colour.b));
+  const bool is_given = material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == AI_SUCCESS;
+  const Eigen::Vector3f rgb = 255 * colour_of(colour.r, colour.g, colour.b, is_given && is_linear);
+  return cv::Mat(1, 1, CV_8UC3, cv::Scalar(rgb[0], rgb[1], rgb[2]));
 }
 
 }  // namespace
@@ -71,11 +120,16 @@ Result<cv::Mat> texture_of(const aiScene& scene, const aiMaterial& material,
 Result<std::vector<Part>> read_model(const std::string& path) {
   std::error_code none;
   if (!fs::is_regular_file(path, none)) return Error{Code::NotFound, path + ": no such file"};
-  if (std::find(kFormats.begin(), kFormats.end(), fs::path(path).extension()) == kFormats.end())
+  const std::string ending = ending_of(path);
+  if (std::ranges::find(kFormats, ending) == kFormats.end())
     return Error{Code::Unsupported, path + ": not a model (.obj, .stl, .gltf or .glb)"};
+  const bool is_linear = ending == ".gltf" || ending == ".glb";
+  // Many programs write zeros for the normals of an .stl.
+  const unsigned normals = ending == ".stl" ? aiProcess_ForceGenNormals | aiProcess_GenNormals
+                                            : unsigned{aiProcess_GenSmoothNormals};
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(
-      path, aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_PreTransformVertices |
+      path, normals | aiProcess_Triangulate | aiProcess_PreTransformVertices |
                 aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_FlipUVs);
   if (scene == nullptr) return Error{Code::Malformed, path + ": " + importer.GetErrorString()};
   std::vector<Part> parts;
@@ -86,9 +140,9 @@ Result<std::vector<Part>> read_model(const std::string& path) {
     vertices += mesh.mNumVertices;
     if (vertices > kMostVertices)
       return Error{Code::Malformed, path + ": has more than 10 million corners"};
-    auto texture = HC_TRY(
-        texture_of(*scene, *scene->mMaterials[mesh.mMaterialIndex], fs::path(path).parent_path()));
-    parts.push_back({mesh_of(mesh), texture});
+    auto texture = HC_TRY(texture_of(*scene, *scene->mMaterials[mesh.mMaterialIndex],
+                                     fs::path(path).parent_path(), is_linear));
+    parts.push_back({mesh_of(mesh, is_linear), texture});
   }
   if (parts.empty()) return Error{Code::Malformed, path + ": has no triangle"};
   return parts;

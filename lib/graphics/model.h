@@ -18,7 +18,8 @@ struct Part {
 };
 
 /// Reads a model: Wavefront .obj, .stl, .gltf or .glb. Lengths are in metres; axes are unchanged;
-/// textures are embedded or in the same folder. Missing normals are computed.
+/// textures are embedded or in the same folder; vertices may have colours. The sides of an .stl are
+/// flat, whatever its normals; in the others, missing normals are computed.
 ///
 /// Errors: NotFound (no such file); Unsupported (another format); Malformed (from assimp; invalid
 /// texture; no triangle; more than 10 million vertices).

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include <opencv2/imgcodecs.hpp>
@@ -51,6 +52,57 @@ TEST_F(Models, a_texture_lies_beside_the_file) {
   parts = read_model(folder / "square.obj");
   ASSERT_FALSE(parts);
   EXPECT_NE(parts.error().detail.find("none.png: not an image"), std::string::npos);
+}
+
+TEST_F(Models, a_texture_may_be_named_as_on_windows_or_in_a_uri) {
+  std::filesystem::create_directory(folder / "my paint");
+  cv::imwrite(folder / "my paint/blue.png", cv::Mat(4, 4, CV_8UC3, cv::Scalar(255, 0, 0)));
+  for (const std::string name : {"my paint\\blue.png", "my%20paint/blue.png"}) {
+    write("square.mtl", "newmtl paint\nmap_Kd " + name + "\n");
+    auto parts = read_model(write("square.obj", kSquare));
+    ASSERT_TRUE(parts) << parts.error().text();
+    EXPECT_EQ(parts->front().texture.at<cv::Vec3b>(0, 0), cv::Vec3b(0, 0, 255)) << name;
+  }
+  cv::imwrite(folder / "100%25.png", cv::Mat(4, 4, CV_8UC3, cv::Scalar(0, 255, 0)));
+  write("square.mtl", "newmtl paint\nmap_Kd 100%25.png\n");
+  EXPECT_TRUE(read_model(folder / "square.obj")) << "a file of this very name";
+}
+
+TEST_F(Models, an_ending_may_be_in_capitals) {
+  write("square.mtl", "newmtl paint\n");
+  EXPECT_TRUE(read_model(write("SQUARE.OBJ", kSquare)));
+}
+
+TEST_F(Models, the_sides_of_an_stl_are_flat) {
+  auto parts = read_model(write("side.stl",
+                                "solid s\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\n"
+                                "vertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n"));
+  ASSERT_TRUE(parts) << parts.error().text();
+  for (const auto& vertex : parts->front().mesh.vertices)
+    EXPECT_EQ(vertex.normal, Eigen::Vector3f(0, 0, 1));
+}
+
+TEST_F(Models, vertices_have_colours) {
+  auto parts =
+      read_model(write("rgb.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 0.5\nf 1 2 3\n"));
+  ASSERT_TRUE(parts) << parts.error().text();
+  EXPECT_EQ(parts->front().mesh.vertices.at(2).colour, Eigen::Vector3f(0, 0, 0.5));
+}
+
+TEST_F(Models, colours_of_gltf_are_linear) {
+  // One triangle; positions as base64 of little-endian floats.
+  auto parts =
+      read_model(write("grey.gltf", R"({"asset": {"version": "2.0"}, "scene": 0,
+ "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+ "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.2, 1, 0, 1]}}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                "min": [0, 0, 0], "max": [1, 1, 0]}],
+ "bufferViews": [{"buffer": 0, "byteLength": 36}],
+ "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,)"
+                                    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}"));
+  ASSERT_TRUE(parts) << parts.error().text();
+  EXPECT_EQ(parts->front().texture.at<cv::Vec3b>(0, 0), cv::Vec3b(124, 255, 0));
 }
 
 TEST_F(Models, what_is_no_model_is_refused) {

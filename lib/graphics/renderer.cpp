@@ -21,23 +21,24 @@ constexpr const char* kVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 texture_place;
+layout(location = 3) in vec3 factor;
 uniform mat4 projection;      // of a camera's frame
 uniform mat4 T_camera_object;
 uniform vec3 to_light;        // camera's frame
 uniform float ambient, diffuse;
 out vec2 place;
-out float brightness;
+out vec3 brightness;
 void main() {
   gl_Position = projection * (T_camera_object * vec4(position, 1.0));
   place = texture_place;
-  brightness = ambient + diffuse *
-      max(dot(normalize(mat3(T_camera_object) * normal), to_light), 0.0);
+  brightness = factor * (ambient + diffuse *
+      max(dot(normalize(mat3(T_camera_object) * normal), to_light), 0.0));
 }
 )";
 
 constexpr const char* kFragmentShader = R"(#version 330 core
 in vec2 place;
-in float brightness;
+in vec3 brightness;
 uniform sampler2D image;
 layout(location = 0) out vec4 colour;
 void main() { colour = vec4(texture(image, place).rgb * brightness, 1.0); }
@@ -191,7 +192,7 @@ Result<std::unique_ptr<Renderer>> Renderer::make() {
 }
 
 SurfaceId Renderer::add(const Mesh& mesh, const cv::Mat& texture) {
-  static_assert(sizeof(Vertex) == 8 * sizeof(float));
+  static_assert(sizeof(Vertex) == 11 * sizeof(float));
   Surface surface;
   surface.count = static_cast<GLsizei>(mesh.indices.size());
   glGenVertexArrays(1, &surface.vertices);
@@ -200,7 +201,8 @@ SurfaceId Renderer::add(const Mesh& mesh, const cv::Mat& texture) {
   surface.indices = upload(GL_ELEMENT_ARRAY_BUFFER, mesh.indices);
   const std::pair<GLint, std::size_t> attributes[] = {{3, offsetof(Vertex, position)},
                                                       {3, offsetof(Vertex, normal)},
-                                                      {2, offsetof(Vertex, texture)}};
+                                                      {2, offsetof(Vertex, texture)},
+                                                      {3, offsetof(Vertex, colour)}};
   GLuint number = 0;
   for (auto [size, offset] : attributes) {
     glEnableVertexAttribArray(number);

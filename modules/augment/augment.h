@@ -73,11 +73,11 @@ struct AugmentOutputs {
 struct AugmentParameters {
   hc::Module& module;
 
-  hc::Parameter<std::string> objects =
-      module.parameter("objects", "cube at world 2 0 1.2 size 0.3", "",
-                       "MODEL at FRAME [to FRAME] [X Y Z [ROLL PITCH YAW]] [size SIZE|fit], with ; "
-                       "between them: cube, ball or a file of .obj, .stl, .gltf, .glb; a "
-                       "frame by name, or the number of a frame or marker; m, degrees");
+  hc::Parameter<std::string> objects = module.parameter(
+      "objects", "cube at world 2 0 1.2 size 0.3", "",
+      "MODEL at FRAME [to FRAME] [X Y Z [ROLL PITCH YAW]] [size SIZE|fit], with ; "
+      "between them: cube, ball or a file of .obj, .stl, .gltf, .glb (in \" "
+      "if its name has spaces); a frame by name, or the number of a frame or marker; m, degrees");
   hc::Parameter<double> smoothing = module.parameter(
       "smoothing", 0.2, "s", "time constant of markers' poses", {.min = 0, .max = 10});
   hc::Parameter<std::string> instruments = module.parameter(

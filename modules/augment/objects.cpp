@@ -29,7 +29,15 @@ hc::Result<Object> read_object(std::string_view text) {
   auto wrong = [&](const char* why) {
     return hc::Error{hc::Code::Invalid, "objects: \"" + std::string(text) + "\" " + why};
   };
-  auto all = hc::words_of(text);
+  // A name with spaces or semicolons is in quotes.
+  std::string_view quoted, rest = text;
+  if (rest.remove_prefix(std::min(rest.find_first_not_of(" \t\n"), rest.size()));
+      rest.starts_with('"')) {
+    quoted = rest.substr(1, rest.find('"', 1) - 1);
+    rest.remove_prefix(quoted.size() + 2);
+  }
+  auto all = hc::words_of(rest);
+  if (!quoted.empty()) all.insert(all.begin(), quoted);
   if (all.size() < 3 || all[1] != "at") return wrong("is not like cube at world 2 0 0.8 size 0.3");
   Object object;
   object.model = all[0];
@@ -79,8 +87,15 @@ cv::Mat paint_squares(int columns, int rows, const cv::Vec3b& one, const cv::Vec
 
 hc::Result<std::vector<Object>> read_objects(std::string_view text) {
   std::vector<Object> objects;
-  for (const auto one : hc::words_of(text, ";")) {
+  while (!text.empty()) {
+    std::size_t end = 0;
+    for (bool is_quoted = false; end < text.size() && (is_quoted || text[end] != ';'); ++end)
+      if (text[end] == '"') is_quoted = !is_quoted;
+    const auto one = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
     if (hc::words_of(one).empty()) continue;
+    if (std::ranges::count(one, '"') % 2 != 0)
+      return hc::Error{hc::Code::Invalid, "objects: " + std::string(one) + ": a quote has no end"};
     auto object = HC_TRY(read_object(one));
     objects.push_back(std::move(object));
   }

@@ -24,6 +24,19 @@ TEST(Objects, are_read_with_place_turn_and_size) {
   EXPECT_TRUE(robot.T_frame_object.isApprox(Eigen::Isometry3d::Identity()));
 }
 
+TEST(Objects, may_have_a_name_in_quotes) {
+  const auto all =
+      read_objects(R"("my models/a; b.obj" at world 1 2 3; "c d.stl" at 101 size 2;cube at head)");
+  ASSERT_TRUE(all) << all.error().text();
+  ASSERT_EQ(all->size(), 3U);
+  EXPECT_EQ(all->at(0).model, "my models/a; b.obj");
+  EXPECT_EQ(all->at(0).T_frame_object.translation(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(all->at(1).model, "c d.stl");
+  EXPECT_EQ(all->at(2).model, "cube");
+  for (const char* text : {"\"", "\"a.obj at world", "\"\" at world", "\"a.obj\"", "a.obj \" at 1"})
+    EXPECT_FALSE(read_objects(text)) << text;
+}
+
 TEST(Objects, are_read_that_are_between_two_frames) {
   const auto all = read_objects(
       "s.obj at 101 to 102 size fit; s.obj at 101 to head 0 0 1 size 2; s.obj at 1 to 2");
