@@ -23,7 +23,7 @@ sys.path.insert(0, str(ROOT / "tests/pipes"))
 from feeder import Feeder, Source  # noqa: E402
 from graphs import Messages  # noqa: E402
 from harness import BUILD, end_when_hung, wait_until  # noqa: E402
-from page_test import Page, message as message_of, number  # noqa: E402
+from page import Page, message as message_of, number  # noqa: E402
 from rows import Row, rows  # noqa: E402
 from streams import Focus, Line, Motion, Stream, run_delay, rotation, stick  # noqa: E402
 from web_socket import BINARY, CLOSE, WebSocket, get  # noqa: E402

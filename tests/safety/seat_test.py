@@ -8,7 +8,7 @@ import unittest
 
 from head import IS_FULL, Safety, seat_bid, seat_stick  # which knows the way to the others
 from feeder import Feeder
-from page_test import ALIVE
+from page import ALIVE
 from streams import stick
 from threads import held_threads
 
