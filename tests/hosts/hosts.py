@@ -8,6 +8,7 @@ import os
 import pathlib
 import re
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -142,3 +143,19 @@ class HostsTest(Graphs):
     def connect_by_tls(host, port, more=""):
         command = "openssl s_client -connect %s:%d -quiet %s" % (host.address, port, more)
         return subprocess.run(command.split(), stdin=-3, stdout=-1, stderr=-1, timeout=WATCHDOG)
+
+    def refuses_who_has_no_key(self, host):
+        """All ports that modules listen at speak TLS alone, and close before a byte of MTP."""
+        ports = self.ports_of(host)
+        self.assertGreaterEqual(len(ports), 2)
+        for port in ports:
+            with socket.create_connection((host.address, port), WATCHDOG) as plain:
+                plain.sendall(b"GET / HTTP/1.0\r\n\r\n")
+                try:
+                    answer = plain.recv(100)
+                except ConnectionResetError:
+                    answer = b""
+                self.assertTrue(answer == b"" or answer[0] == 0x15, answer)  # an alert
+            done = self.connect_by_tls(host, port)
+            self.assertEqual(done.stdout, b"")
+            self.assertIn(b"alert certificate required", done.stderr)
