@@ -2,7 +2,7 @@
 #pragma once
 // An HTTP and WebSocket server, with or without TLS. Its Site decides about contents and access.
 // All functions are called on the server's thread, except post() and stop(), which are thread-safe.
-// Only server.cpp uses Beast.
+// Boost stays out of this header.
 
 #include <chrono>
 #include <cstdint>
