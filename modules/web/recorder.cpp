@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include <hc/base/natural_order.h>
 #include <hc/compress/compress.h>
 #include <hc/contract/description.h>
 
@@ -42,7 +43,7 @@ std::vector<Recorded> list_recordings(const std::string& folder) {
       recorded.streams.push_back(stream.name);
     all.push_back(std::move(recorded));
   }
-  std::ranges::sort(all, {}, &Recorded::name);
+  std::ranges::sort(all, hc::natural_less, &Recorded::name);
   return all;
 }
 

@@ -25,6 +25,8 @@
 #include <limits>
 #include <string_view>
 
+#include <hc/base/natural_order.h>
+
 #include "common.h"
 
 namespace tool {
@@ -135,7 +137,7 @@ bool is_real_line(const std::string& name) {
 Devices find(const char* kind, const char* where, const char* folder,
              std::initializer_list<std::string_view> begins, int access = R_OK | W_OK,
              std::string_view ends = "") {
-  std::vector<std::pair<std::size_t, std::string>> found;  // with length, to sort 10 after 9
+  std::vector<std::string> found;
   std::error_code missing;
   for (const auto& entry : fs::directory_iterator(folder, missing)) {
     const std::string name = entry.path().filename().string();
@@ -143,11 +145,11 @@ Devices find(const char* kind, const char* where, const char* folder,
         (name.back() >= '0' && name.back() <= '9') || ends.find(name.back()) != ends.npos;
     if (has_end && is_real_line(name) &&
         std::ranges::any_of(begins, [&](auto begin) { return name.starts_with(begin); }))
-      found.emplace_back(name.size(), entry.path().string());
+      found.push_back(entry.path().string());
   }
-  std::ranges::sort(found);
+  std::ranges::sort(found, hc::natural_less);
   Devices devices{kind, where};
-  for (const auto& [size, path] : found)
+  for (const auto& path : found)
     (::access(path.c_str(), access) == 0 ? devices.open : devices.closed).push_back(path);
   return devices;
 }
