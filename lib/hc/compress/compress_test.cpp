@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include <hc/mtp/matrix_view.h>
 #include <hc/testing/must.h>
@@ -71,6 +73,26 @@ TEST(Compress, EmptyMatrices) {
       std::move(Draft::make({MatrixType::Table, 1, Scalar::F64, Encoding::Binary}, 3, 0)).finish();
   auto packed = must(compress(empty, Encoding::Zstd));
   EXPECT_TRUE(expand(packed)->elements.empty());
+}
+
+TEST(CheckJpeg, EveryCutIsFound) {
+  const Message packed = must(compress(gradient(3), Encoding::Jpeg));
+  const auto file = packed.elements;
+  EXPECT_TRUE(check_jpeg(file));
+  for (std::size_t size = 0; size < file.size(); ++size)
+    EXPECT_FALSE(check_jpeg(file.first(size))) << size;
+}
+
+TEST(CheckJpeg, DamageIsFoundAndWhatFollowsTheImageIsIgnored) {
+  const Message packed = must(compress(gradient(1), Encoding::Jpeg));
+  const auto file = packed.elements;
+  std::vector<std::byte> bytes(file.begin(), file.end());
+  bytes.insert(bytes.end(), 100, std::byte(7));
+  EXPECT_TRUE(check_jpeg(bytes));
+  // A marker amid the pixels.
+  bytes[file.size() / 2 + 100] = std::byte(0xff);
+  bytes[file.size() / 2 + 101] = std::byte(0xd9);
+  EXPECT_FALSE(check_jpeg(bytes));
 }
 
 TEST(Expand, R36_R37_EveryCutIsRefused) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hc/compress/codecs.h>
+#include <hc/compress/compress.h>
 
 // jpeglib.h requires these two.
 #include <cstddef>
 #include <cstdio>
 
+#include <jerror.h>
 #include <jpeglib.h>
 
 #include <csetjmp>
@@ -40,6 +42,12 @@ void fail(j_common_ptr info) {
 /// Warnings (level -1) mean damaged data; other messages are ignored.
 void fail_on_warning(j_common_ptr info, int level) {
   if (level < 0) fail(info);
+}
+
+/// The same, except for warnings of files whose image is complete.
+void fail_on_damage(j_common_ptr info, int level) {
+  const int code = info->err->msg_code;
+  if (code != JWRN_EXTRANEOUS_DATA && code != JWRN_JFIF_MAJOR) fail_on_warning(info, level);
 }
 
 jpeg_error_mgr* install(ErrorHandler& handler) {
@@ -148,4 +156,30 @@ Result<Message> compress_jpeg(const Message& message, int quality) {
   return Message{header, {reinterpret_cast<const std::byte*>(buffer), size}, owner, 0};
 }
 
+/// See check_jpeg().
+Status find_damage(std::span<const std::byte> file) {
+  ErrorHandler handler;
+  jpeg_decompress_struct image;
+  jpeg_progress_mgr progress{};
+  progress.progress_monitor = count_scans;
+  image.err = install(handler);
+  handler.manager.emit_message = fail_on_damage;
+  if (setjmp(handler.start) != 0) {
+    jpeg_destroy_decompress(&image);
+    return Error{Code::Malformed, handler.text};
+  }
+  jpeg_create_decompress(&image);
+  image.progress = &progress;
+  jpeg_mem_src(&image, reinterpret_cast<const unsigned char*>(file.data()), file.size());
+  jpeg_read_header(&image, TRUE);
+  jpeg_read_coefficients(&image);
+  jpeg_finish_decompress(&image);
+  jpeg_destroy_decompress(&image);
+  return {};
+}
+
 }  // namespace hc::internal
+
+hc::Status hc::check_jpeg(std::span<const std::byte> file) {
+  return internal::find_damage(file);
+}
