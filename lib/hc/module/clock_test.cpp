@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -122,6 +123,21 @@ TEST_F(ByMessages, AGeneratorKeepsItsRateByThem) {
   });
   EXPECT_EQ(run(), Log({"a 0 at 0", "look at 0", "look at 10", "look at 20", "a 15 at 20",
                         "a 18 at 20", "look at 30", "look at 40", "a 40 at 40", "look at 50"}));
+}
+
+TEST_F(ByMessages, AGeneratorWaitsUntilATimeOfThem) {
+  feed("a", {at(0), at(15), at(18), at(40)});
+  std::optional<MonotonicTime> begin;
+  module.generate([&] {
+    if (!begin) begin = module.monotonic();
+    module.wait_until(*begin + 30ms);
+    log.push_back("look" + now());
+  });
+  const auto all = run();
+  // Once it has waited, it is called between messages.
+  ASSERT_GE(all.size(), 2U);
+  EXPECT_EQ(all[0], "a 0 at 0");
+  EXPECT_EQ(all[1], "look at 30");
 }
 
 TEST_F(ByMessages, AGeneratorThatKeepsNoRateIsCalledBetweenMessages) {

@@ -197,6 +197,10 @@ void Module::keep_rate(double rate) {
   last_period_ = std::max(last_period_ ? *last_period_ + period() : now, now - period());
 }
 
+void Module::wait_until(MonotonicTime time) {
+  if (time > monotonic()) loop_->pause([=] { return time; });
+}
+
 bool Module::is_read() const {
   for (const auto& output : outputs_)
     for (const auto& link : output->links)

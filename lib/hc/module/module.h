@@ -239,6 +239,8 @@ class Module {
   /// For generators: waits until the next period of a rate begins, counted from the first call.
   /// A module that is asked to stop ends here. @param rate [Hz]
   void keep_rate(double rate);
+  /// The same until a time of monotonic().
+  void wait_until(MonotonicTime time);
 
   /// Ends the module when the handler that calls this has returned: on_end() is called, the outputs
   /// end, and run() gives 0.
