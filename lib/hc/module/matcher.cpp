@@ -20,14 +20,20 @@ Matcher::Matcher(std::size_t inputs, Take take) : inputs_(inputs), take_(std::mo
 }
 
 void Matcher::push(std::size_t input, Message message) {
-  auto& [waiting, latest, ended, dropped] = inputs_[input];
+  auto& [waiting, latest, since_set, first_since_set, ended, dropped] = inputs_[input];
   HC_CHECK(!ended, input);
   const Time time = message.header.time;
   if (time != Time() && time < latest) {
     drop_waiting();
-    for (auto& each : inputs_) each.latest = {};
+    for (auto& each : inputs_) {
+      each.latest = {};
+      each.since_set = 0;
+    }
   }
-  if (time != Time()) latest = time;
+  if (time != Time()) {
+    latest = time;
+    if (since_set++ == 0) first_since_set = time;
+  }
   waiting.push_back(std::move(message));
   settle();
   while (waiting.size() > kMaxWaiting ||
@@ -35,6 +41,12 @@ void Matcher::push(std::size_t input, Message message) {
     waiting.pop_front();
     ++dropped.crowded;
   }
+}
+
+bool Matcher::is_starving() const {
+  return std::all_of(inputs_.begin(), inputs_.end(), [](const Input& input) {
+    return input.since_set >= kMaxWaiting && input.latest - input.first_since_set >= kStarving;
+  });
 }
 
 void Matcher::end(std::size_t input) {
@@ -76,6 +88,7 @@ void Matcher::take() {
   for (auto& input : inputs_) {
     set.push_back(std::move(input.waiting.front()));
     input.waiting.pop_front();
+    input.since_set = 0;
   }
   take_(set);
 }

@@ -3,6 +3,7 @@
 // Matches messages of several inputs by their times.
 // Pure: no I/O, no clock, no threads; the same messages in the same order give the same sets.
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -65,12 +66,18 @@ class Matcher {
     return inputs_[input].waiting.size() >= kMaxWaiting;
   }
 
+  /// Whether all inputs have had messages for kStarving, by their times, without a set.
+  [[nodiscard]] bool is_starving() const;
+  static constexpr std::chrono::seconds kStarving{3};
+
   [[nodiscard]] const Dropped& dropped(std::size_t input) const { return inputs_[input].dropped; }
 
  private:
   struct Input {
     std::deque<Message> waiting;
     Time latest;
+    std::size_t since_set = 0;  ///< messages with a time
+    Time first_since_set;
     bool ended = false;
     Dropped dropped;
   };

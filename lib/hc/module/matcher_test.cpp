@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <random>
 #include <stdexcept>
@@ -14,10 +15,14 @@ namespace {
 using Times = std::vector<int>;
 using Sets = std::vector<Times>;
 
-Message of_time(int time) {
+Message of_nanoseconds(std::int64_t time) {
   Message message;
   message.header.time = unix_time(time);
   return message;
+}
+
+Message of_time(int time) {
+  return of_nanoseconds(time);
 }
 
 /// A matcher whose sets are kept, by their times.
@@ -188,6 +193,30 @@ TEST(Matcher, ASetWhoseHandlerFailsIsTaken) {
   EXPECT_THROW(matcher.push(1, of_time(1)), std::runtime_error);
   matcher.push(1, of_time(1));
   EXPECT_EQ(matcher.dropped(0).total(), 0U);
+}
+
+TEST(Matcher, SecondsWithoutASetAreNoticed) {
+  constexpr int kSecond = 1'000'000'000;
+  Kept kept(2);
+  const auto push_both = [&](std::int64_t left, std::int64_t right) {
+    kept.matcher.push(0, of_nanoseconds(left));
+    kept.matcher.push(1, of_nanoseconds(right));
+  };
+  std::int64_t time = kSecond;
+  for (int i = 0; i < 60; ++i, time += kSecond / 20) {
+    push_both(time, time + 1);
+    EXPECT_FALSE(kept.matcher.is_starving()) << i;
+  }
+  push_both(time, time + 1);
+  EXPECT_TRUE(kept.matcher.is_starving());
+  push_both(time + 2, time + 2);
+  EXPECT_FALSE(kept.matcher.is_starving());
+}
+
+TEST(Matcher, AnInputWithoutMessagesIsNoLackOfSets) {
+  Kept kept(2);
+  for (std::int64_t i = 1; i < 100; ++i) kept.matcher.push(0, of_nanoseconds(i * 1'000'000'000));
+  EXPECT_FALSE(kept.matcher.is_starving());
 }
 
 }  // namespace

@@ -129,7 +129,18 @@ void Module::handle(internal::TogetherState& together) {
   handled_ = {};
 }
 
-void Module::log_unmatched(const internal::TogetherState& together) {
+void Module::log_unmatched(internal::TogetherState& together) {
+  const bool is_starving = together.matcher.is_starving();
+  if (std::exchange(together.is_starving, is_starving) != is_starving) {
+    std::string names;
+    for (const auto& input : together.inputs) names += (names.empty() ? "" : ", ") + input->name;
+    if (is_starving)
+      log(names + ": no messages of equal time for " + std::to_string(Matcher::kStarving.count()) +
+              " s: none is handled",
+          Level::Warning);
+    else
+      log(names + ": messages of equal time again");
+  }
   // Where sets are dropped for newer ones, that is no news.
   if (together.is_latest && together.dropped_newer > 0) return;
   for (const auto& input : together.inputs)

@@ -328,8 +328,8 @@ class Module {
                     Matcher::Take handler);
   /// Handles the set that is complete, if there is one.
   void handle(internal::TogetherState& together);
-  /// Logs the first unmatched message of each input.
-  void log_unmatched(const internal::TogetherState& together);
+  /// Logs the first unmatched message of each input, and when none match for long.
+  void log_unmatched(internal::TogetherState& together);
   void log_counts() const;
 
   std::string name_, summary_;

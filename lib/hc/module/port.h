@@ -121,6 +121,7 @@ struct TogetherState {
   bool is_latest = false;
   std::vector<Message> set;         ///< complete, to be handled; empty: none
   std::uint64_t dropped_newer = 0;  ///< complete sets that were dropped for a newer one
+  bool is_starving = false;         ///< there are no sets, and it is logged
 };
 
 struct OutputState {
