@@ -299,6 +299,19 @@ class Tool(Pipes):
                 self.shell(command, 1)
                 self.assertIn("No space left on device", self.err)
 
+    def test_a_file_that_may_not_grow_is_an_error(self):
+        """No program is killed by the signal of the limit."""
+        self.record()
+        for command in (
+            "hc cat --json r.mtp",
+            "hc describe camera",
+            "hc camera --help",
+            "hc camera %s/aloeL.jpg" % DATA,
+        ):
+            with self.subTest(command):
+                self.shell("ulimit -f 1; %s >large" % command, 1)
+                self.assertIn("File too large", self.err)
+
     def test_busy_verbs_can_be_told_to_stop(self):
         self.record()
         for command in (

@@ -113,7 +113,7 @@ void become_module(const std::string& name, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  hc::open_standard_descriptors();
+  hc::prepare_program();
   hc::add_all_transports();
   CLI::App app{"Runs and inspects graphs of modules that send each other matrices.", "hc"};
   app.set_version_flag("--version", "hc " HC_VERSION);

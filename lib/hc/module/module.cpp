@@ -38,7 +38,7 @@ Module::Module(std::string name, std::string summary, const ModuleOptions& optio
       instance_(name_),
       options_(options),
       clock_(options.clock != nullptr ? *options.clock : kSystemClock) {
-  open_standard_descriptors();
+  prepare_program();
 }
 
 Module::~Module() = default;

@@ -42,7 +42,8 @@ extern "C" void ask_to_stop(int number) {
 
 }  // namespace
 
-void open_standard_descriptors() {
+void prepare_program() {
+  std::signal(SIGXFSZ, SIG_IGN);
   int opened = ::open("/dev/null", O_RDWR);
   while (opened >= 0 && opened <= STDERR_FILENO) opened = ::open("/dev/null", O_RDWR);
   if (opened >= 0) ::close(opened);
@@ -59,7 +60,6 @@ int stop_descriptor() {
   ::sigaction(SIGHUP, nullptr, &inherited);
   if (inherited.sa_handler != SIG_IGN) ::sigaction(SIGHUP, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);
   return stop_event;
 }
 

@@ -10,12 +10,13 @@
 namespace hc {
 
 /// Opens /dev/null for closed descriptors among 0 to 2; otherwise the next file opened would
-/// receive standard output or error. Call it first in main().
-void open_standard_descriptors();
+/// receive standard output or error. Ignores SIGXFSZ, so that a write beyond the limit of a file
+/// fails instead of killing the program. Call it first in main().
+void prepare_program();
 
 /// A descriptor that becomes readable on SIGINT, SIGTERM or SIGHUP (unless that is ignored, as
 /// under nohup); they are caught from the first call on. Repeating a signal kills as usual, except
-/// within 1 s. SIGPIPE and SIGXFSZ are ignored. Always returns the same descriptor. To be called on
+/// within 1 s. SIGPIPE is ignored. Always returns the same descriptor. To be called on
 /// the main thread.
 int stop_descriptor();
 
