@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <hc/os/descriptor.h>
+#include <hc/os/detached.h>
 #include <hc/os/event.h>
 #include <hc/os/loop.h>
 #include <hc/os/thread.h>
@@ -66,29 +67,17 @@ template <typename Work, typename Done>
       [result, done = std::move(done)]() mutable { done(std::move(**result)); });
 }
 
-/// The result of `work()`, which returns a Result and may block indefinitely in a system call, such
-/// as stat() on a network disk that hangs. It runs on a new thread, which is abandoned if `stop`
-/// becomes readable; it must therefore own everything that it uses.
+/// The result of `work()`, which returns a Result and may block indefinitely; see Detached. It is
+/// abandoned if `stop` becomes readable.
 ///
 ///     auto text = unless_stopped(stop, [name] { return read_text(name); });
 ///
 /// Errors: Stopped; System (no descriptor or thread available); those of `work`.
 template <typename Work>
 [[nodiscard]] std::invoke_result_t<Work&> unless_stopped(int stop, Work work) {
-  struct Shared {
-    Event done;
-    std::optional<std::invoke_result_t<Work&>> result;
-  };
-  const auto shared = std::make_shared<Shared>();
-  shared->done = HC_TRY(Event::make());
-  auto thread = HC_TRY(start_thread([shared, work = std::move(work)]() mutable {
-    shared->result.emplace(work());
-    shared->done.raise();
-  }));
-  thread.detach();
-  HC_TRY(wait_for(shared->done.descriptor(), POLLIN, stop));
-  shared->done.clear();
-  return std::move(*shared->result);
+  auto detached = HC_TRY(Detached<std::invoke_result_t<Work&>>::begin(std::move(work)));
+  HC_TRY(wait_for(detached.descriptor(), POLLIN, stop));
+  return std::move(*detached.take());
 }
 
 }  // namespace hc

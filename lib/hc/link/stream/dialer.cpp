@@ -65,8 +65,14 @@ void Dialer::log(Level level, std::string_view line) const {
   if (log_) log_(level, line);
 }
 
+int Dialer::descriptor() const {
+  return awaits_addresses() ? lookup_->descriptor() : attempt_.get();
+}
+
 TimePoint Dialer::due() const {
-  return std::min({give_up_, log_due_, attempt_ ? answer_due_ : next_try_});
+  auto next = attempt_ ? answer_due_ : next_try_;
+  if (awaits_addresses()) next = is_awaited_ ? TimePoint::max() : begin_ + kQuiet;
+  return std::min({give_up_, log_due_, next});
 }
 
 void Dialer::lost(TimePoint now, bool was_of_use, std::string why,
@@ -76,10 +82,34 @@ void Dialer::lost(TimePoint now, bool was_of_use, std::string why,
   if (log_due_ <= now) log_loss();
   give_up_ = now + patience_;
   if (was_of_use || now - connected_at_ >= kFirstPause) backoff_.reset();
+  lookup_.reset();  // its result may be old
   next_try_ = was_of_use ? now : std::min(now + draw_pause(backoff_, random_), give_up_);
 }
 
+/// Begins to look up the peer's name, or takes what was found. Whether there are addresses to try.
+bool Dialer::has_addresses(TimePoint now) {
+  if (!peer_.find) return true;
+  std::optional<Found> found;
+  if (lookup_) {
+    found = lookup_->take();
+    if (found) lookup_.reset();
+  } else if (auto begun = Detached<Found>::begin(peer_.find)) {
+    lookup_ = std::move(*begun);
+    if (why_.empty()) why_ = peer_.name + ": no answer to its lookup";
+  } else {
+    found = begun.error();
+  }
+  if (found && *found) peer_.addresses = std::move(**found);
+  if (found && peer_.addresses.empty()) {
+    why_ = found->error().detail;
+    const auto pause = std::min<std::chrono::nanoseconds>(draw_pause(backoff_, random_), kAway);
+    next_try_ = std::max(std::min(now + pause, give_up_), now);
+  }
+  return !peer_.addresses.empty();
+}
+
 void Dialer::try_next(TimePoint now) {
+  if (turn_ == 0 && !has_addresses(now)) return;
   const Address& address = peer_.addresses[turn_];
   auto socket = open_socket(address);
   if (!socket) return fail(errno, now);

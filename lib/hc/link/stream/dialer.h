@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include <hc/base/backoff.h>
 #include <hc/link/policy.h>
 #include <hc/os/descriptor.h>
+#include <hc/os/detached.h>
 #include <hc/os/socket.h>
 
 namespace hc::internal {
@@ -38,9 +40,12 @@ inline std::string in_words(const Error& error) {
 /// The longest pause between two attempts to connect to a peer on this host.
 constexpr std::chrono::milliseconds kLocalPause{100};
 
+/// The addresses of a name.
+using Found = Result<std::vector<Address>>;
+
 /// Where and how to connect.
 struct Peer {
-  std::vector<Address> addresses;  ///< tried in turn
+  std::vector<Address> addresses;  ///< tried in turn; may be empty with `find`
   std::string name;                ///< for error lines
   /// Accepts or refuses a peer that has answered; the error says why. May be empty.
   std::function<Status(int socket)> admit;
@@ -48,6 +53,8 @@ struct Peer {
   std::function<std::unique_ptr<SecureChannel>(int socket)> secure = {};
   /// Between two attempts; short for a peer on this host, where an attempt costs little.
   std::chrono::milliseconds longest_pause = kLongestPause;
+  /// Looks up a name; may block for long. Empty for a peer with fixed addresses.
+  std::function<Found()> find = {};
 };
 
 /// Connects to a peer, and reconnects when the connection is lost.
@@ -55,6 +62,10 @@ struct Peer {
 /// After a refused attempt it pauses, for at most kAway if the network is down. After one without
 /// an answer within kAnswer it tries again at once. So a network that comes back is soon in use,
 /// although the kernel's own retries are seconds apart by then.
+///
+/// A name is looked up in the background, each time before its addresses are tried in turn: it may
+/// be unknown at first, for at most kAway after it is known, and get other addresses later. Until a
+/// lookup is done, or if it fails, the addresses known so far are tried.
 class Dialer {
  public:
   static constexpr std::chrono::seconds kAnswer{1}, kAway{1};
@@ -72,10 +83,11 @@ class Dialer {
   ///
   /// Errors: when the time is over, Closed, or NotFound if there never was a connection.
   Result<ConnectedSocket> dial(TimePoint now);
-  /// The socket of the current attempt; -1: none.
-  [[nodiscard]] int descriptor() const { return attempt_.get(); }
-  /// The poll events that the attempt waits for.
-  [[nodiscard]] short events() const { return events_; }
+  /// The socket of the current attempt, or what is readable when the peer's name has been looked
+  /// up; -1: neither.
+  [[nodiscard]] int descriptor() const;
+  /// The poll events that the attempt or lookup waits for.
+  [[nodiscard]] short events() const { return attempt_ ? events_ : POLLIN; }
   /// When to call dial() again at the latest.
   [[nodiscard]] TimePoint due() const;
   /// Whether all addresses have been tried and have refused: no peer listens.
@@ -97,6 +109,8 @@ class Dialer {
             std::chrono::milliseconds log_after = {});
 
  private:
+  [[nodiscard]] bool awaits_addresses() const { return lookup_ && peer_.addresses.empty(); }
+  bool has_addresses(TimePoint now);
   void try_next(TimePoint now);
   bool is_connected(TimePoint now);
   bool has_agreed(TimePoint now);
@@ -113,6 +127,7 @@ class Dialer {
   TimePoint begin_, give_up_, next_try_, connected_at_;
   std::size_t turn_ = 0;  // the address to try next
   bool is_refused_ = false, was_silent_ = false;
+  std::optional<Detached<Found>> lookup_;
   ConnectedSocket attempt_;
   short events_ = POLLOUT;
   TimePoint answer_due_;

@@ -137,7 +137,14 @@ Result<std::unique_ptr<Dialer>> dialer_for(const Peer& peer, const Uri& uri) {
 Result<ConnectedSocket> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options) {
   auto wait = HC_TRY(number_option(uri, "wait", 0, {0, kMostSeconds}));
   const auto first = wait > 0 ? std::chrono::seconds(wait) : kAnswerTime;
-  Dialer dialer(peer, first, first, std::chrono::steady_clock::now());
+  Peer found = peer;
+  if (wait == 0 && peer.find) {
+    auto lookup = HC_TRY(Detached<Found>::begin(peer.find));
+    HC_TRY(wait_for(lookup.descriptor(), POLLIN, options.stop));
+    found.addresses = HC_TRY(*lookup.take());
+    found.find = {};
+  }
+  Dialer dialer(std::move(found), first, first, std::chrono::steady_clock::now());
   while (true) {
     auto connected = dialer.dial(std::chrono::steady_clock::now());
     if (connected && *connected) return connected;

@@ -30,7 +30,7 @@ Result<std::unique_ptr<Sink>> make_stream_sink(ConnectedSocket descriptor, const
 
 /// Connects to a peer that listens, waiting for it as long as the option `wait` says.
 ///
-/// Errors: Invalid, Closed (no peer listens), Stopped, System.
+/// Errors: Invalid, NotFound (unknown name), Closed (no peer listens), Stopped, System.
 Result<ConnectedSocket> connect_now(const Peer& peer, const Uri& uri, const LinkOptions& options);
 
 /// How dial_source() makes sources of connections.
@@ -88,7 +88,7 @@ inline constexpr const char* kListener = "the listener is a process of ";
 inline constexpr const char* kAccepted = "refused a peer of ";
 
 /// The peer that listens at `tcp:HOST:PORT` or `unix:PATH`. With `same_user=1` a TCP peer must
-/// belong to this user or root. Errors: Invalid, NotFound.
+/// belong to this user or root. Errors: Invalid.
 Result<Peer> tcp_peer(const Uri& uri);
 Result<Peer> unix_peer(const Uri& uri);
 

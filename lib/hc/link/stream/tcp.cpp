@@ -4,6 +4,8 @@
 #include <sys/socket.h>
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <hc/link/stream/ends.h>
 #include <hc/os/peer_user.h>
@@ -11,19 +13,21 @@
 namespace hc::internal {
 namespace {
 
-using Addresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
-
-Result<Addresses> resolve(const Uri& uri, int flags) {
-  auto place = HC_TRY(parse_host_port(uri.rest));
+/// The addresses of a host, 127.0.0.1 if none is given. Errors: NotFound.
+Found look_up(const HostPort& place, int flags) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_flags = flags | AI_NUMERICSERV;
   addrinfo* list = nullptr;
-  std::string port = std::to_string(place.port);
+  const std::string port = std::to_string(place.port);
   const char* host = place.host.empty() ? "127.0.0.1" : place.host.c_str();
-  int status = ::getaddrinfo(host, port.c_str(), &hints, &list);
+  const int status = ::getaddrinfo(host, port.c_str(), &hints, &list);
   if (status != 0) return Error{Code::NotFound, std::string(host) + ": " + ::gai_strerror(status)};
-  return Addresses(list, ::freeaddrinfo);
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owned(list, ::freeaddrinfo);
+  std::vector<Address> addresses;
+  for (const addrinfo* each = list; each != nullptr; each = each->ai_next)
+    addresses.emplace_back(each->ai_addr, each->ai_addrlen);
+  return addresses;
 }
 
 /// Checks the user of each connection if `same_user=1`, else empty. Errors: Invalid.
@@ -37,21 +41,24 @@ Result<std::function<Status(int)>> admission(const Uri& uri, Connected how, cons
 
 /// A name may have several addresses; localhost has two.
 Result<Peer> tcp_peer(const Uri& uri) {
-  auto list = HC_TRY(resolve(uri, 0));
+  const auto place = HC_TRY(parse_host_port(uri.rest));
   Peer peer;
   peer.name = uri.rest;
   peer.admit = HC_TRY(admission(uri, Connected::Dialed, kListener));
   if (peer.admit) peer.longest_pause = kLocalPause;
-  for (const addrinfo* each = list.get(); each != nullptr; each = each->ai_next)
-    peer.addresses.emplace_back(each->ai_addr, each->ai_addrlen);
+  if (auto known = look_up(place, AI_NUMERICHOST))
+    peer.addresses = std::move(*known);
+  else
+    peer.find = [place] { return look_up(place, 0); };
   return peer;
 }
 
 Result<ListeningSocket> listen_tcp(const Uri& uri) {
-  auto addresses = HC_TRY(resolve(uri, AI_PASSIVE));
+  const auto place = HC_TRY(parse_host_port(uri.rest));
+  const auto addresses = HC_TRY(look_up(place, AI_PASSIVE));
   ListeningSocket socket;
   socket.admit = HC_TRY(admission(uri, Connected::Accepted, kAccepted));
-  socket.descriptor = HC_TRY(listen_on({addresses->ai_addr, addresses->ai_addrlen}, uri.rest));
+  socket.descriptor = HC_TRY(listen_on(addresses.front(), uri.rest));
   return socket;
 }
 

@@ -2,8 +2,13 @@
 #include <linux/filter.h>
 
 #include <dlfcn.h>
+#include <netdb.h>
 
 #include <atomic>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <thread>
 #include <utility>
 
 #include <hc/link/stream/ends.h>
@@ -19,11 +24,26 @@ std::atomic<bool> chooses_the_same_port{false};
 /// Whether this process takes itself for another user's.
 std::atomic<bool> is_another{false};
 
+/// The address of the name "peer.test"; empty: it is unknown.
+std::string known_address;
+std::atomic<int> lookups{0};
+std::mutex names;  // guards known_address
+
 }  // namespace
 
 extern "C" uid_t geteuid() noexcept {
   static auto* next = reinterpret_cast<decltype(&geteuid)>(::dlsym(RTLD_NEXT, "geteuid"));
   return next() + (is_another ? 1 : 0);
+}
+
+extern "C" int getaddrinfo(const char* host, const char* port, const addrinfo* hints,
+                           addrinfo** found) {
+  static auto* next = reinterpret_cast<decltype(&getaddrinfo)>(::dlsym(RTLD_NEXT, "getaddrinfo"));
+  if (std::string_view(host) != "peer.test" || (hints->ai_flags & AI_NUMERICHOST) != 0)
+    return next(host, port, hints, found);
+  ++lookups;
+  const std::lock_guard lock(names);
+  return known_address.empty() ? EAI_AGAIN : next(known_address.c_str(), port, hints, found);
 }
 
 extern "C" int connect(int socket, const sockaddr* address, socklen_t size) {
@@ -116,6 +136,68 @@ TEST(Tcp, EveryAddressIsTriedAgain) {
   std::thread late([&] { source = source_of("tcp-listen:" + place); });
   EXPECT_TRUE(internal::connect_now(peer, *parse_uri("tcp:both:1?wait=60"), {}));
   late.join();
+}
+
+void rename_peer(const std::string& address) {
+  const std::lock_guard lock(names);
+  known_address = address;
+}
+
+TEST(Tcp, ANameThatIsUnknownAtFirstIsLookedUpAgain) {
+  rename_peer("");
+  const std::string port = free_port().substr(10);
+  EXPECT_EQ(open_source(*parse_uri("tcp:peer.test:" + port)).error().code, Code::NotFound);
+  for (const char* patience : {"?wait=60", "?reconnect=60"}) {
+    rename_peer("");
+    auto sink = sink_of("tcp-listen:127.0.0.2:" + port + "?readers=1");
+    std::thread late([before = lookups.load()] {
+      while (lookups < before + 3) std::this_thread::yield();
+      rename_peer("127.0.0.2");
+    });
+    auto source = source_of("tcp:peer.test:" + port + patience);
+    EXPECT_EQ(carry(*sink, *source, numbered(1, 10)).header.seq, 1) << patience;
+    late.join();
+  }
+}
+
+TEST(Tcp, APeerWithAnotherAddressIsFoundAgain) {
+  const std::string port = free_port().substr(10);
+  rename_peer("127.0.0.2");
+  auto source = source_of("tcp:peer.test:" + port + "?reconnect=60");
+  for (const std::string address : {"127.0.0.2", "127.0.0.3", "127.0.0.4"}) {
+    rename_peer(address);
+    auto sink = sink_of("tcp-listen:" + address + ":" + port + "?readers=1");
+    EXPECT_EQ(carry(*sink, *source, numbered(1, 10)).header.seq, 1) << address;
+  }
+}
+
+TEST(Tcp, AnAddressIsTriedWhileItsNameIsUnknown) {
+  const std::string port = free_port().substr(10);
+  rename_peer("127.0.0.2");
+  auto source = source_of("tcp:peer.test:" + port + "?reconnect=60");
+  for (int i = 0; i < 2; ++i) {
+    auto sink = sink_of("tcp-listen:127.0.0.2:" + port + "?readers=1");
+    EXPECT_EQ(carry(*sink, *source, numbered(1, 10)).header.seq, 1);
+    rename_peer("");
+  }
+}
+
+TEST(Tcp, AnUnknownNameIsLoggedAndGivenUp) {
+  rename_peer("");
+  Warnings warnings;
+  auto source = open_source(*parse_uri("tcp:peer.test:7000?reconnect=3"), warnings.options());
+  ASSERT_TRUE(source);
+  Message message;
+  auto got = (*source)->take(message);
+  for (; got && *got == Got::Nothing; got = (*source)->take(message))
+    ASSERT_TRUE(wait_for((*source)->descriptor(), POLLIN, -1));
+  ASSERT_FALSE(got);
+  EXPECT_EQ(got.error().code, Code::NotFound);
+  EXPECT_EQ(got.error().detail, "no peer for 3 s: peer.test: Temporary failure in name resolution");
+  ASSERT_FALSE(warnings.lines.empty());
+  EXPECT_EQ(warnings.lines[0],
+            "tcp:peer.test:7000?reconnect=3: no peer yet (peer.test: Temporary failure in name "
+            "resolution); giving up after 3 s");
 }
 
 /// As if the network cable were pulled: what comes to the socket is thrown away unanswered.
