@@ -1,25 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saver.h"
 
+#include <string>
 #include <system_error>
 #include <utility>
 
-#include <hc/os/new_file.h>
 #include <vision/window.h>
 
 namespace fs = std::filesystem;
 
 void Saver::save(const std::string& to, const hc::Header& header, const cv::Mat& bgr) {
   if (to.ends_with('/')) {
-    const std::string file = std::to_string(header.src) + "_" + std::to_string(header.seq) + ".png";
-    const auto is_free = [](const std::string& path) {
-      std::error_code unknown;  // writing reports errors
-      return !fs::exists(path, unknown);
-    };
-    write({hc::free_name(fs::path(to) / file, ".png", is_free), bgr});
+    write({free_place(to, header), bgr});
   } else if (!to.empty()) {
     unsaved_ = {to, bgr.clone()};
     if (!is_fresh_) pause_.restart(std::chrono::nanoseconds(0));
+  }
+}
+
+/// SRC_SEQ.png. Where there is one, because the source has started again, the images from now on
+/// are SRCrun2_SEQ.png: in the natural order, those of a run follow each other.
+fs::path Saver::free_place(const std::string& folder, const hc::Header& header) {
+  int& run = runs_.try_emplace(header.src, 1).first->second;
+  for (;; ++run) {
+    const std::string source =
+        std::to_string(header.src) + (run == 1 ? "" : "run" + std::to_string(run));
+    auto place = fs::path(folder) / (source + "_" + std::to_string(header.seq) + ".png");
+    std::error_code unknown;  // writing reports errors
+    if (!fs::exists(place, unknown)) return place;
   }
 }
 

@@ -3,7 +3,9 @@
 // Saves images as PNG files: all into a folder, or the latest into one file, once a second.
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include <hc/module/module.h>
@@ -30,10 +32,12 @@ class Saver {
     std::filesystem::path path;
     cv::Mat bgr;
   };
+  std::filesystem::path free_place(const std::string& folder, const hc::Header& header);
   void write(const Picture& picture);
   void end_pause();
 
   hc::Module& module_;
+  std::map<std::int32_t, int> runs_;  // of each source, in a folder
   std::filesystem::path last_;
   Picture unsaved_;  // the latest, while the file has an older one
   bool has_failed_ = false;
