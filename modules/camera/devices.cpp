@@ -9,6 +9,8 @@
 #include <hc/base/clock.h>
 #include <opencv2/videoio.hpp>
 
+#include "stream_clock.h"
+
 namespace {
 
 using namespace std::chrono_literals;
@@ -64,19 +66,20 @@ class CaptureDevice final : public Device {
   [[nodiscard]] std::string remark() const override { return remark_; }
 
  private:
-  /// V4L2 stamps images with the monotonic clock; converted to wall time.
-  [[nodiscard]] hc::Time time_of_image() const {
+  /// In wall time. V4L2 stamps images with the monotonic clock, a stream with its own.
+  hc::Time time_of_image() {
     const hc::SystemClock clock;
-    if (is_device_) {
-      const auto taken = hc::duration(capture_.get(cv::CAP_PROP_POS_MSEC) / 1000);
-      const auto age = clock.monotonic() - taken;
-      if (taken > 0s && age >= 0s && age < 1s) return clock.wall() - age;
-    }
-    return clock.wall();
+    const auto now = clock.monotonic();
+    auto taken = hc::duration(capture_.get(cv::CAP_PROP_POS_MSEC) / 1000);
+    if (!is_device_) taken = stream_.time_of(taken, now);
+    const auto age = now - taken;
+    const bool is_known = taken > 0s && age >= 0s && (age < 1s || !is_device_);
+    return is_known ? clock.wall() - age : clock.wall();
   }
 
   cv::VideoCapture capture_;
   bool is_device_;
+  StreamClock stream_;
   Found found_;
   std::string remark_;
 };

@@ -9,6 +9,8 @@ namespace {
 constexpr std::chrono::milliseconds kTimeout{100};  // of a wait, to notice `stopping_`
 constexpr std::chrono::seconds kSettled{1};         // a camera lost sooner increases the backoff
 constexpr std::chrono::hours kLongestPeriod{24};
+constexpr std::chrono::milliseconds kBurst{500};  // a reader that is behind for longer is too slow
+constexpr std::size_t kMostTaken = 8;
 
 }  // namespace
 
@@ -26,9 +28,8 @@ bool Thinning::takes(hc::Time time, double rate) {
 struct LiveCameras::Camera {
   std::size_t side = 0;
   LiveCamera how;
-  std::optional<Frame> newest;  // while the other camera is missing
-  bool is_missing = false;      // and logged
-  std::string remark;           // last logged
+  bool is_missing = false;  // and logged
+  std::string remark;       // last logged
   hc::Backoff backoff;
   std::thread thread;
 };
@@ -88,7 +89,6 @@ void LiveCameras::run(Camera& camera) {
     }
     {
       const std::lock_guard lock(mutex_);
-      camera.newest.reset();
       pairing_.clear(camera.side);
       if (failure_) stopping_ = true;
     }
@@ -130,31 +130,47 @@ void LiveCameras::serve(Camera& camera, Device& device) {
     const bool is_alone = std::none_of(cameras_.begin(), cameras_.end(), [&](const auto& other) {
       return other->side != camera.side && !other->is_missing;
     });
-    if (is_alone)
-      camera.newest = std::move(**frame);
-    else
+    if (is_alone) {
+      auto& taken = taken_.emplace_back();
+      (camera.side == 0 ? taken.left : taken.right) = std::move(**frame);
+    } else {
       pairing_.add(camera.side, std::move(**frame));
+      take_pairs();
+    }
+    while (taken_.size() > kMostTaken) taken_.pop_front();
     changed_.notify_all();
   }
 }
 
+/// Caller holds the mutex.
+void LiveCameras::take_pairs() {
+  bool any = false;
+  for (; auto pair = pairing_.take(); any = true)
+    taken_.push_back({std::move((*pair)[0]), std::move((*pair)[1])});
+  const auto apart = pairing_.starves_by();
+  const bool starves = apart || (is_starving_ && !any);
+  if (std::exchange(is_starving_, starves) == starves) return;
+  const std::string names = cameras_.front()->how.name + ", " + cameras_.back()->how.name;
+  if (!apart) return remarks_.push_back({hc::Level::Info, names + ": pairs again"});
+  remarks_.push_back(
+      {hc::Level::Warning,
+       names + ": no pairs for " + std::to_string(Pairing::kStarving.count()) +
+           " s, so no images are sent: the times of their newest images are " +
+           std::to_string(std::chrono::round<std::chrono::milliseconds>(*apart).count()) +
+           " ms apart; compare the cameras' rates and clocks"});
+}
+
 hc::Result<std::optional<LiveCameras::Taken>> LiveCameras::next(std::chrono::milliseconds timeout) {
-  std::optional<Taken> taken;
-  auto take = [&] {
-    while (auto pair = pairing_.take()) taken = Taken{std::move((*pair)[0]), std::move((*pair)[1])};
-    for (auto& camera : cameras_) {
-      if (!camera->newest) continue;
-      // A single image, from before the other camera returned, is older than the pair.
-      auto frame = std::move(*std::exchange(camera->newest, {}));
-      if (taken) continue;
-      taken.emplace();
-      (camera->side == 0 ? taken->left : taken->right) = std::move(frame);
-    }
-    return taken || failure_ || !remarks_.empty();
-  };
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, timeout, take);
+  changed_.wait_for(lock, timeout,
+                    [&] { return !taken_.empty() || failure_ || !remarks_.empty(); });
   if (failure_) return *failure_;
+  const auto now = std::chrono::steady_clock::now();
+  if (taken_.size() > 1 && now - kept_up_ > kBurst) taken_.erase(taken_.begin(), taken_.end() - 1);
+  if (taken_.size() <= 1) kept_up_ = now;
+  if (taken_.empty()) return std::optional<Taken>();
+  std::optional<Taken> taken = std::move(taken_.front());
+  taken_.pop_front();
   return taken;
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -77,7 +78,8 @@ class LiveCameras {
   LiveCameras(const LiveCameras&) = delete;
   LiveCameras& operator=(const LiveCameras&) = delete;
 
-  /// Waits for the newest image or pair; nothing on timeout.
+  /// Waits for the next image or pair; nothing on timeout. What a reader cannot keep up with is
+  /// dropped, but not what has come in a burst.
   /// Errors: without `reopen`, those of a camera.
   hc::Result<std::optional<Taken>> next(std::chrono::milliseconds timeout);
   /// Applies settings to all cameras, if they changed.
@@ -89,6 +91,7 @@ class LiveCameras {
   struct Camera;
   void run(Camera& camera);
   void serve(Camera& camera, Device& device);
+  void take_pairs();
   void miss(Camera& camera, const hc::Error& why, const char* how, const char* then);
   void report(std::string text);
   bool pause(std::chrono::nanoseconds time);
@@ -101,5 +104,9 @@ class LiveCameras {
   std::vector<Remark> remarks_;
   std::optional<hc::Error> failure_;
   Pairing pairing_;
+  bool is_starving_ = false;  // there are no pairs, and this was logged
+  std::deque<Taken> taken_;   // for next()
+  // When next() last took all.
+  std::chrono::steady_clock::time_point kept_up_ = std::chrono::steady_clock::now();
   std::vector<std::unique_ptr<Camera>> cameras_;
 };

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
+#include <thread>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -18,6 +21,8 @@ struct Plug {
   std::atomic<int> opened = 0, adjusted = 0;
   std::atomic<bool> is_loose = false;  // each image is the last one
   std::atomic<bool> is_small = false;
+  std::atomic<int> given = 0;
+  std::atomic<hc::Time> queued{hc::Time()};  // the image before the last one
 };
 
 class FakeDevice final : public Device {
@@ -28,8 +33,10 @@ class FakeDevice final : public Device {
       return hc::Error{hc::Code::Closed, "pulled out"};
     std::this_thread::sleep_for(milliseconds(1));  // its rate
     // One clock for all; otherwise images of a reconnected camera would have no partners.
-    const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    return std::optional<Frame>(Frame{cv::Mat(2, 2, CV_8UC3), hc::Time(now)});
+    const hc::Time now(std::chrono::steady_clock::now().time_since_epoch());
+    plug_.queued = std::exchange(last_, now);
+    ++plug_.given;
+    return std::optional<Frame>(Frame{cv::Mat(2, 2, CV_8UC3), now});
   }
   hc::Status adjust(const Adjustment& adjustment) override {
     ++plug_.adjusted;
@@ -41,6 +48,7 @@ class FakeDevice final : public Device {
  private:
   Plug& plug_;
   int given_ = 0;
+  hc::Time last_;
 };
 
 LiveCamera camera(const std::string& name, Plug& plug) {
@@ -141,6 +149,73 @@ TEST(LiveCameras, without_reopen_a_loss_is_an_error) {
   auto taken = cameras.next(milliseconds(20));
   while (taken) taken = cameras.next(milliseconds(20));
   EXPECT_EQ(taken.error().detail, "eye: pulled out");
+}
+
+/// Gives images of a rate of 1000 Hz, five at a time.
+class BurstDevice final : public Device {
+ public:
+  explicit BurstDevice(milliseconds ahead) : time_(1000s + ahead) {}
+  hc::Result<std::optional<Frame>> next(milliseconds) override {
+    if (++count_ % 5 == 0) std::this_thread::sleep_for(milliseconds(5));
+    return std::optional<Frame>(Frame{cv::Mat(2, 2, CV_8UC3), hc::Time(time_ += 1ms)});
+  }
+  hc::Status adjust(const Adjustment&) override { return {}; }
+
+ private:
+  std::chrono::nanoseconds time_;
+  int count_ = 0;
+};
+
+LiveCamera burst_camera(const std::string& name, milliseconds ahead = 0ms) {
+  return {name, [=]() -> hc::Result<std::unique_ptr<Device>> {
+            return std::unique_ptr<Device>(std::make_unique<BurstDevice>(ahead));
+          }};
+}
+
+TEST(LiveCameras, every_image_of_a_burst_is_taken) {
+  LiveCameras cameras({burst_camera("eye")}, true, {});
+  // A busy machine may make this reader slow.
+  int most = 0;
+  std::optional<hc::Time> last;
+  for (int run = 0; most < 100;) {
+    auto taken = cameras.next(milliseconds(20));
+    ASSERT_TRUE(taken);
+    if (!*taken) continue;
+    const auto time = (*taken)->left->time;
+    run = last && time - *last == 1ms ? run + 1 : 0;
+    most = std::max(most, run);
+    last = time;
+  }
+}
+
+TEST(LiveCameras, a_reader_that_has_paused_gets_the_newest) {
+  Plug plug;
+  LiveCameras cameras({camera("eye", plug)}, true, {});
+  take_until(cameras, [](const auto&) { return true; });
+  const int before = plug.given;
+  while (plug.given < before + 700) std::this_thread::yield();  // a second, about
+  const hc::Time queued = plug.queued;
+  const auto taken = cameras.next(milliseconds(20));
+  ASSERT_TRUE(taken && *taken);
+  EXPECT_GE((*taken)->left->time, queued);
+}
+
+TEST(LiveCameras, no_pairs_are_said_once) {
+  LiveCameras cameras({burst_camera("left"), burst_camera("right", 90s)}, true, {});
+  std::vector<Remark> said;
+  while (said.empty()) {
+    auto taken = cameras.next(milliseconds(20));
+    ASSERT_TRUE(taken);
+    EXPECT_FALSE(*taken);
+    said = cameras.remarks();
+  }
+  ASSERT_EQ(said.size(), 1);
+  EXPECT_TRUE(said[0].text.starts_with("left, right: no pairs for 3 s, so no images are sent"))
+      << said[0].text;
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_TRUE(cameras.next(milliseconds(20)));
+    EXPECT_TRUE(cameras.remarks().empty());
+  }
 }
 
 TEST(Thinning, keeps_a_rate_and_holds_nothing_back) {

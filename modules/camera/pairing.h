@@ -26,14 +26,21 @@ class Pairing {
   std::optional<std::array<Frame, 2>> take();
   /// Forgets the images of a side.
   void clear(std::size_t side) { sides_.at(side) = {}; }
+  /// If there has been no pair for kStarving, although both sides have images: how far apart the
+  /// times of their newest images are.
+  [[nodiscard]] std::optional<std::chrono::nanoseconds> starves_by() const;
+
+  static constexpr std::chrono::seconds kStarving{3};
 
  private:
   static constexpr std::size_t kMostWaiting = 8;
   struct Side {
     std::deque<Frame> waiting;
-    std::deque<std::chrono::nanoseconds> periods;  // the last few
-    hc::Time last;
+    std::deque<hc::Time> times;  // the last few
+    std::size_t unpaired = 0;    // since the last pair
+    hc::Time unpaired_since;
     [[nodiscard]] std::optional<std::chrono::nanoseconds> period() const;
+    [[nodiscard]] bool starves() const;
   };
   std::array<Side, 2> sides_;
 };

@@ -72,4 +72,41 @@ TEST(Pairing, a_clock_that_goes_back_starts_over) {
   EXPECT_EQ((*pair)[0].time, time_of(10));
 }
 
+TEST(Pairing, times_in_bursts_have_a_period) {
+  // Images of 20 ms, three at a time.
+  const std::vector<std::int64_t> times{60,  60,  60,  120, 120, 120, 180, 180,
+                                        180, 240, 240, 240, 300, 300, 300};
+  std::vector<std::int64_t> later;
+  for (const auto time : times) later.push_back(time + 5);
+  const auto pairs = pairs_of(times, later);
+  EXPECT_GE(pairs.size(), 10U);
+  for (const auto& [left, right] : pairs) EXPECT_EQ(right - left, 5);
+}
+
+TEST(Pairing, no_pairs_for_seconds_are_noticed) {
+  Pairing pairing;
+  const auto add_both = [&](std::int64_t left, std::int64_t right) {
+    pairing.add(0, {{}, time_of(left)});
+    pairing.add(1, {{}, time_of(right)});
+    return pairing.take().has_value();
+  };
+  for (int i = 0; i < 60; ++i) {
+    EXPECT_FALSE(add_both(1000 + 50 * i, 90'000 + 50 * i));
+    EXPECT_FALSE(pairing.starves_by());
+  }
+  EXPECT_FALSE(add_both(4000, 93'000));
+  EXPECT_EQ(pairing.starves_by(), std::chrono::seconds(89));
+  EXPECT_TRUE(add_both(93'010, 93'010));
+  EXPECT_FALSE(pairing.starves_by());
+}
+
+TEST(Pairing, an_eye_that_is_silent_is_no_lack_of_pairs) {
+  Pairing pairing;
+  for (int i = 0; i < 200; ++i) {
+    pairing.add(0, {{}, time_of(1000 + 50 * i)});
+    EXPECT_FALSE(pairing.take());
+    EXPECT_FALSE(pairing.starves_by());
+  }
+}
+
 }  // namespace
