@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "devices.h"
 
 namespace {
+
+using namespace std::chrono_literals;
 
 void require(bool is_valid, const std::string& problem) {
   if (!is_valid) throw hc::ModuleError(hc::Error{hc::Code::Invalid, problem});
@@ -36,8 +39,14 @@ Camera::Camera(hc::Module& module) : module_(module) {
 void Camera::start() {
   parameters_.check();
   if (is_live(*parameters_.source)) return open_live();
-  left_file_ = open_sequence(*parameters_.source);
-  if (parameters_.is_pair()) right_file_ = open_sequence(*parameters_.right_source);
+  const Reading reading{
+      parameters_.is_upright(),
+      [this](const char* kind, const std::string& line) { module_.log_once(kind, line); }};
+  if (parameters_.is_pair())
+    files_ = open_sequences(*parameters_.source, *parameters_.right_source, reading);
+  else
+    files_.left = open_sequence(*parameters_.source, reading);
+  if (!files_.remark.empty()) module_.log(files_.remark, hc::Level::Warning);
 }
 
 void Camera::open_live() {
@@ -73,17 +82,69 @@ void Camera::take_live() {
 }
 
 void Camera::take_files() {
+  if (files_.left->length()) return take_video();
   if (*parameters_.rate > 0) module_.keep_rate(*parameters_.rate);
-  const cv::Mat left = next(*left_file_);
+  const cv::Mat left = next(*files_.left).image;
   const hc::Time time = module_.now();
-  const cv::Mat right = right_file_ ? next(*right_file_) : cv::Mat();
-  if (left.empty() || (right_file_ && right.empty())) return module_.stop();
+  const cv::Mat right = files_.right ? next(*files_.right).image : cv::Mat();
+  if (left.empty() || (files_.right && right.empty())) return module_.stop();
   send_both(left, right, time);
 }
 
-cv::Mat Camera::next(ImageSequence& file) const {
-  cv::Mat image = file.next();
-  if (!image.empty() || !*parameters_.loop) return image;
+/// A reader that is slow delays images, but does not change their times.
+void Camera::take_video() {
+  if (!start_) start_ = {module_.now(), module_.monotonic()};
+  auto images = next_of_video();
+  if (!images && *parameters_.loop) {
+    start_video_again();
+    images = next_of_video();
+  }
+  if (!images) return module_.stop();
+  const auto& [left, right] = *images;
+  if (!thinning_.takes(left.time, *parameters_.rate)) return;
+  if (*parameters_.paced) module_.wait_until(start_->monotonic + (left.time - start_->time));
+  send_both(left.image, right.image, left.time);
+}
+
+/// The next image of a video, or the next two of two videos that have nearly the same time; none at
+/// the end.
+std::optional<std::array<Frame, 2>> Camera::next_of_video() {
+  const auto frame_of = [&](ImageSequence& file) {
+    const auto [image, at] = file.next();
+    return Frame{image, start_->time + at.value_or(0ns)};
+  };
+  if (!files_.right || !files_.right->length()) {
+    std::array<Frame, 2> images{frame_of(*files_.left), {}};
+    if (files_.right) images[1].image = next(*files_.right).image;
+    if (images[0].image.empty() || (files_.right && images[1].image.empty())) return {};
+    return images;
+  }
+  while (true) {
+    if (auto pair = pairing_.take()) return pair;
+    const std::size_t behind = last_[0] <= last_[1] ? 0 : 1;
+    auto frame = frame_of(behind == 0 ? *files_.left : *files_.right);
+    if (frame.image.empty()) return {};
+    last_.at(behind) = frame.time;
+    pairing_.add(behind, std::move(frame));
+  }
+}
+
+/// Two videos start again together.
+void Camera::start_video_again() {
+  auto length = *files_.left->length();
+  files_.left->rewind();
+  if (files_.right) {
+    length = std::max(length, files_.right->length().value_or(0ns));
+    files_.right->rewind();
+  }
+  start_->time += length;
+  start_->monotonic += length;
+  pairing_ = {};
+}
+
+SequenceImage Camera::next(ImageSequence& file) const {
+  auto image = file.next();
+  if (!image.image.empty() || !*parameters_.loop) return image;
   file.rewind();
   return file.next();
 }

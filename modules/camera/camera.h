@@ -2,14 +2,17 @@
 #pragma once
 // Sends the images of one camera or of a stereo pair.
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <hc/module/module.h>
 #include <opencv2/core.hpp>
 
 #include "live.h"
+#include "pairing.h"
 #include "sequence.h"
 
 struct CameraParameters {
@@ -35,10 +38,21 @@ struct CameraParameters {
       module.parameter("smooth", true, "", "interpolate when scaling; false takes the nearest");
   hc::Parameter<bool> rectified =
       module.parameter("rectified", false, "", "the images are rectified already");
+  hc::Parameter<bool> upright =
+      module.parameter("upright", true, "",
+                       "turn image and video files as their EXIF data says; never those of two "
+                       "eyes, or rectified ones",
+                       {.fixed = true});
   hc::Parameter<bool> stamped = module.parameter("stamped", true, "", "give the images a time");
   hc::Parameter<double> rate =
-      module.parameter("rate", 0.0, "Hz", "images a second, 0: native; a camera is asked for it",
+      module.parameter("rate", 0.0, "Hz",
+                       "images a second, 0: native, of image files as fast as possible; a camera "
+                       "is asked for it, a video is thinned out to it",
                        {.min = 0, .max = 1e4});
+  hc::Parameter<bool> paced =
+      module.parameter("paced", true, "",
+                       "a video in real time; false: as fast as it is read, with the same times "
+                       "from the start on");
   hc::Parameter<std::int64_t> count =
       module.parameter("count", 0, "", "images to send, 0: all", {.min = 0});
   hc::Parameter<bool> loop = module.parameter("loop", false, "", "start again at the end");
@@ -56,6 +70,10 @@ struct CameraParameters {
       {.fixed = true});
 
   [[nodiscard]] bool is_pair() const { return !right_source->empty(); }
+  /// A calibration is of the images as the sensor has them.
+  [[nodiscard]] bool is_upright() const {
+    return *upright && !is_pair() && !*side_by_side && !*rectified;
+  }
   /// Ends the module where parameters exclude each other.
   void check() const;
 };
@@ -68,12 +86,21 @@ class Camera {
  private:
   using Images = hc::Output<hc::RgbImageKind<std::uint8_t>>;
 
+  /// When a video began to play, now or again, by both clocks.
+  struct Start {
+    hc::Time time;
+    hc::MonotonicTime monotonic;
+  };
+
   void start();
   void open_live();
   void generate();
   void take_live();
   void take_files();
-  [[nodiscard]] cv::Mat next(ImageSequence& file) const;
+  void take_video();
+  [[nodiscard]] SequenceImage next(ImageSequence& file) const;
+  std::optional<std::array<Frame, 2>> next_of_video();
+  void start_video_again();
   void send_both(cv::Mat left, cv::Mat right, hc::Time time);
   void send(Images& output, const cv::Mat& image, hc::Time time, std::int32_t coord);
 
@@ -84,7 +111,10 @@ class Camera {
       module_.output("right", hc::rgb_image(), "image of the right eye");
   const CameraParameters parameters_{module_};
 
-  std::unique_ptr<ImageSequence> left_file_, right_file_;
+  SequencePair files_;
+  std::optional<Start> start_;  // of a video
+  Pairing pairing_;             // of two videos
+  std::array<hc::Time, 2> last_;
   std::unique_ptr<LiveCameras> cameras_;  // instead of files
   Thinning thinning_;
   std::int64_t sent_ = 0;

@@ -5,7 +5,9 @@
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
@@ -18,26 +20,49 @@ TEST(ImageSequence, an_image_is_read_again_when_its_file_has_changed) {
     cv::imwrite(path, cv::Mat(2, 2, CV_8UC3, cv::Scalar::all(grey)));
   };
   write(10);
-  auto sequence = open_sequence(path);
-  const cv::Mat first = sequence->next();
+  auto sequence = open_sequence(path, {});
+  const cv::Mat first = sequence->next().image;
   EXPECT_EQ(first.at<cv::Vec3b>(0, 0)[0], 10);
-  EXPECT_TRUE(sequence->next().empty());
+  EXPECT_TRUE(sequence->next().image.empty());
   sequence->rewind();
-  EXPECT_EQ(sequence->next().data, first.data) << "read again for nothing";
+  EXPECT_EQ(sequence->next().image.data, first.data) << "read again for nothing";
   const auto before = std::filesystem::last_write_time(path);
   write(20);
   std::filesystem::last_write_time(path, before + std::chrono::seconds(1));
   sequence->rewind();
-  EXPECT_EQ(sequence->next().at<cv::Vec3b>(0, 0)[0], 20);
+  EXPECT_EQ(sequence->next().image.at<cv::Vec3b>(0, 0)[0], 20);
   // Another file with the same name, time and size.
   const auto kept = path + ".kept";
   std::filesystem::rename(path, kept);
   write(30);
   std::filesystem::last_write_time(path, before + std::chrono::seconds(1));
   sequence->rewind();
-  EXPECT_EQ(sequence->next().at<cv::Vec3b>(0, 0)[0], 30);
+  EXPECT_EQ(sequence->next().image.at<cv::Vec3b>(0, 0)[0], 30);
   std::filesystem::remove(path);
   std::filesystem::remove(kept);
+}
+
+TEST(ImageSequence, a_file_that_is_being_replaced_stays_as_it_was) {
+  const std::string path = testing::TempDir() + "replaced_" + std::to_string(::getpid()) + ".jpg";
+  const auto write = [&](int grey, double share) {
+    std::vector<unsigned char> bytes;
+    cv::imencode(".jpg", cv::Mat(64, 64, CV_8UC3, cv::Scalar::all(grey)), bytes);
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(share * static_cast<double>(bytes.size())));
+  };
+  write(10, 1);
+  auto sequence = open_sequence(path, {});
+  const auto next = [&] {
+    sequence->rewind();
+    return sequence->next().image.at<cv::Vec3b>(63, 63)[0];
+  };
+  EXPECT_EQ(next(), 10);
+  write(200, 0.9);
+  EXPECT_EQ(next(), 10);
+  write(200, 1);
+  EXPECT_EQ(next(), 200);
+  std::filesystem::remove(path);
 }
 
 }  // namespace
