@@ -6,7 +6,8 @@
 #include <vector>
 
 #include <hc/base/result.h>
-#include <vision/calibration.h>
+#include <vision/board.h>
+#include <vision/stereo_fit.h>
 #include <opencv2/core.hpp>
 
 namespace hc::vision {

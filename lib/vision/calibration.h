@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Calibration of two cameras: from views of a chessboard, and as a file. No messages; plain cv::Mat
-// in and out. Different objects may be used from different threads.
+// The calibration of two cameras, and its file. No messages. Different objects may be used from
+// different threads.
 
-#include <array>
-#include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -77,51 +74,5 @@ Result<StereoCalibration> calibration_of(const std::string& text);
 /// written), and as above.
 Result<StereoCalibration> read_calibration(const std::string& path);
 Status write_calibration(const std::string& path, const StereoCalibration& calibration);
-
-/// A chessboard by its inner corners; columns and rows must differ.
-struct Board {
-  int columns = 9, rows = 6;  ///< inner corners in a row, in a column
-  double square = 0.025;      ///< side of a square [m]
-};
-
-/// A board's corners in both images, in the same order, row by row [px].
-struct BoardView {
-  std::vector<cv::Point2f> left, right;
-};
-
-/// Finds the board in both images.
-///
-/// @param left, right  (H, W) or (H, W, 3) u8, red, green, blue.
-/// Cost: a few ms at 640×480 with a board, 20 ms and more without.
-std::optional<BoardView> find_board(const cv::Mat& left, const cv::Mat& right, const Board& board);
-
-/// The difference of two views: the mean distance of their corners [px].
-double difference(const BoardView& a, const BoardView& b);
-
-/// A calibration and its quality.
-struct Calibrated {
-  StereoCalibration calibration;
-  std::size_t views = 0;  ///< used
-  double rms_all = 0;     ///< reprojection error before outliers were removed [px]
-  double rms_left = 0;    ///< reprojection error of the left camera alone [px]
-  double rms_right = 0;   ///< [px]
-  double epipolar = 0;    ///< mean distance of corresponding rows, rectified [px]
-  std::size_t given = 0;  ///< views given
-
-  /// rms, rms_left, rms_right, epipolar [px], baseline [m], views.
-  [[nodiscard]] std::array<double, 6> numbers() const;
-  /// "rms 0.214 px (left 0.197, right 0.201), rows differ by …, 12 of 13 views".
-  [[nodiscard]] std::string text() const;
-};
-
-inline constexpr std::size_t kLeastViews = 3;  ///< needed for a calibration
-
-/// Calibrates two cameras: each alone, then both together. Removes views whose error is more than
-/// three times the median, as long as two thirds remain.
-///
-/// Errors: NotFound (fewer than kLeastViews); Invalid (board); Malformed (views that do not
-/// determine the cameras, such as identical ones). Cost: 0.1 to 1 s. Source: Zhang, A Flexible New
-/// Technique for Camera Calibration, 2000 (as in OpenCV).
-Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& board, cv::Size size);
 
 }  // namespace hc::vision
