@@ -30,6 +30,7 @@ struct StereoCalibration {
   cv::Matx34d P1, P2;                               ///< projections of the rectified cameras [px]
   cv::Matx44d Q;   ///< (u, v, disparity, 1) to homogeneous coordinates of the rectified left eye
   double rms = 0;  ///< reprojection error of the calibration views [px]
+  double focal_deviation = 0;  ///< standard deviation of the focal lengths, relative; 0: unknown
   std::vector<double> head;  ///< pose of the eyes on a head, in its author's format; empty: unknown
 
   /// The rectified left camera; the right one differs at most in cx.
@@ -60,11 +61,12 @@ enum class Eye { Left, Right };
 cv::Vec2d ray_of(const StereoCalibration& calibration, Eye eye, cv::Point2d pixel);
 
 /// A calibration as the text of a cv::FileStorage (YAML): image_width, image_height, M1, D1, M2,
-/// D2, R, T, R1, R2, P1, P2, Q, rms, and head if known.
+/// D2, R, T, R1, R2, P1, P2, Q, rms, and focal_deviation and head if known.
 std::string text_of(const StereoCalibration& calibration);
 
 /// Reads the text of text_of(), or the concatenated files intrinsics.yml and extrinsics.yml of
-/// OpenCV's sample stereo_calib. image_width, image_height, rms and head may be missing.
+/// OpenCV's sample stereo_calib. image_width, image_height, rms, focal_deviation and head may be
+/// missing.
 ///
 /// Errors: Malformed (not YAML of cv::FileStorage; missing keys; wrong shapes; non-finite numbers;
 /// invalid rotations or camera matrices; cameras not side by side); TooLarge (64 KiB, 65535 px).

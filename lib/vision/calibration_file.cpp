@@ -119,6 +119,7 @@ Status check(const StereoCalibration& c) {
   if (c.baseline() < 0) return malformed("the left camera is on the right (P2)");
   if (!(c.baseline() > 0)) return malformed("P2 has no baseline");
   if (!(c.rms >= 0)) return malformed("rms is below 0");
+  if (!(c.focal_deviation >= 0)) return malformed("focal_deviation is below 0");
   return {};
 }
 
@@ -133,6 +134,7 @@ std::string text_of(const StereoCalibration& calibration) {
   file << "R" << cv::Mat(c.R) << "T" << cv::Mat(c.T) << "R1" << cv::Mat(c.R1);
   file << "R2" << cv::Mat(c.R2) << "P1" << cv::Mat(c.P1) << "P2" << cv::Mat(c.P2);
   file << "Q" << cv::Mat(c.Q) << "rms" << c.rms;
+  if (c.focal_deviation > 0) file << "focal_deviation" << c.focal_deviation;
   if (!c.head.empty()) file << "head" << cv::Mat(c.head).reshape(1, 1);
   return file.releaseAndGetString();
 }
@@ -172,7 +174,8 @@ Result<StereoCalibration> calibration_of(const std::string& text) {
     HC_TRY(read(root, "T", T));
     c.T = {T(0), T(1), T(2)};
     HC_TRY(read(root, "Q", c.Q));
-    if (const cv::FileNode rms = root["rms"]; rms.isReal() || rms.isInt()) c.rms = rms.real();
+    for (auto [key, number] : {std::pair{"rms", &c.rms}, {"focal_deviation", &c.focal_deviation}})
+      if (const cv::FileNode node = root[key]; node.isReal() || node.isInt()) *number = node.real();
     if (!root["head"].empty()) {
       c.head = HC_TRY(numbers_of(root, "head"));
     }

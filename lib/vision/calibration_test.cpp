@@ -55,6 +55,7 @@ TEST(StereoCalibration, ARayIsWhatTheLensBends) {
 TEST(CalibrationFile, ComesBackAsItWas) {
   auto truth = squinting();
   truth.rms = 0.25;
+  truth.focal_deviation = 0.001;
   truth.head = {0, 0.01, -0.02, 0, 0, 0, 0.3};
   auto read = must(calibration_of(text_of(truth)));
   EXPECT_EQ(read.size, truth.size);
@@ -63,6 +64,7 @@ TEST(CalibrationFile, ComesBackAsItWas) {
   EXPECT_EQ(read.T, truth.T);
   EXPECT_EQ(read.Q, truth.Q);
   EXPECT_EQ(read.rms, 0.25);
+  EXPECT_EQ(read.focal_deviation, 0.001);
   EXPECT_EQ(read.head, truth.head);
   const Folder folder;
   const auto path = folder / "calibration.yml";

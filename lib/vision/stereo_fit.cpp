@@ -92,6 +92,9 @@ Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& boar
       points.right.erase(points.right.begin() + worst);
       result = solve(points, size, errors);
     }
+    result.deviations = deviations_of(result.calibration, points.object.front(), points.left);
+    HC_TRY(result.deviations.check());
+    result.calibration.focal_deviation = result.deviations.focal;
     rectify(result.calibration);
     // Ensure that the result can be read again.
     HC_TRY(calibration_of(text_of(result.calibration)));
@@ -104,16 +107,42 @@ Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& boar
   }
 }
 
-std::array<double, 6> Calibrated::numbers() const {
-  return {calibration.rms,           rms_left, rms_right, epipolar, calibration.baseline(),
-          static_cast<double>(views)};
+double error_of(const StereoCalibration& c, std::span<const BoardView> views, const Board& board) {
+  const auto corners = board.corners();
+  double sum = 0;
+  for (const auto& view : views) {
+    cv::Vec3d turn, shift, right_turn;
+    cv::Matx33d turned;
+    if (!cv::solvePnP(corners, view.left, c.M1, c.D1, turn, shift))
+      return std::numeric_limits<double>::infinity();
+    cv::Rodrigues(turn, turned);
+    cv::Rodrigues(c.R * turned, right_turn);
+    Corners left, right;
+    cv::projectPoints(corners, turn, shift, c.M1, c.D1, left);
+    cv::projectPoints(corners, right_turn, c.R * shift + c.T, c.M2, c.D2, right);
+    sum += cv::norm(left, view.left, cv::NORM_L2SQR) + cv::norm(right, view.right, cv::NORM_L2SQR);
+  }
+  return std::sqrt(sum / static_cast<double>(2 * corners.size() * views.size()));
+}
+
+std::array<double, 9> Calibrated::numbers() const {
+  return {calibration.rms,
+          rms_left,
+          rms_right,
+          epipolar,
+          calibration.baseline(),
+          static_cast<double>(views),
+          deviations.focal,
+          deviations.baseline,
+          deviations.match};
 }
 
 std::string Calibrated::text() const {
   return hc::format(
-      "rms {:.3f} px (left {:.3f}, right {:.3f}), rows differ by {:.3f} px, baseline {:.4f} m, "
-      "{} of {} views",
-      calibration.rms, rms_left, rms_right, epipolar, calibration.baseline(), views, given);
+      "rms {:.3f} px (left {:.3f}, right {:.3f}), rows differ by {:.3f} px, "
+      "focal length {:.1f} px ± {:.2f} %, baseline {:.4f} m ± {:.2f} %, {} of {} views",
+      calibration.rms, rms_left, rms_right, epipolar, calibration.M1(0, 0), 100 * deviations.focal,
+      calibration.baseline(), 100 * deviations.baseline, views, given);
 }
 
 }  // namespace hc::vision

@@ -148,6 +148,145 @@ TEST(Calibration, RefusesWhatDoesNotDetermineTheCameras) {
   EXPECT_FALSE(calibrate(pairs.views, kHeld, pairs.size));
 }
 
+/// @param wanted  a part of what is said.
+void expect_undetermined(const StereoCalibration& truth, const Hand& hand,
+                         const std::string& wanted, int count = 15) {
+  const auto pairs = made_up(truth, count, 0.1, hand);
+  const auto found = calibrate(pairs.views, kHeld, pairs.size);
+  ASSERT_FALSE(found) << found->text();
+  EXPECT_EQ(found.error().code, Code::NotFound);
+  EXPECT_NE(found.error().detail.find(wanted), std::string::npos) << found.error().detail;
+}
+
+TEST(Calibration, ABoardThatFacesTheCamerasDoesNotDetermineTheFocalLength) {
+  const Hand facing{.up_down = 0.02, .left_right = 0.02};
+  expect_undetermined(squinting(), facing, "do not determine the focal length: ± ");
+  const Hand at_one_distance{.up_down = 0.02, .left_right = 0.02, .nearest = 0.7, .farthest = 0.7};
+  expect_undetermined(squinting(), at_one_distance, "do not determine the focal length: ± ");
+}
+
+TEST(Calibration, ABoardInTheMiddleDoesNotDetermineTheEdges) {
+  expect_undetermined(squinting(), {.nearest = 1.1, .farthest = 1.5, .sideways = 0.02},
+                      "do not determine");
+}
+
+// The deviations are those of repeated calibrations.
+TEST(Calibration, DeviationsAreWhatTheyClaim) {
+  const auto truth = squinting();
+  double focal = 0, baseline = 0, said_focal = 0, said_baseline = 0;
+  constexpr int kSets = 8;
+  for (unsigned seed = 0; seed < kSets; ++seed) {
+    const auto pairs = made_up(truth, 20, 0.1, {}, seed);
+    const auto found = must(calibrate(pairs.views, kHeld, pairs.size));
+    const auto& c = found.calibration;
+    focal +=
+        std::pow(c.M1(0, 0) / truth.M1(0, 0) - 1, 2) + std::pow(c.M2(0, 0) / truth.M2(0, 0) - 1, 2);
+    baseline += 2 * std::pow(cv::norm(c.T) / cv::norm(truth.T) - 1, 2);
+    said_focal += 2 * std::pow(found.deviations.focal, 2);
+    said_baseline += 2 * std::pow(found.deviations.baseline, 2);
+  }
+  std::printf(
+      "[          ] focal length off by %.3f %%, said %.3f %%; baseline %.3f %%, said %.3f %%\n",
+      100 * std::sqrt(focal / 2 / kSets), 100 * std::sqrt(said_focal / 2 / kSets),
+      100 * std::sqrt(baseline / 2 / kSets), 100 * std::sqrt(said_baseline / 2 / kSets));
+  EXPECT_NEAR(std::log2(std::sqrt(focal / said_focal)), 0, 1) << "within a factor of two";
+  EXPECT_NEAR(std::log2(std::sqrt(baseline / said_baseline)), 0, 1);
+}
+
+TEST(Calibration, ACalibrationThatFitsTheViewsIsKnownByItsError) {
+  const auto pairs = made_up(squinting(), 6, 0.1);
+  EXPECT_NEAR(error_of(squinting(), pairs.views, kHeld), 0.1 * std::sqrt(2), 0.03) << "px";
+  auto moved = squinting();
+  moved.T[1] += 0.003;
+  EXPECT_GT(error_of(moved, pairs.views, kHeld), 1) << "px: 3 mm at 0.7 m are 2.6 px";
+}
+
+/// A set of views that some cameras have, good or not.
+struct Set {
+  StereoCalibration truth;
+  Hand hand;
+  int count;
+  double noise;  // [px]
+  bool is_good;
+};
+
+Set set_of(unsigned number) {
+  std::mt19937 random(100 + number);
+  std::uniform_real_distribution<double> part(0, 1);
+  const auto between = [&](double least, double most) {
+    return least + (most - least) * part(random);
+  };
+  Set set{squinting(), {}, static_cast<int>(between(15, 25)), between(0.05, 0.3), number % 2 == 0};
+  const double focal = between(450, 900);
+  for (auto* M : {&set.truth.M1, &set.truth.M2})
+    (*M)(0, 0) = (*M)(1, 1) = focal * between(0.98, 1.02);
+  set.truth.T *= between(0.6, 1.2);
+  const double near = focal / 800 * 0.55;  // the board fills the image's height
+  set.hand = {.nearest = near, .farthest = 1.8 * near, .sideways = 0.2 * 800 / focal};
+  if (set.is_good) return set;
+  Hand& hand = set.hand;
+  switch (number / 2 % 6) {
+    case 0:  // faces the cameras
+      hand.up_down = hand.left_right = between(0, 0.08);
+      break;
+    case 1:  // and always at one distance
+      hand.up_down = hand.left_right = between(0, 0.08);
+      hand.farthest = hand.nearest *= 1.3;
+      break;
+    case 2:  // tilted about one axis, a little
+      hand.up_down = 0;
+      hand.left_right = between(0, 0.2);
+      break;
+    case 3:  // few views
+      set.count = static_cast<int>(between(3, 6));
+      break;
+    case 4:  // far away
+      hand.nearest *= 4;
+      hand.farthest = 1.2 * hand.nearest;
+      hand.sideways = 0.05;
+      break;
+    default:  // hardly moves
+      hand = {.up_down = 0.05,
+              .left_right = 0.05,
+              .nearest = 1.3 * near,
+              .farthest = 1.35 * near,
+              .sideways = 0.03};
+  }
+  return set;
+}
+
+TEST(Calibration, OfFiftySetsNoWrongFocalLengthIsAccepted) {
+  int wrong = 0, refused = 0, accepted = 0, unsafe = 0;
+  double worst = 0;
+  for (unsigned number = 0; number < 50; ++number) {
+    const Set set = set_of(number);
+    const auto pairs = made_up(set.truth, set.count, set.noise, set.hand, number);
+    const auto found = calibrate(pairs.views, kHeld, pairs.size);
+    if (!found) {
+      refused += set.is_good;
+      if (set.is_good)
+        std::printf("[          ] good set %u of %d views, %.2f px: %s\n", number, set.count,
+                    set.noise, found.error().detail.c_str());
+      continue;
+    }
+    accepted += set.is_good;
+    unsafe += !set.is_good;
+    const auto& c = found->calibration;
+    const double off = std::max({std::abs(c.M1(0, 0) / set.truth.M1(0, 0) - 1),
+                                 std::abs(c.M2(0, 0) / set.truth.M2(0, 0) - 1),
+                                 std::abs(c.M1(1, 1) / set.truth.M1(1, 1) - 1),
+                                 std::abs(c.M2(1, 1) / set.truth.M2(1, 1) - 1)});
+    worst = std::max(worst, off);
+    wrong += off > 0.02;
+  }
+  std::printf(
+      "[          ] %d good sets accepted, %d refused; %d others accepted; focal length off by at "
+      "most %.2f %%\n",
+      accepted, refused, unsafe, 100 * worst);
+  EXPECT_EQ(wrong, 0);
+  EXPECT_LE(refused, 2);
+}
+
 // OpenCV's sample stereo_calib with its own flags.
 double rms_of_sample(const Pairs& pairs) {
   std::vector<std::vector<cv::Point3f>> object(pairs.views.size());
