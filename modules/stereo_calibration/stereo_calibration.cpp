@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo_calibration.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <hc/base/format.h>
+#include <vision/messages.h>
+
+StereoCalibration::StereoCalibration(hc::Module& module) : module_(module) {
+  module.on_start([this] { start(); });
+  module.on(hc::together(left_, right_),
+            [this](const hc::Message& left, const hc::Message& right) { look(left, right); });
+  module.on_end([this] {
+    if (views_) finish(hc::value_or_end(views_->calibrate()));
+  });
+}
+
+void StereoCalibration::start() {
+  const hc::vision::Board board{static_cast<int>(*parameters_.columns),
+                                static_cast<int>(*parameters_.rows), *parameters_.square};
+  views_.emplace(hc::value_or_end(
+      hc::vision::BoardViews::make(board, static_cast<std::size_t>(*parameters_.views))));
+  const auto& file = *parameters_.calibration_file;
+  // A file that is not a calibration is not to be overwritten after all views have been taken.
+  if (std::filesystem::is_regular_file(file) && !std::filesystem::is_empty(file)) {
+    auto read = hc::vision::read_calibration(file);
+    if (!read)
+      throw hc::ModuleError(
+          hc::Error{read.error().code, read.error().detail + "; remove it or name another file"});
+    calibration_ = *read;
+  }
+}
+
+void StereoCalibration::look(const hc::Message& left, const hc::Message& right) {
+  if (!views_) return;
+  const cv::Mat image = hc::value_or_drop(hc::as_mat(left));
+  const bool is_kept = hc::value_or_drop(
+      views_->take(image, hc::value_or_drop(hc::as_mat(right)), *parameters_.difference));
+  show(image);
+  constexpr std::size_t kPatience = 50;  // pairs
+  if (views_->pairs() == kPatience && views_->found() == 0)
+    module_.log(
+        hc::format("no board of {} x {} inner corners in {} pairs: is it complete, with a "
+                   "white margin? columns and rows count inner corners",
+                   *parameters_.columns, *parameters_.rows, kPatience));
+  if (!is_kept) return;
+  time_ = std::max(left.header.time, right.header.time);
+  view_.send({static_cast<double>(views_->size()), static_cast<double>(*parameters_.views)});
+  advice_.send(views_->advice());
+  ++untried_;
+  constexpr std::int64_t kMore = 5;  // views after a refused calibration
+  if (untried_ >= (was_refused_ ? kMore : *parameters_.views)) try_to_finish();
+}
+
+void StereoCalibration::try_to_finish() {
+  const auto calibrated = views_->calibrate();
+  if (calibrated) return finish(*calibrated);
+  was_refused_ = true;
+  untried_ = 0;
+  module_.log(calibrated.error().detail + "; taking more views");
+}
+
+void StereoCalibration::finish(const hc::vision::Calibrated& calibrated) {
+  const auto& file = *parameters_.calibration_file;
+  score_.send(calibrated.numbers(), time_);
+  module_.log(calibrated.text() + ": " + file);
+  if (may_write(calibrated))
+    hc::succeed_or_end(hc::vision::write_calibration(file, calibrated.calibration));
+  views_.reset();
+}
+
+bool StereoCalibration::may_write(const hc::vision::Calibrated& calibrated) const {
+  if (!calibration_ || calibration_->rms == 0) return true;  // rms 0: by calibrate, not measured
+  const auto& file = *parameters_.calibration_file;
+  const double error = views_->error_of(*calibration_);
+  constexpr double kFits = 1.5;  // times the error of the new one
+  if (error > kFits * views_->error_of(calibrated.calibration)) {
+    module_.log(
+        hc::format("{} is replaced: its error for these views is {:.2f} px (focal length "
+                   "{:.1f} px, baseline {:.4f} m)",
+                   file, error, calibration_->M1(0, 0), calibration_->baseline()));
+    return true;
+  }
+  const double known = calibration_->focal_deviation, found = calibrated.deviations.focal;
+  if (*parameters_.replace || known > found) return true;
+  module_.log(hc::format(
+      "{} is kept: it fits these views too, and {}; replace = true replaces it", file,
+      known > 0 ? hc::format("its focal length is known to {:.2f} %, from these views to {:.2f} %",
+                             100 * known, 100 * found)
+                : "does not say how well its views determine it"));
+  return false;
+}
+
+void StereoCalibration::show(const cv::Mat& left) {
+  if (!picture_.linked()) return;
+  auto draft = picture_.loan(left.rows, left.cols);
+  hc::fill(draft, views_->picture(left));
+  picture_.send(std::move(draft));
+}
