@@ -58,6 +58,13 @@ class TapSource final : public Source {
   Descriptor both_;
 };
 
+Result<Uri> ask_uri(const RunningGraph& graph, const std::string& question, int stop) {
+  auto answer = HC_TRY(ask(graph, {question}, stop));
+  if (!answer.is_ok || answer.rows.empty())
+    return Error{Code::Invalid, answer.is_ok ? "no URI in the answer" : answer.rows.back()};
+  return parse_uri(answer.rows.front());
+}
+
 /// Lowers the priority of this thread below the robot's modules; if that fails, it merely competes
 /// with them.
 void yield_to_robot() {
@@ -76,10 +83,13 @@ Event make_event() {
 }  // namespace
 
 Result<Uri> tap_uri(const RunningGraph& graph, const std::string& port, int stop) {
-  auto answer = HC_TRY(ask(graph, {"observe " + port}, stop));
-  if (!answer.is_ok || answer.rows.empty())
-    return Error{Code::Invalid, answer.is_ok ? "no URI in the answer" : answer.rows.back()};
-  return parse_uri(answer.rows.front());
+  return ask_uri(graph, "observe " + port, stop);
+}
+
+Result<Uri> feed_uri(const RunningGraph& graph, const std::string& port, int stop) {
+  auto uri = HC_TRY(ask_uri(graph, "feed " + port, stop));
+  uri.options.emplace_back("wait", "5");  // the module is about to listen
+  return uri;
 }
 
 Result<std::unique_ptr<Source>> open_tap(const RunningGraph& graph, const std::string& port,

@@ -28,6 +28,13 @@ Result<std::unique_ptr<Source>> open_tap(const RunningGraph& graph, const std::s
 /// the graph, but as its `reconnect` says.
 Result<Uri> tap_uri(const RunningGraph& graph, const std::string& port, int stop = -1);
 
+/// The URI at which an input of a running graph takes messages. The graph closes it 5 s after its
+/// last sender has disconnected.
+///
+/// @param port  MODULE.PORT. Errors: Invalid (no such input, or one that may move something without
+/// the focus), those of ask().
+Result<Uri> feed_uri(const RunningGraph& graph, const std::string& port, int stop = -1);
+
 /// Reads an output on a thread until it is destroyed, which waits for a running callback. The
 /// thread yields the processor to the graph's modules.
 class Tap {

@@ -127,6 +127,7 @@ void apply_command(Graph& graph, const GraphCommand& command, Problems& problems
     case Verb::Stop:
     case Verb::Describe:
     case Verb::Observe:
+    case Verb::Feed:
       return;
   }
 }

@@ -100,6 +100,11 @@ struct Plan {
   std::string frames;  ///< as text (G31), with the names of the file
 };
 
+/// Checks that a program outside may send to an input "MODULE.PORT" of a running graph: its
+/// messages neither move anything nor decide on the focus, unless a task makes them its own.
+/// Errors: Invalid.
+Status check_feed(const Plan& plan, const std::string& input);
+
 /// Edges from modules to the receivers of their messages.
 using Edges = std::map<std::string, std::set<std::string>>;
 

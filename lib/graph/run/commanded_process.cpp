@@ -24,12 +24,12 @@ ModuleCommand wall_offset_command(std::chrono::nanoseconds offset) {
 }  // namespace
 
 CommandedProcess::CommandedProcess(Loop& loop, Hosts* hosts, const PlannedModule& plan,
-                                   const ObservedOutputs& observed, ModuleCallbacks callbacks)
+                                   const OpenedPorts& opened, ModuleCallbacks callbacks)
     : loop_(loop),
       hosts_(hosts),
       plan_(plan),
       known_(plan),
-      observed_(observed),
+      opened_(opened),
       callbacks_(std::move(callbacks)) {
   callbacks_.connected = [this] { return catch_up(); };
 }
@@ -100,7 +100,7 @@ std::vector<Message> CommandedProcess::catch_up() {
   for (const auto* some : {&change.unlinks, &change.outputs, &change.inputs})
     for (const auto& command : *some) add(command);
   for (const auto& input : finished_) add({Verb::Finish, true, input, {}});
-  for (const auto& link : observed_.links()) add(link);
+  for (const auto& link : opened_.links()) add(link);
   if (wall_offset_.count() != 0) add(wall_offset_command(wall_offset_));
   update_known();
   return commands;

@@ -13,7 +13,7 @@
 #include <graph/hosts.h>
 #include <graph/module_process.h>
 #include <graph/run/change.h>
-#include <graph/run/observed_outputs.h>
+#include <graph/run/opened_ports.h>
 #include <hc/os/loop.h>
 
 namespace hc::internal {
@@ -21,9 +21,9 @@ namespace hc::internal {
 class CommandedProcess {
  public:
   /// @param hosts  null: it runs on this host. @param plan  of the module; must outlive it, and may
-  /// change. @param callbacks  all but `connected`. @param observed  its outputs for observers.
-  CommandedProcess(Loop& loop, Hosts* hosts, const PlannedModule& plan,
-                   const ObservedOutputs& observed, ModuleCallbacks callbacks);
+  /// change. @param callbacks  all but `connected`. @param opened  its open ports.
+  CommandedProcess(Loop& loop, Hosts* hosts, const PlannedModule& plan, const OpenedPorts& opened,
+                   ModuleCallbacks callbacks);
   CommandedProcess(const CommandedProcess&) = delete;
 
   /// Listens for reports where the plan says; does nothing if it does so already. Errors: Invalid,
@@ -59,7 +59,7 @@ class CommandedProcess {
   Hosts* hosts_;
   const PlannedModule& plan_;
   PlannedModule known_;  // the plan as known to the process, possibly with older URIs of links
-  const ObservedOutputs& observed_;
+  const OpenedPorts& opened_;
   ModuleCallbacks callbacks_;
   std::set<std::string> finished_;           // inputs whose writers have ended for good
   std::chrono::nanoseconds wall_offset_{0};  // last sent to a process on another host

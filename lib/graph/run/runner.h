@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <graph/run.h>
@@ -42,6 +43,8 @@ class Runner {
 
   GraphAnswer answer_to(const GraphCommand& question);
   Result<std::string> observe(const std::string& port);
+  Result<std::string> feed(const std::string& port);
+  Result<std::string> open_port(bool is_input, const std::string& port);
   [[nodiscard]] Result<std::string> describe(const std::string& module) const;
   void carry_out(const Commands& commands);
   GraphAnswer set_parameters(const Commands& commands);
@@ -59,7 +62,7 @@ class Runner {
   bool is_unsettled_ = false;  // a module has started or ended, or links have changed
   std::vector<Failure> failures_;
   Status outcome_;
-  std::map<std::string, int> observed_;  // numbers of outputs that have been observed
+  std::map<std::pair<bool, std::string>, int> opened_;  // numbers of ports that have been opened
   Loop& loop_;
   GraphLog log_{options_, plan_};
   std::unique_ptr<GraphServer> server_;

@@ -12,7 +12,9 @@ namespace hc::internal {
 
 GraphAnswer Runner::answer_to(const GraphCommand& question) {
   const auto& word = question.words[0];
-  const auto found = question.verb == GraphCommand::Verb::Observe ? observe(word) : describe(word);
+  const auto found = question.verb == GraphCommand::Verb::Observe ? observe(word)
+                     : question.verb == GraphCommand::Verb::Feed  ? feed(word)
+                                                                  : describe(word);
   return found ? GraphAnswer{true, {*found}} : GraphAnswer{false, {found.error().detail}};
 }
 
@@ -36,13 +38,28 @@ Result<std::string> Runner::observe(const std::string& port) {
     return Error{Code::Invalid, port + " is fed by " + output + ", which is outside the graph"};
   if (module == nullptr)
     return Error{Code::Invalid, "no port \"" + port + "\"" + suggestion(port, known)};
+  return open_port(false, output);
+}
+
+/// Opens an input to senders outside the graph.
+Result<std::string> Runner::feed(const std::string& port) {
+  HC_TRY(check_feed(plan_, port));
+  return open_port(true, port);
+}
+
+/// @param port  of a module of the graph.
+Result<std::string> Runner::open_port(bool is_input, const std::string& port) {
+  Supervised* module = modules_.at(port);
+  if (module == nullptr) return Error{Code::Invalid, port + ": its module does not run"};
   if (module->plan().control_uri.empty())
-    return Error{Code::Invalid,
-                 module->plan().name + " cannot be observed: its program takes no commands"};
+    return Error{Code::Invalid, module->plan().name + " cannot be " +
+                                    (is_input ? "sent to" : "observed") +
+                                    ": its program takes no commands"};
   const int number =
-      observed_.try_emplace(output, static_cast<int>(observed_.size())).first->second;
-  return module->observe(output.substr(output.find('.') + 1),
-                         plan_.token + ".watch." + std::to_string(number));
+      opened_.try_emplace({is_input, port}, static_cast<int>(opened_.size())).first->second;
+  return module->open_port(
+      is_input, port.substr(port.find('.') + 1),
+      plan_.token + (is_input ? ".feed." : ".watch.") + std::to_string(number));
 }
 
 Result<std::string> Runner::describe(const std::string& module) const {

@@ -17,7 +17,7 @@
 #include <graph/run/commanded_process.h>
 #include <graph/run/liveness.h>
 #include <graph/run/module_log.h>
-#include <graph/run/observed_outputs.h>
+#include <graph/run/opened_ports.h>
 #include <graph/run/reports.h>
 #include <graph/run/restarts.h>
 #include <hc/base/clock.h>
@@ -77,9 +77,9 @@ class Supervised {
   /// Notes that a linked module is interrupted. A module without `control` ends then, as if its
   /// work were done, and is restarted.
   void note_interruption();
-  /// Opens an output for observers: see ObservedOutputs::open().
-  Result<std::string> observe(const std::string& port, const std::string& name) {
-    return observed_.open(plan_, port, name, now());
+  /// Opens a port to programs outside the graph: see OpenedPorts::open().
+  Result<std::string> open_port(bool is_input, const std::string& port, const std::string& name) {
+    return opened_.open(plan_, is_input, port, name, now());
   }
 
   /// Starts it if it waits for its host, and the host is connected.
@@ -148,7 +148,7 @@ class Supervised {
   Liveness liveness_;
   std::string hung_;  // why this process was killed, "hung for 5 s"; empty: it was not
   ProcessorMeter meter_;
-  ObservedOutputs observed_;
+  OpenedPorts opened_;
   CommandedProcess process_;
   Loop::Handle timer_;
 };

@@ -27,7 +27,7 @@ void Supervised::take_report(const Message& message) {
 }
 
 void Supervised::check(MonotonicTime time) {
-  observed_.close_unread(liveness_.has_reported() ? &reports_ : nullptr, time);
+  opened_.close_unused(liveness_.has_reported() ? &reports_ : nullptr, time);
   send(process_.correct_clock());
   note_dropped_lines(time);
   liveness_.check(process_.process().runs(), time);

@@ -24,7 +24,7 @@ struct Form {
   std::string_view text;
 };
 
-constexpr std::array<Form, 9> kForms = {{
+constexpr std::array<Form, 10> kForms = {{
     {"set", Verb::Set, 1, true, "set MODULE.PARAMETER=VALUE"},
     {"add", Verb::Add, 2, true, "add MODULE[@HOST] PROGRAM [PARAMETER=VALUE ...]"},
     {"remove", Verb::Remove, 1, false, "remove MODULE"},
@@ -34,6 +34,7 @@ constexpr std::array<Form, 9> kForms = {{
     {"stop", Verb::Stop, 0, false, "stop"},
     {"describe", Verb::Describe, 1, false, "describe MODULE"},
     {"observe", Verb::Observe, 1, false, "observe MODULE.PORT"},
+    {"feed", Verb::Feed, 1, false, "feed MODULE.PORT"},
 }};
 
 std::vector<std::string> split(std::string_view text) {

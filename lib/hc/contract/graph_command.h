@@ -20,7 +20,7 @@ struct Assignment {
 Result<Assignment> parse_assignment(std::string_view text);
 
 struct GraphCommand {
-  enum class Verb { Set, Add, Remove, Restart, Link, Unlink, Stop, Describe, Observe };
+  enum class Verb { Set, Add, Remove, Restart, Link, Unlink, Stop, Describe, Observe, Feed };
 
   Verb verb = Verb::Stop;
   std::vector<std::string> words;  ///< after the verb; for `set`: module, parameter, value
@@ -29,8 +29,10 @@ struct GraphCommand {
   [[nodiscard]] bool is_edit() const {
     return verb != Verb::Restart && verb != Verb::Stop && !is_question();
   }
-  /// Whether it changes nothing: `describe` and `observe`, which must be alone in a message.
-  [[nodiscard]] bool is_question() const { return verb == Verb::Describe || verb == Verb::Observe; }
+  /// Whether it asks something, which must be alone in a message, and leaves the graph as it is.
+  [[nodiscard]] bool is_question() const {
+    return verb == Verb::Describe || verb == Verb::Observe || verb == Verb::Feed;
+  }
 };
 
 /// Errors: Invalid.
