@@ -69,6 +69,47 @@ inputs.image = "camera.left"
             "left_camera.bid left_follow.image all\nleft_follow.bid tcp:2 all\n");
 }
 
+TEST(Inclusion, LinksAreAddedToThoseThatAreIncluded) {
+  const std::map<std::string, std::string> files = {{"eye.toml", R"([modules.camera]
+program = "source"
+[modules.any]
+inputs.in = { from = "camera.left", keep = 2 }
+[modules.camera.outputs]
+left = "tcp:1"
+)"},
+                                                    {"pair.toml", R"([graphs.eye]
+file = "eye.toml"
+modules.any.more_inputs.in = "eye_camera.right"
+)"}};
+  EXPECT_EQ(links_of(plan(R"([modules.eye]
+program = "source"
+[graphs.pair]
+file = "pair.toml"
+modules.eye_any.more_inputs.in = ["eye.left", { from = "eye.right", keep = 3 }]
+modules.eye_camera.more_outputs.left = "tcp:2"
+)",
+                          files)),
+            "pair_eye_camera.left tcp:1 all\npair_eye_camera.left pair_eye_any.in 2\n"
+            "pair_eye_camera.right pair_eye_any.in all\neye.left pair_eye_any.in all\n"
+            "eye.right pair_eye_any.in 3\npair_eye_camera.left tcp:2 all\n");
+  EXPECT_EQ(links_of(plan(R"([modules.eye]
+program = "source"
+[graphs.eye_b]
+file = "eye.toml"
+modules.any.more_inputs.in = "eye.left"
+modules.any.inputs.in = "eye.right"
+)",
+                          files)),
+            "eye_b_camera.left tcp:1 all\neye.right eye_b_any.in all\neye.left eye_b_any.in all\n")
+      << "added to those that replace, in any order";
+  EXPECT_EQ(wrong(R"([graphs.eye]
+file = "eye.toml"
+modules.any.more_inputs.in = "eye_camera.left"
+)",
+                  files),
+            "g.toml:4: duplicate link from eye_camera.left to eye_any.in");
+}
+
 TEST(Inclusion, EachHasAWorkspaceOfItsOwn) {
   const std::string head = R"([modules.judge]
 program = "workspace"

@@ -31,7 +31,14 @@ class ModuleReader {
       module_.clock = {*value.as<std::string>(), value.place};
     };
     auto links = [&](bool to_input) {
-      return fields_.each([this, to_input](const Node& port) { read_links(port, to_input); });
+      return fields_.each([this, to_input](const Node& port) {
+        remove_links(port, to_input);
+        add_links(port, to_input);
+      });
+    };
+    std::vector<std::pair<const Node*, bool>> more;  // added last, in any order of the keys
+    auto more_links = [&](bool to_input) {
+      return [&more, to_input](const Node& ports) { more.emplace_back(&ports, to_input); };
     };
     fields_.read(node, "in module " + module_.name,
                  {{"program", fields_.text(module_.program)},
@@ -39,6 +46,8 @@ class ModuleReader {
                   {"parameters", fields_.each([&](const Node& value) { read_parameter(value); })},
                   {"inputs", links(true)},
                   {"outputs", links(false)},
+                  {"more_inputs", more_links(true)},
+                  {"more_outputs", more_links(false)},
                   {"addresses", fields_.each(address)},
                   {"encodings", fields_.each(encoding)},
                   {"to", fields_.each([&](const Node& value) { read_addressee(value); })},
@@ -49,6 +58,8 @@ class ModuleReader {
                   {"modes", fields_.texts(module_.modes)},
                   {"exclusive", fields_.texts(module_.exclusive)},
                   {"ends_graph", fields_.flag(module_.ends_graph)}});
+    for (const auto& [ports, to_input] : more)
+      fields_.each([this, to = to_input](const Node& port) { add_links(port, to); })(*ports);
   }
 
  private:
@@ -70,14 +81,17 @@ class ModuleReader {
       fields_.add(value, R"("{}" must be an address, an input or "all")", value.key);
   }
 
-  /// Replaces the links of an input, or those of an output to URIs.
-  void read_links(const Node& port, bool to_input) {
+  /// Removes the links of an input, or those of an output to URIs.
+  void remove_links(const Node& port, bool to_input) {
+    const std::string ours = module_.name + "." + port.key;
+    std::erase_if(graph_.links, [&](const GraphLink& link) {
+      return to_input ? link.to.text() == ours : link.from.text() == ours && !link.to.uri.empty();
+    });
+  }
+
+  void add_links(const Node& port, bool to_input) {
     if (!fields_.check_name(port, "port", port.key)) return;
     const GraphPort ours{module_.name, port.key, {}};
-    std::erase_if(graph_.links, [&](const GraphLink& link) {
-      return to_input ? link.to.text() == ours.text()
-                      : link.from.text() == ours.text() && !link.to.uri.empty();
-    });
     Fields::one_or_more([&](const Node& value) {
       GraphLink link;
       (to_input ? link.to : link.from) = ours;
