@@ -26,7 +26,6 @@ void GraphLog::take(LogLine line) {
   if (server_ != nullptr && line.level != Level::Notice) server_->log(line);
 }
 
-/// Replaces a link's URI by "MODULE.PORT → MODULE.PORT".
 std::string GraphLog::with_link_names(std::string line) const {
   const bool has_token = !plan_.token.empty() && line.find(plan_.token) != std::string::npos;
   if (!has_token && plan_.ports.empty()) return line;

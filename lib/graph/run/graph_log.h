@@ -33,9 +33,10 @@ class GraphLog {
   /// Results and errors.
   [[nodiscard]] std::vector<LogLine>& results() { return results_; }
 
- private:
+  /// Replaces a link's URI by "MODULE.PORT → MODULE.PORT".
   [[nodiscard]] std::string with_link_names(std::string line) const;
 
+ private:
   const RunOptions& options_;
   const Plan& plan_;
   GraphServer* server_ = nullptr;

@@ -151,6 +151,10 @@ std::string Reports::blocked_key() const {
   return state_.blocked_row <= 0 || row > order_.size() ? "" : order_[row - 1];
 }
 
+bool Reports::is_open(const PlannedEnd& end) const {
+  return !has_links_ || std::ranges::find(order_, end_key(end).substr(0, kMaxKey)) != order_.end();
+}
+
 std::int64_t Reports::peers_of(const PlannedEnd& end) const {
   const auto found = peers_.find(end_key(end));
   return found == peers_.end() ? -1 : found->second;

@@ -39,6 +39,8 @@ class Reports {
 
   /// The counters of an end; null before its first report.
   [[nodiscard]] const EndReport* find(const PlannedEnd& end) const;
+  /// Whether the module has opened an end, as far as it reports its links.
+  [[nodiscard]] bool is_open(const PlannedEnd& end) const;
   /// The number of peers connected to an end, planned or not, as last reported; -1: unknown.
   [[nodiscard]] std::int64_t peers_of(const PlannedEnd& end) const;
   [[nodiscard]] const std::map<std::string, std::string>& parameters() const { return parameters_; }

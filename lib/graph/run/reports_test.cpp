@@ -54,6 +54,13 @@ TEST_F(ReportsTest, LinksSayTheOrderHoweverManyReaders) {
   EXPECT_EQ(reports_.find(out_)->traffic.messages, 9U);
 }
 
+TEST_F(ReportsTest, EndsThatAreNotReportedAreNotOpen) {
+  EXPECT_TRUE(reports_.is_open(out_)) << "unknown";
+  reports_.take(rows(2, {"in in unix:@t"}), now_);
+  EXPECT_TRUE(reports_.is_open(in_));
+  EXPECT_FALSE(reports_.is_open(out_));
+}
+
 TEST_F(ReportsTest, RatesAreBetweenTwoReports) {
   count({{0, 0}, {100, 1000}});
   EXPECT_EQ(reports_.find(out_)->per_second, 0);

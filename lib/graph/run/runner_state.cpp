@@ -66,9 +66,12 @@ LinkState state_of(const PlannedLink& link, const RunningModules& modules, bool 
   const bool is_input = link.sender_uri.empty();
   const bool is_outside = is_input || link.reader_uri.empty();
   const auto* inner = modules.at(is_input ? link.to : link.from);
-  if (is_outside && state.status.empty() && inner != nullptr &&
-      inner->reports().peers_of(link.end(is_input)) == 0)
-    state.status = "not connected";
+  if (is_outside && state.status.empty() && inner != nullptr) {
+    if (!inner->reports().is_open(link.end(is_input)))
+      state.status = kNotOpen;
+    else if (inner->reports().peers_of(link.end(is_input)) == 0)
+      state.status = kNotConnected;
+  }
   if (reader == nullptr) return state;
   if (counts != reader) {
     Traffic lost = reader->traffic;
@@ -109,6 +112,8 @@ GraphState Runner::state() const {
     const auto* module = modules_.find(planned.name);
     if (module == nullptr) continue;
     state.modules.push_back(module->state());
+    state.modules.back().last_line =
+        log_.with_link_names(std::move(state.modules.back().last_line));
     // A stop outlives the process that reported it.
     if (any_stops(module->reports().state().stops)) state.stopped.insert(planned.name);
     // The focus, as reported by modules that receive or decide it; stale unless they run.

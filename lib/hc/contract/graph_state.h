@@ -56,6 +56,9 @@ struct ModuleState {
   std::map<std::string, std::string> parameters;
 };
 
+/// Statuses of a link to the outside: its module has not opened it, or nothing is at its other end.
+inline constexpr const char *kNotOpen = "not open", *kNotConnected = "not connected";
+
 struct LinkState {
   std::string from, to;   ///< "MODULE.PORT", or a URI
   std::string transport;  ///< "shm", "unix", …
