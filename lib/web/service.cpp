@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <web/service.h>
 
+#include <hc/base/format.h>
 #include <hc/base/words.h>
 #include <web/identity.h>
 
@@ -18,10 +19,12 @@ Result<std::unique_ptr<Service>> Service::open(const Listening& listening, Loop&
   auto server =
       Server::listen(listening.address == "localhost" ? "127.0.0.1" : listening.address,
                      static_cast<std::uint16_t>(listening.port), listening.port == 0 ? 1 : kPorts,
-                     identity, [&loop, log = std::move(log)](Level, std::string_view line) {
+                     identity, [&loop, log](Level, std::string_view line) {
                        loop.post([log, kept = std::string(line)] { log(kept); });
                      });
   if (!server) return server.error();
+  if (listening.port != 0 && (*server)->port() != listening.port)
+    log(hc::format("port {} is in use; listening at port {}", listening.port, (*server)->port()));
   const auto hosts = words_of(listening.hosts, ", \t\n");
   Place place{
       listening.address, (*server)->port(), !identity.empty(), {hosts.begin(), hosts.end()}};

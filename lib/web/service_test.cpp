@@ -105,6 +105,17 @@ class ServiceTest : public ::testing::Test {
       Service::open({}, *loop_, [this](std::string_view line) { logged_.emplace_back(line); }));
 };
 
+TEST_F(ServiceTest, a_port_that_is_in_use_is_named) {
+  const auto taken = service_->access().place().port;
+  std::vector<std::string> lines;
+  const auto second = must(Service::open({.port = taken}, *loop_,
+                                         [&](std::string_view line) { lines.emplace_back(line); }));
+  const auto used = second->access().place().port;
+  EXPECT_NE(used, taken);
+  EXPECT_EQ(lines, std::vector{"port " + std::to_string(taken) + " is in use; listening at port " +
+                               std::to_string(used)});
+}
+
 TEST_F(ServiceTest, serves_a_site_and_closes_it_at_the_end) {
   serve();
   EXPECT_EQ(service_->access().place().port, port());

@@ -123,5 +123,7 @@ hc::Result<std::vector<hc::graphics::Part>> load(const std::string& model) {
         {hc::graphics::make_box({1, 1, 1}), paint_squares(4, 4, yellow, blue)}};
   if (model == "ball")
     return std::vector<Part>{{hc::graphics::make_ball(0.5F), paint_squares(12, 6, green, white)}};
-  return hc::graphics::read_model(model);
+  auto parts = hc::graphics::read_model(model);
+  if (parts || parts.error().code != hc::Code::NotFound) return parts;
+  return hc::Error{hc::Code::Invalid, parts.error().detail};  // a restart would not find it either
 }

@@ -92,7 +92,10 @@ hc::Result<std::unique_ptr<Device>> open_capture(const std::string& name, const 
                                  : capture.open(path, cv::CAP_FFMPEG,
                                                 {cv::CAP_PROP_OPEN_TIMEOUT_MSEC, kStreamTimeout,
                                                  cv::CAP_PROP_READ_TIMEOUT_MSEC, kStreamTimeout});
-  if (!is_open) return hc::Error{hc::Code::NotFound, "cannot be opened as a camera"};
+  if (!is_open)
+    return hc::Error{hc::Code::NotFound,
+                     "cannot be opened as a camera" +
+                         std::string(is_device ? "; hc doctor lists the cameras" : "")};
   std::string remark;
   if (is_device) {
     const auto settings = HC_TRY(settings_to_open(mode));

@@ -36,8 +36,8 @@ hc::Result<Recogniser> Recogniser::make(const std::string& language, bool upper_
   auto& api = engine->api;
   api.SetVariable("debug_file", "/dev/null");  // else it writes to standard error
   if (api.Init(nullptr, language.c_str(), tesseract::OEM_LSTM_ONLY) != 0)
-    return hc::Error{hc::Code::NotFound, "Tesseract has no language " + language +
-                                             " (package tesseract-ocr-" + language + ")"};
+    return hc::Error{hc::Code::Invalid, "Tesseract has no language " + language +
+                                            " (package tesseract-ocr-" + language + ")"};
   api.SetPageSegMode(tesseract::PSM_SINGLE_LINE);
   if (upper_case)
     api.SetVariable("tessedit_char_whitelist", "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-.,!? ");

@@ -30,7 +30,7 @@ TEST(Recogniser, gives_no_text_for_an_empty_line) {
 TEST(Recogniser, says_which_language_is_missing) {
   auto recogniser = Recogniser::make("no_such", true);
   ASSERT_FALSE(recogniser);
-  EXPECT_EQ(recogniser.error().code, hc::Code::NotFound);
+  EXPECT_EQ(recogniser.error().code, hc::Code::Invalid);
   EXPECT_NE(recogniser.error().detail.find("no_such"), std::string::npos);
 }
 

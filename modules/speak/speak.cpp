@@ -75,6 +75,7 @@ void Speak::send(const Speech& speech, const WaitingText& text) {
   spoken_until_ = module_.monotonic() + static_cast<std::int64_t>(frames) * kSecond / kRate;
   ++said_;
   last_ = utf8(text.characters);
+  last_.erase(last_.find_last_not_of(' ') + 1);
   words_.send({std::move(table)});  // first, since sending the sound may block while it plays
   sound_.send(std::move(draft));
 }

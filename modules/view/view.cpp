@@ -42,16 +42,17 @@ ImageView::ImageView(hc::Module& module) : module_(module) {
 
 void ImageView::start() {
   const auto &window = *parameters_.window, &save = *parameters_.save;
+  std::string why = "no display";
   if (*parameters_.min > *parameters_.max) throw hc::ModuleError("min is above max");
   if (window == "yes" || (window == "auto" && save.empty())) {
     auto opened = hc::vision::Display::open(static_cast<int>(*parameters_.monitor));
     if (opened)
       display_ = std::move(*opened);
-    else if (window == "yes")
-      throw hc::ModuleError("window: " + opened.error().detail);
+    else if (why = opened.error().detail; window == "yes")
+      throw hc::ModuleError("window: " + why);
   }
   if (!display_ && save.empty() && window != "no")
-    throw hc::ModuleError("no display for a window and no file to save to: give --save");
+    throw hc::ModuleError("window: " + why + "; to save images instead, give --save");
 }
 
 void ImageView::take(const hc::Message& message) {
