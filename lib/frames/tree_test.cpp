@@ -190,6 +190,13 @@ TEST(Tree, WhatIsNotFedIsWhereItsParentIsAndWhatIsSilentWhereItWas) {
   EXPECT_FALSE(tree.nearest("base", "leg", kTime));
 }
 
+TEST(Tree, MayHoldSeveral) {
+  Tree tree = head_tree();
+  ASSERT_TRUE(tree.fix("map", "landmark", shift(1)));
+  EXPECT_TRUE(tree.nearest("map", "landmark", kTime));
+  EXPECT_FALSE(tree.nearest("world", "landmark", kTime));
+}
+
 TEST(Tree, StaysATree) {
   Tree tree = head_tree();
   EXPECT_EQ(

@@ -162,6 +162,13 @@ class Vectors(unittest.TestCase):
         self.assertGreaterEqual(len(COMPRESSED), 10)
         self.assertGreaterEqual(len(IMAGES), 8)
 
+    def test_each_rule_that_the_document_names_is_broken_by_a_file(self):
+        text = (ROOT / "spec/mtp-1.md").read_text()
+        named = re.search(r"each rule that a message can break, ([^(]*)", text)[1]
+        spans = re.findall(r"R(\d+) … R(\d+)", named)
+        rules = {rule for a, b in spans for rule in range(int(a), int(b) + 1)}
+        self.assertEqual(rules, {int(path.name[1:].split("_")[0]) for path in INVALID})
+
     def test_files_are_what_make_writes(self):
         made = run(sys.executable, str(ROOT / "spec/vectors/make.py"), "--check")
         self.assertEqual(made.returncode, 0, made.stdout.decode())

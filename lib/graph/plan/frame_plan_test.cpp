@@ -167,6 +167,7 @@ TEST(Frames, ErrorsNameTheLineAndWhatWouldBeRight) {
   expect("parent = \"b\"\n[frames.b]\nparent = \"a\"\n", "4: frames form a circle: a in b in a");
   expect(top + "[frames.b]\nparent = \"aa\"\n",
          "6: no frame \"aa\", did you mean \"a\"?; the root is root");
+  expect(top + "[frames.b]\nparent = \"other\"\n", "6: no frame \"other\"; the root is root");
   expect(top + "coord = 3\n", "5: coordinate system 3 is head");
   expect(top + "[frames.head]\nparent = \"root\"\ncoord = 200\n", "7: frame head has the number 3");
   expect(top + "coord = 200\n[frames.b]\nparent = \"a\"\ncoord = 200\n",
