@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc new: creates a module outside this project, from templates built into this program.
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <utility>
@@ -54,6 +55,15 @@ void write_file(const fs::path& path, const std::string& text) {
                     fs::perm_options::add);
 }
 
+/// The Python that has the package hypercolumn, with its libraries: not always the first in PATH.
+std::string python() {
+  const std::string first = "python3", of_system = "/usr/bin/python3";
+  for (const auto& each : {first, of_system})
+    if (std::system((each + " -c 'import hypercolumn' >/dev/null 2>&1").c_str()) == 0) return each;
+  say("hc new: no Python has the package hypercolumn and NumPy (doc/python.md)");
+  return first;
+}
+
 /// The commands that build and test a module in C++ with the library of this program. CMake finds
 /// the library by itself only in /usr; from a build tree, it is installed first.
 std::string build_commands() {
@@ -81,15 +91,18 @@ void begin(const NewOptions& options) {
     throw Failure(hc::Code::Invalid, folder.string() + " already exists");
   fs::create_directories(folder, error);
   if (error) throw Failure(hc::Code::System, folder.string() + ": " + error.message());
+  const std::string interpreter = options.is_python ? python() : "";
   for (const auto& file : options.is_python ? python_template() : cpp_template()) {
     std::string path(file.path), text(file.text);
     replace_all(path, "@NAME@", options.name);
     replace_all(text, "@NAME@", options.name);
+    if (interpreter.starts_with('/'))
+      replace_all(text, "#!/usr/bin/env python3", "#!" + interpreter);
     remove_licence(text);
     write_file(folder / path, text);
   }
   const std::string test =
-      options.is_python ? hc::format("python3 {}_test.py", options.name) : build_commands();
+      options.is_python ? interpreter + " " + options.name + "_test.py" : build_commands();
   print(hc::format("created {}/; next: cd {} && {}\n", folder.string(), folder.string(), test));
 }
 
