@@ -6,9 +6,9 @@
 
 #include "common.h"
 #include "json.h"
-#include "observer.h"
 #include "readable.h"
 #include "verbs.h"
+#include "words.h"
 
 namespace tool {
 namespace {

@@ -17,8 +17,8 @@
 #include <transports/all.h>
 
 #include "common.h"
-#include "observer.h"
 #include "verbs.h"
+#include "words.h"
 
 namespace {
 
@@ -42,28 +42,62 @@ constexpr const char* kOverview =
     "  hc MODULE --help             a module's ports and parameters\n\n"
     "All commands: hc --help. Any command: hc COMMAND --help.\n";
 
-/// The arguments of a module. If the first is MODULE.PORT, optionally with `--of NAME`, it becomes
-/// a link from a running graph to the module's only input.
+/// Takes `--of NAME` from the arguments; empty if it is not given.
+std::string take_of(std::vector<std::string>& arguments) {
+  const auto found = std::find(arguments.begin(), arguments.end(), "--of");
+  if (found == arguments.end() || found + 1 == arguments.end()) return "";
+  const std::string name = found[1];
+  arguments.erase(found, found + 2);
+  return name;
+}
+
+/// Gives the value of --in or --out, [PORT=]WORD, the meaning that a word has in all verbs.
+std::string link_value(const std::string& value, const std::string& of, bool is_input) {
+  const auto equals = value.find('=');
+  const bool has_port = equals != std::string::npos && value.find_first_of(":/.?") > equals;
+  const auto word = has_port ? value.substr(equals + 1) : value;
+  if (!is_input) tool::check_output(word);
+  if (!is_input || !tool::graph_of_port(word, of)) return value;
+  return value.substr(0, value.size() - word.size()) + tool::place_of(word, of).uri.text();
+}
+
+/// The arguments of a module, with links in place of ports of running graphs: in --in, and as the
+/// first word, for the module's only input.
 std::vector<std::string> module_arguments(const std::string& program,
                                           std::vector<std::string> arguments) {
-  if (arguments.size() < 2 || arguments[1].starts_with("-") ||
-      arguments[1].find_first_of("/:=") != std::string::npos)
-    return arguments;
-  const auto text = hc::describe_program(program);
-  const auto description = hc::parse_description(text ? *text : "");
-  if (!description || description->inputs.size() != 1) return arguments;
-  std::string of;
-  auto found = std::find(arguments.begin(), arguments.end(), "--of");
-  if (found != arguments.end() && found + 1 != arguments.end()) {
-    of = found[1];
-    arguments.erase(found, found + 2);
+  const std::string of = take_of(arguments);
+  if (arguments.size() >= 2 && !arguments[1].starts_with("-") &&
+      arguments[1].find_first_of("/:=") == std::string::npos) {
+    const auto text = hc::describe_program(program);
+    const auto description = hc::parse_description(text ? *text : "");
+    if (description && description->inputs.size() == 1 && tool::graph_of_port(arguments[1], of))
+      arguments[1] = "--in=" + description->inputs[0].name + "=" + arguments[1];
   }
-  const auto graph = tool::graph_of_port(arguments[1], of);
-  if (!graph) return arguments;
-  auto uri = tool::value_or_fail(hc::tap_uri(*graph, arguments[1]), arguments[1]);
-  uri.options.emplace_back("reconnect", "5");  // survives a restart of the module
-  arguments[1] = "--in=" + description->inputs[0].name + "=" + uri.text();
+  for (std::size_t i = 1; i < arguments.size(); ++i)
+    for (const bool is_input : {true, false}) {
+      const std::string option = is_input ? "--in" : "--out";
+      if (arguments[i - 1] == option)
+        arguments[i] = link_value(arguments[i], of, is_input);
+      else if (arguments[i].starts_with(option + "="))
+        arguments[i] =
+            option + "=" + link_value(arguments[i].substr(option.size() + 1), of, is_input);
+    }
   return arguments;
+}
+
+/// Words of other programs, and what to write instead.
+std::string meant_command(const std::string& word) {
+  for (const auto& [name, hint] :
+       {std::pair("stop", "to stop the running graph: hc graph stop"),
+        {"kill", "to stop the running graph: hc graph stop"},
+        {"start", "to run a graph: hc run"},
+        {"list", "hc ps lists the running graphs, hc ports their ports, hc --help all commands"},
+        {"ls", "hc ps lists the running graphs, hc ports their ports, hc --help all commands"},
+        {"echo", "to print what a port sends: hc cat MODULE.PORT"},
+        {"set", "to set a parameter: hc graph set MODULE.PARAMETER=VALUE"},
+        {"get", "to print parameters: hc graph get"}})
+    if (word == name) return std::string("; ") + hint;
+  return "";
 }
 
 /// A suggestion for an unknown option of a verb.
@@ -120,9 +154,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(footer);
   using namespace tool;
-  for (const auto add : {add_run, add_check, add_doctor, add_frames, add_graph, add_ps, add_top,
-                         add_trace, add_cat, add_info, add_send, add_record, add_play, add_replay,
-                         add_describe, add_new, add_key, add_agent, add_manual})
+  for (const auto add :
+       {add_run,    add_check,    add_doctor, add_frames, add_graph, add_ports,      add_ps,
+        add_top,    add_trace,    add_cat,    add_info,   add_send,  add_record,     add_play,
+        add_replay, add_describe, add_new,    add_key,    add_agent, add_manual})
     add(app);
 
   if (argc == 1) {
@@ -130,6 +165,14 @@ int main(int argc, char** argv) {
     return kUsage;
   }
   offer_python_package();
+  // `hc help VERB` is `hc VERB --help`.
+  std::vector<char*> words(argv, argv + argc + 1);  // and a null pointer
+  if (std::string(argv[1]) == "help") {
+    static char help[] = "--help";
+    words.erase(words.begin() + 1);
+    words.insert(words.begin() + std::min(argc - 1, 2), help);
+  }
+  argv = words.data();
   const std::string first = argv[1];
   const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
   const bool is_verb =
@@ -140,8 +183,9 @@ int main(int argc, char** argv) {
       become_module(first, argv + 1);
       auto known = module_names();
       for (const auto* verb : verbs) known.push_back(verb->get_name());
-      say(hc::format("hc: unknown command or module \"{}\"{}; see hc --help", first,
-                     hc::suggestion(first, known)));
+      const auto hint = meant_command(first);
+      say(hc::format("hc: unknown command or module \"{}\"{}", first,
+                     hint.empty() ? hc::suggestion(first, known) + "; see hc --help" : hint));
       return kUsage;
     }
     app.parse(argc, argv);

@@ -113,38 +113,4 @@ std::unique_ptr<hc::Source> open_port(const RunningGraph& graph, const std::stri
   return value_or_fail(hc::open_tap(graph, port, link_options()));
 }
 
-bool is_running_port(const std::string& text, const std::string& of) {
-  if (!hc::is_port_name(text) || find_running().empty()) return false;
-  const auto dot = text.find('.');
-  const auto name = text.substr(0, dot), port = text.substr(dot + 1);
-  try {
-    const auto described = command_graph(choose_running(of), {"describe " + name});
-    const auto description = hc::parse_description(described.empty() ? "" : described.front());
-    return description && (hc::find_input(*description, port) != nullptr ||
-                           hc::find_named(description->outputs, port) != nullptr);
-  } catch (const Failure&) {
-    return false;  // ambiguous, or the graph of another user
-  }
-}
-
-std::optional<RunningGraph> graph_of_port(const std::string& text, const std::string& of) {
-  if (!of.empty()) return choose_running(of);
-  std::error_code missing;
-  if (!hc::is_port_name(text)) return std::nullopt;
-  if (std::filesystem::exists(text, missing) && !is_running_port(text, of)) return std::nullopt;
-  if (find_running().empty())
-    throw Failure(hc::Code::NotFound, text + ": no such file, and no graph is running here");
-  return choose_running(of);
-}
-
-std::unique_ptr<hc::Source> open_named(const std::string& text, const std::string& of,
-                                       std::uint64_t limit) {
-  const auto graph = graph_of_port(text, of);
-  if (!graph) return open_source(text, limit);
-  auto opened = hc::open_tap(*graph, text, link_options(limit));
-  if (opened) return std::move(*opened);
-  throw Failure(opened.error().code,
-                (of.empty() ? text + ": no such file, and " : "") + opened.error().detail);
-}
-
 }  // namespace tool

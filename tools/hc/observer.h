@@ -51,19 +51,4 @@ std::vector<std::string> command_graph(const RunningGraph& graph,
 /// Opens an output of a running graph. Fails as hc::open_tap() does.
 std::unique_ptr<hc::Source> open_port(const RunningGraph& graph, const std::string& port);
 
-/// Whether a module of a running graph has this port, MODULE.PORT.
-///
-/// @param of  name of the graph; empty: as choose_running(), false if that fails.
-bool is_running_port(const std::string& text, const std::string& of);
-
-/// The running graph of a source MODULE.PORT; nullopt for a URI or a file. A port takes precedence
-/// over a file of the same name, which can be given as ./MODULE.PORT.
-///
-/// @param of  name of the running graph; empty: as choose_running().
-std::optional<RunningGraph> graph_of_port(const std::string& text, const std::string& of);
-
-/// Opens a source: a URI, a file, or MODULE.PORT of a running graph.
-std::unique_ptr<hc::Source> open_named(const std::string& text, const std::string& of,
-                                       std::uint64_t limit);
-
 }  // namespace tool

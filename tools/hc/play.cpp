@@ -13,6 +13,7 @@
 
 #include "common.h"
 #include "verbs.h"
+#include "words.h"
 
 namespace tool {
 namespace {
@@ -21,7 +22,7 @@ using Seconds = std::chrono::duration<double>;
 using MonotonicClock = std::chrono::steady_clock;
 
 struct PlayOptions {
-  std::string file, out = "-", speed = "1";
+  std::string file, of, out = "-", speed = "1";
   bool loop = false;
   double gap = 10, from = 0, to = std::numeric_limits<double>::infinity();
   std::uint64_t limit = kDefaultLimit;
@@ -70,7 +71,7 @@ double parse_speed(const std::string& text) {
 /// Plays the file once; returns false if it must not be repeated: the reader has closed, there was
 /// nothing to play, or it was asked to stop.
 bool play_once(const PlayOptions& options, double speed, hc::Sink& sink, Progress& progress) {
-  const auto place = hc::record::place_of(options.file);
+  const auto place = place_of(options.file, options.of);
   auto reader = open_recording({place}, options.limit);
   std::error_code unknown;
   auto size = static_cast<double>(std::filesystem::file_size(place.path, unknown));
@@ -102,7 +103,7 @@ bool play_once(const PlayOptions& options, double speed, hc::Sink& sink, Progres
 
 void run(const PlayOptions& options) {
   double speed = parse_speed(options.speed);
-  auto sink = open_sink(options.out);
+  auto sink = open_output(options.out);
   Progress progress("hc play " + options.file);
   while (play_once(options, speed, *sink, progress) && options.loop) {
   }
@@ -117,9 +118,12 @@ void run(const PlayOptions& options) {
 void add_play(CLI::App& app) {
   auto options = std::make_shared<PlayOptions>();
   auto* verb = app.add_subcommand("play", "Play a recording back at its own speed");
-  verb->add_option("file", options->file,
-                   "a recording (FILE.mcap?stream=NAME: one stream of it), or -")
+  verb->add_option(
+          "file", options->file,
+          "a recording (FILE.mcap?stream=NAME: one stream of it), a URI, or MODULE.PORT of "
+          "a running graph")
       ->required();
+  add_of(*verb, options->of);
   verb->add_option("--out", options->out, "where messages go")->capture_default_str();
   verb->add_option("--speed", options->speed, "times faster than recorded, or max")
       ->capture_default_str();

@@ -16,8 +16,8 @@
 #include <record/writer.h>
 
 #include "common.h"
-#include "observer.h"
 #include "verbs.h"
+#include "words.h"
 
 namespace tool {
 namespace {
@@ -58,16 +58,12 @@ bool is_recording(const Place& place) {
          (place.kind == Place::Kind::File && std::filesystem::is_regular_file(place.path, missing));
 }
 
-/// Takes the arguments SOURCE FILE, or only FILE as `source`.
-void take_words(const std::string& source, const std::string& file, RecordOptions& options) {
-  options.file = file.empty() ? source : file;
-  if (!file.empty()) options.links.insert(options.links.begin(), source);
+/// Takes the words [SOURCE …] FILE.
+void take_words(const std::vector<std::string>& words, RecordOptions& options) {
+  options.file = words.back();
+  options.links.insert(options.links.begin(), words.begin(), words.end() - 1);
+  check_output(options.file);
   if (!options.links.empty()) return;
-  if (is_running_port(options.file, options.of))
-    throw Failure(hc::Code::Invalid,
-                  hc::format("{} is a port of a running graph: to record it, add an output FILE; "
-                             "for a file of that name, write ./{}",
-                             options.file, options.file));
   if (::isatty(STDIN_FILENO) == 1)
     throw Failure(hc::Code::Invalid,
                   hc::format("nothing to record to {}: give a source before it (a URI, a file or "
@@ -207,14 +203,11 @@ class Recording {
 void add_record(CLI::App& app) {
   auto options = std::make_shared<RecordOptions>();
   auto* verb = app.add_subcommand("record", "Record ports or links to a file");
-  auto words = std::make_shared<std::array<std::string, 2>>();
-  verb->add_option("source", words->front(),
-                   "what to record, as for --in; if it is the only argument, the output file")
+  auto words = std::make_shared<std::vector<std::string>>();
+  verb->add_option("words", *words,
+                   "sources, as for --in, and last the output: FILE.mcap, FOLDER/, or a file "
+                   "of messages; if it has contents, FILE_2 is written instead")
       ->required();
-  verb->add_option(
-      "file", words->back(),
-      "output: FILE.mcap, FOLDER/, or a file of messages; if it has contents, FILE_2 is written "
-      "instead");
   verb->add_option("--in", options->links,
                    "URIs, recordings or MODULE.PORT of a running graph; may be repeated")
       ->allow_extra_args(false);
@@ -231,7 +224,7 @@ void add_record(CLI::App& app) {
   add_count(*verb, options->count);
   add_limit(*verb, options->limit);
   verb->callback([options, words] {
-    take_words(words->front(), words->back(), *options);
+    take_words(*words, *options);
     Recording(*options).run();
   });
 }

@@ -9,21 +9,27 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <tuple>
 
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
 #include <hc/compress/compress.h>
+#include <hc/contract/description.h>
 #include <hc/mtp/text.h>
+#include <hc/os/program.h>
+#include <record/writer.h>
 
 #include "common.h"
 #include "npy.h"
+#include "observer.h"
 #include "verbs.h"
+#include "words.h"
 
 namespace tool {
 namespace {
 
 struct SendOptions {
-  std::string out = "-";
+  std::string out = "-", to, of;
   std::string type = "table", scalar = "f64", encoding, text, image, npy;
   int components = 0;  // 0: the least that the type allows
   std::int32_t width = 0;
@@ -32,6 +38,7 @@ struct SendOptions {
   std::int64_t time = -1;  // -1: now
   std::vector<std::string> numbers;
   bool has_text = false, has_type = false, has_shape = false;  // given on the command line
+  std::vector<hc::PortType> taken;                             // by the input of --to; empty: any
 };
 
 /// The value of a name, or a failure. @param first, last  of all named values.
@@ -63,11 +70,32 @@ hc::Message message_of_text(const SendOptions& options) {
   return std::move(draft).finish();
 }
 
+hc::Message message_of_elements(const hc::Header& header, const std::vector<std::string>& numbers) {
+  if (auto valid = hc::check(header); !valid) throw Failure(valid.error());
+  hc::Draft draft = hc::Draft::make(header);
+  std::byte* number = draft.elements().data();
+  for (const auto& token : numbers) {
+    if (auto parsed = hc::parse_number(token, header.info.scalar, number); !parsed)
+      throw Failure("elements", parsed.error());
+    number += hc::size_of(header.info.scalar);
+  }
+  return std::move(draft).finish();
+}
+
 hc::Message message_of_numbers(const SendOptions& options) {
   hc::Header header;
   header.info.type = type_named(options.type);
   header.info.scalar = named(hc::scalar_of(options.scalar), "scalar", options.scalar,
                              hc::Scalar::U8, hc::Scalar::F64);
+  // Without options, the numbers are what the input takes.
+  const bool is_free = !options.has_type && !options.has_shape;
+  if (const auto* type = is_free && !options.taken.empty() ? &options.taken.front() : nullptr)
+    if (const auto shape = hc::shape_of(*type, options.numbers.size())) {
+      header.info = type->info;
+      header.info.encoding = hc::Encoding::Text;
+      std::tie(header.height, header.width) = *shape;
+      return message_of_elements(header, options.numbers);
+    }
   for (int components = std::max(options.components, 1); components <= 99; ++components) {
     header.info.components = static_cast<std::uint8_t>(components);
     auto error = hc::find_error(header.info);
@@ -88,15 +116,7 @@ hc::Message message_of_numbers(const SendOptions& options) {
                    header.info.components));
   header.width = static_cast<std::int32_t>(width);
   header.height = static_cast<std::int32_t>(height);
-  if (auto valid = hc::check(header); !valid) throw Failure(valid.error());
-  hc::Draft draft = hc::Draft::make(header);
-  std::byte* number = draft.elements().data();
-  for (const auto& token : options.numbers) {
-    if (auto parsed = hc::parse_number(token, header.info.scalar, number); !parsed)
-      throw Failure("elements", parsed.error());
-    number += hc::size_of(header.info.scalar);
-  }
-  return std::move(draft).finish();
+  return message_of_elements(header, options.numbers);
 }
 
 hc::Message message_of_npy(const SendOptions& options) {
@@ -145,10 +165,35 @@ void check(const SendOptions& options) {
     refuse("--scalar, --components and --width are for numbers, not for " + given[0]);
   if (given.size() == 1 && given[0] != "numbers" && given[0] != "--npy" && options.has_type)
     refuse("--type is for numbers and --npy, not for " + given[0]);
+  if (!options.to.empty() && options.header.mode != 0)
+    refuse("--to and --mode exclude each other: messages of a mode come from its task");
 }
 
-void run(const SendOptions& options) {
+/// What an input of a running graph takes; empty: anything.
+std::vector<hc::PortType> types_of(const RunningGraph& graph, const std::string& input) {
+  const auto dot = input.find('.');
+  const auto answer = command_graph(graph, {"describe " + input.substr(0, dot)});
+  const auto description = hc::parse_description(answer.empty() ? "" : answer.front());
+  const auto* port = description ? hc::find_input(*description, input.substr(dot + 1)) : nullptr;
+  return port == nullptr ? std::vector<hc::PortType>() : port->types;
+}
+
+/// The input of --to, as a link, if it is given. Also sets what it takes.
+std::optional<hc::record::Place> find_input(SendOptions& options) {
+  if (options.to.empty()) return std::nullopt;
+  if (!hc::is_port_name(options.to))
+    throw Failure(hc::Code::Invalid, "--to needs MODULE.PORT of a running graph, not \"" +
+                                         options.to + "\"; --out takes files and URIs");
+  const auto graph = choose_running(options.of);
+  hc::record::Place place{hc::record::Place::Kind::Link, {}, {}, {}};
+  place.uri = value_or_fail(hc::feed_uri(graph, options.to, hc::stop_descriptor()));
+  options.taken = types_of(graph, options.to);
+  return place;
+}
+
+void run(SendOptions options) {
   check(options);
+  const auto input = find_input(options);
   hc::Message message = !options.image.empty() ? message_of_image(options)
                         : !options.npy.empty() ? message_of_npy(options)
                         : options.has_text     ? message_of_text(options)
@@ -167,9 +212,15 @@ void run(const SendOptions& options) {
   message.header = header;
   message.header.info.encoding = hc::Encoding::Binary;
   message = value_or_fail(hc::compress(message, encoding), "encoding");
-  auto sink = open_sink(options.out);
-  send(*sink, message, options.out);
-  if (auto closed = sink->close(); !closed) throw Failure(options.out, closed.error());
+  const auto& name = input ? options.to : options.out;
+  if (!options.taken.empty() && std::ranges::none_of(options.taken, [&](const auto& type) {
+        return hc::fits(message.header, type);
+      }))
+    throw Failure(name, hc::misfit(message.header, options.taken.front()));
+  auto sink = input ? value_or_fail(hc::record::open_sink(*input, link_options()), name)
+                    : open_output(options.out);
+  send(*sink, message, name);
+  if (auto closed = sink->close(); !closed) throw Failure(name, closed.error());
 }
 
 }  // namespace
@@ -177,7 +228,9 @@ void run(const SendOptions& options) {
 void add_send(CLI::App& app) {
   auto options = std::make_shared<SendOptions>();
   auto* verb = app.add_subcommand("send", "Send one message: numbers, text, an image, a .npy file");
-  verb->add_option("--out", options->out, "destination")->capture_default_str();
+  auto* out = verb->add_option("--out", options->out, "a URI or a file")->capture_default_str();
+  verb->add_option("--to", options->to, "an input MODULE.PORT of a running graph")->excludes(out);
+  add_of(*verb, options->of);
   verb->add_option("--text", options->text, "send this as a string");
   verb->add_option("--image", options->image, "send an image file");
   verb->add_option("--npy", options->npy, "send a NumPy array");

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -31,8 +32,8 @@ inline void add_count(CLI::App& verb, std::uint64_t& count) {
   verb.add_option("--count", count, "end after this many messages; 0: never")
       ->check(whole_number());
 }
-inline void add_of(CLI::App& verb, std::string& of) {
-  verb.add_option("--of", of, "name of the running graph, if there are several (hc ps)");
+inline CLI::Option* add_of(CLI::App& verb, std::string& of) {
+  return verb.add_option("--of", of, "name of the running graph, if there are several (hc ps)");
 }
 inline void add_source(CLI::App& verb, std::string& uri, std::string& of) {
   verb.add_option("source", uri, "URI, file, or MODULE.PORT of a running graph")
@@ -52,6 +53,7 @@ void add_key(CLI::App& app);
 void add_manual(CLI::App& app);
 void add_new(CLI::App& app);
 void add_play(CLI::App& app);
+void add_ports(CLI::App& app);
 void add_ps(CLI::App& app);
 void add_record(CLI::App& app);
 void add_replay(CLI::App& app);
