@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc graph: draws a graph, and inspects and changes a running one.
+#include <sys/epoll.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
+#include <optional>
 
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
 #include <hc/contract/description.h>
+#include <hc/os/program.h>
 
 #include "common.h"
 #include "drawing.h"
 #include "graph.h"
 #include "observer.h"
 #include "verbs.h"
+#include "words.h"
 
 namespace tool {
 namespace {
@@ -125,6 +130,50 @@ void change(const GraphOptions& options, const std::vector<std::string>& command
     say("hc graph: " + remark);
 }
 
+/// Adds a link and, if it leads to the outside, waits until its module has opened it. If that
+/// fails, removes it and fails.
+/// @param command  "link FROM TO …"
+void link(const RunningGraph& graph, const std::string& from, const std::string& to,
+          const std::string& command) {
+  constexpr std::chrono::seconds kPatience{5};
+  const bool is_inside = hc::is_port_name(from) && hc::is_port_name(to);
+  const std::string& port = hc::is_port_name(from) ? from : to;
+  const auto module = port.substr(0, port.find('.'));
+  const auto loop = value_or_fail(hc::Loop::make());
+  hc::GraphClient client(*loop, graph);
+  std::optional<std::string> failure;  // "": it is open
+  bool is_accepted = false;
+  auto take_state = [&](const hc::GraphState& state, auto) {
+    for (const auto& each : state.links)
+      if (is_accepted && each.from == from && each.to == to &&
+          (each.status.empty() || each.status == hc::kNotConnected))
+        failure.emplace();
+  };
+  auto take_log = [&](const hc::LogLine& line, auto) {
+    const bool is_refusal = line.module == module && line.text.starts_with("command \"link ");
+    if (is_refusal) failure = line.text.substr(line.text.find("\": ") + 3);
+  };
+  auto end = [&] { failure = "the graph has ended"; };
+  if (const auto watched = client.watch({take_state, take_log, end}); !watched)
+    throw Failure(watched.error());
+  client.command({command}, [&](const hc::Result<hc::GraphAnswer>& answer) {
+    is_accepted = answer && answer->is_ok;
+    if (!answer) failure = answer.error().detail;
+    if (answer && !is_accepted) failure = joined(answer->rows, "\n");
+    if (is_accepted && is_inside) failure.emplace();
+  });
+  const auto late = loop->call_at(std::chrono::steady_clock::now() + kPatience, [&] {
+    if (is_accepted) failure = module + " has not opened the link within 5 s";
+  });
+  const auto stopped = value_or_fail(
+      loop->watch(hc::stop_descriptor(), EPOLLIN, [&](auto) { failure = "interrupted"; }));
+  while (!failure)
+    if (const auto turned = loop->turn(); !turned) throw Failure(turned.error());
+  if (failure->empty()) return;
+  if (is_accepted) static_cast<void>(hc::ask(graph, {"unlink " + from + " " + to}));
+  throw Failure(hc::Code::Invalid, *failure);
+}
+
 struct Word {
   std::string name, doc;
 };
@@ -142,9 +191,10 @@ CLI::App* add_verb(CLI::App& verb, GraphOptions& options, const std::string& nam
 /// Adds a verb that sends its words to the running graph: as one command or, with `is_each`, as a
 /// command for each of `more_words`, of which all or none are executed.
 /// @param more_words  any number of further words; without a name: none.
+/// @param is_link  the words are ends of a link.
 void add_change(CLI::App& verb, GraphOptions& options, const std::string& name,
                 const std::string& doc, const std::vector<Word>& words, const Word& more_words = {},
-                bool is_each = false) {
+                bool is_each = false, bool is_link = false) {
   auto given = std::make_shared<std::vector<std::string>>(words.size());
   auto more = std::make_shared<std::vector<std::string>>();
   auto* added = add_verb(verb, options, name, doc);
@@ -152,7 +202,9 @@ void add_change(CLI::App& verb, GraphOptions& options, const std::string& name,
     added->add_option(words[i].name, (*given)[i], words[i].doc)->required();
   if (!more_words.name.empty())
     added->add_option(more_words.name, *more, more_words.doc)->required(is_each);
-  added->callback([&options, name, given, more, is_each] {
+  added->callback([&options, name, given, more, is_each, is_link] {
+    for (auto& word : *given)
+      if (is_link) word = link_end(word);
     std::vector<std::string> commands;
     for (const auto& word : *more)
       if (is_each) commands.push_back(name + " " + word);
@@ -160,6 +212,8 @@ void add_change(CLI::App& verb, GraphOptions& options, const std::string& name,
     std::vector<std::string> line = {name};
     for (const auto* list : {given.get(), more.get()})
       line.insert(line.end(), list->begin(), list->end());
+    if (name == "link")
+      return link(choose_running(options.running), line[1], line[2], joined(line, " "));
     change(options, {joined(line, " ")});
   });
 }
@@ -178,8 +232,8 @@ void add_graph(CLI::App& app) {
   verb->add_option("--svg", options.svg, "write an SVG image to this file (needs Graphviz)");
   verb->add_flag("--dot", options.as_dot, "print the drawing in the DOT language of Graphviz");
   const Word module = {"MODULE", "its name in the graph; there may be several"};
-  const Word from = {"FROM", "an output MODULE.PORT, or a URI"};
-  const Word to = {"TO", "an input MODULE.PORT, or a URI"};
+  const Word from = {"FROM", "an output MODULE.PORT, a URI, or a file"};
+  const Word to = {"TO", "an input MODULE.PORT, a URI, or a file"};
   add_change(*verb, options, "add", "Add a module",
              {{"MODULE", "its name, new in the graph"},
               {"PROGRAM", "a module's program, or the path of any program"}},
@@ -190,8 +244,9 @@ void add_graph(CLI::App& app) {
   add_change(*verb, options, "link", "Add a link, or change its policy", {from, to},
              {"POLICY",
               "a setting of the policy, as KEY=VALUE: keep, rate, burst, memory, timeout, as, "
-              "quality, scale"});
-  add_change(*verb, options, "unlink", "Remove a link", {from, to});
+              "quality, scale"},
+             false, true);
+  add_change(*verb, options, "unlink", "Remove a link", {from, to}, {}, false, true);
   add_change(*verb, options, "set", "Set parameters, all or none", {},
              {"SETTING", "a parameter and its new value, as MODULE.PARAMETER=VALUE"}, true);
   add_change(*verb, options, "stop", "Stop the graph", {});

@@ -158,7 +158,8 @@ void run(RunOptions options) {
   Outbox lines(STDERR_FILENO);
   const bool has_status = !options.quiet && ::isatty(STDERR_FILENO) == 1;
   if (const auto& unlinked = graph.plan->unlinked; !options.record.empty() && !unlinked.empty()) {
-    lines.say("graph: unlinked outputs are not recorded: " + joined(unlinked));
+    lines.say("graph: unlinked outputs are not recorded: " + joined(unlinked) +
+              "; hc record MODULE.PORT FILE records one");
   }
   hc::RunOptions run_options;
   run_options.stop = hc::stop_descriptor();

@@ -233,6 +233,18 @@ std::string json_of(const std::string& port, const std::vector<PathSummary>& sum
          "\n";
 }
 
+/// Takes the words [RECORDING] [MODULE.PORT].
+void take_words(std::vector<std::string> words, TraceOptions& options) {
+  using Kind = hc::record::Place::Kind;
+  if (words.empty()) return;
+  const auto kind = hc::record::place_of(words.front()).kind;
+  if (words.size() == 2 || kind == Kind::Mcap || kind == Kind::Folder) {
+    options.recording = words.front();
+    words.erase(words.begin());
+  }
+  if (!words.empty()) options.port = words.front();
+}
+
 void trace(const TraceOptions& options) {
   if (options.port.empty() && options.perfetto.empty())
     throw Failure(hc::Code::Invalid, "give MODULE.PORT, or --perfetto FILE for all modules");
@@ -266,7 +278,10 @@ void add_trace(CLI::App& app) {
   options->graph.token = hc::graph_token();
   auto* verb = app.add_subcommand(
       "trace", "Show what messages were derived from, and how long each step took");
-  verb->add_option("port", options->port, "MODULE.PORT of a running graph");
+  auto words = std::make_shared<std::vector<std::string>>();
+  verb->add_option("port", *words,
+                   "MODULE.PORT of a running graph; or a recording, and a MODULE.PORT in it")
+      ->expected(0, 2);
   add_of(*verb, options->of);
   verb->add_option("--duration", options->duration, "time to trace a running graph [s]")
       ->check(CLI::Range(0.1, 3600.0));
@@ -278,7 +293,10 @@ void add_trace(CLI::App& app) {
   verb->add_option("--perfetto", options->perfetto,
                    "write all events to this file (ui.perfetto.dev opens it)");
   verb->add_flag("--json", options->json, "print one line of JSON");
-  verb->callback([options] { trace(*options); });
+  verb->callback([options, words] {
+    take_words(*words, *options);
+    trace(*options);
+  });
 }
 
 }  // namespace tool
