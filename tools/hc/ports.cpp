@@ -46,8 +46,8 @@ std::vector<Described> describe_word(const std::string& what) {
   if (!graph.file.ends_with(".toml")) {
     auto known = module_names();
     for (auto& name : shipped_graphs()) known.push_back(std::move(name));
-    throw Failure(hc::Code::NotFound, hc::format("no graph or program \"{}\"{}", what,
-                                                 hc::suggestion(what, known)));
+    throw Failure(hc::Code::NotFound,
+                  hc::format("no graph or program \"{}\"{}", what, hc::suggestion(what, known)));
   }
   std::vector<Described> all;
   for (const auto& module : load_plan("ports", graph).modules)
@@ -59,8 +59,8 @@ std::vector<Described> describe_word(const std::string& what) {
 template <typename Add>
 void each_port(const std::string& module, const hc::Description& description, Add add) {
   const std::string prefix = module.empty() ? "" : module + ".";
-  for (const auto& [kind, ports] : {std::pair("input", &description.inputs),
-                                    std::pair("output", &description.outputs)})
+  for (const auto& [kind, ports] :
+       {std::pair("input", &description.inputs), std::pair("output", &description.outputs)})
     for (std::size_t i = 0; i < ports->size(); ++i) add(prefix, kind, (*ports)[i], i);
 }
 
@@ -107,8 +107,8 @@ void add_ports(CLI::App& app) {
   verb->add_flag("--json", options->json,
                  "a line of JSON for each port: as --describe prints it, and its `kind`");
   verb->callback([options] {
-    const auto all = options->what.empty() ? describe_running(options->of)
-                                           : describe_word(options->what);
+    const auto all =
+        options->what.empty() ? describe_running(options->of) : describe_word(options->what);
     print(options->json ? as_lines(all) : as_table(all));
   });
 }

@@ -303,7 +303,9 @@ class Replay {
     auto steps = steps_of(events);
     // A trace has the machine's moments, which say nothing of a module in the messages' time.
     const std::array by_messages = {std::string("--clock"), std::string("messages")};
-    const bool is_in_their_time = !std::ranges::search(words, by_messages).empty();
+    const auto found =
+        std::search(words.begin(), words.end(), by_messages.begin(), by_messages.end());
+    const bool is_in_their_time = found != words.end();
     const bool is_known = !steps.empty() && !is_in_their_time;
     if (is_known)
       for (const auto& port : recorded_outputs(module)) last_[module.name + "." + port] = -1;

@@ -80,10 +80,11 @@ std::unique_ptr<hc::Source> open_named(const std::string& word, const std::strin
 
 void check_output(const std::string& word) {
   if (is_running_port(word, ""))
-    throw Failure(hc::Code::Invalid,
-                  hc::format("{} is a port of a running graph: to record it, add an output FILE; to "
-                             "send to it, use hc send --to {}; for a file of that name, write ./{}",
-                             word, word, word));
+    throw Failure(
+        hc::Code::Invalid,
+        hc::format("{} is a port of a running graph: to record it, add an output FILE; to "
+                   "send to it, use hc send --to {}; for a file of that name, write ./{}",
+                   word, word, word));
 }
 
 std::unique_ptr<hc::Sink> open_output(const std::string& word) {

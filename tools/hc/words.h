@@ -32,8 +32,8 @@ void check_output(const std::string& word);
 /// Opens what to write to.
 std::unique_ptr<hc::Sink> open_output(const std::string& word);
 
-/// An end of a link for a running graph. A path, which has a `/` or ends as recordings do, becomes a
-/// URI with its absolute path, since the graph may run in another folder.
+/// An end of a link for a running graph. A path, which has a `/` or ends as recordings do, becomes
+/// a URI with its absolute path, since the graph may run in another folder.
 std::string link_end(const std::string& word);
 
 }  // namespace tool

@@ -64,8 +64,8 @@ Status check_feed(const Plan& plan, const std::string& input) {
   if (is_actor(*module, port) || module->exclusive.contains(port))
     return refuse("obeys the task in focus only: send to an input of a task");
   if (const auto actor = actor_behind(plan, *module); !actor.empty())
-    return refuse(hc::format("leads to {}, which obeys the task in focus only, and not through a task",
-                         actor));
+    return refuse(hc::format(
+        "leads to {}, which obeys the task in focus only, and not through a task", actor));
   return {};
 }
 

@@ -49,10 +49,10 @@ TEST(Feed, WhatMovesSomethingMayNot) {
   EXPECT_EQ(refusal(without_task, "filter.in"),
             "filter.in leads to actor.command, which obeys the task in focus only, and not "
             "through a task");
-  EXPECT_EQ(refusal("[modules.router]\n[modules.actor]\ninputs.command = \"router.out\"\n",
-                    "router.in"),
-            "router.in leads to actor.command, which obeys the task in focus only, and not "
-            "through a task");
+  EXPECT_EQ(
+      refusal("[modules.router]\n[modules.actor]\ninputs.command = \"router.out\"\n", "router.in"),
+      "router.in leads to actor.command, which obeys the task in focus only, and not "
+      "through a task");
 }
 
 TEST(Feed, WhatDecidesOnTheFocusMayNot) {
@@ -66,8 +66,7 @@ TEST(Feed, WhatDecidesOnTheFocusMayNot) {
 }
 
 TEST(Feed, WhatIsNoInputIsNamed) {
-  EXPECT_EQ(refusal(kTask, "filter.inn"),
-            "no input \"filter.inn\", did you mean \"filter.in\"?");
+  EXPECT_EQ(refusal(kTask, "filter.inn"), "no input \"filter.inn\", did you mean \"filter.in\"?");
   EXPECT_EQ(refusal(kTask, "eye.left"), "no input \"eye.left\"");
   EXPECT_EQ(refusal("[modules.seer]\n", "seer.in"), "");
   EXPECT_EQ(refusal("[modules.fixed]\n", "fixed.any"),
