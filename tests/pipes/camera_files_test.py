@@ -136,7 +136,7 @@ write("right.avi", 10, 3)"""
         self.draw(
             """
 for kind in ("%s"):
-    cv2.imwrite("grey." + kind, numpy.full((16, 16, 3), 90, numpy.uint8))"""
+    cv2.imwrite("grey." + kind, numpy.full((64, 64, 3), 90, numpy.uint8))"""
             % '", "'.join(kinds)
         )
         for kind in kinds:
