@@ -155,9 +155,9 @@ int main(int argc, char** argv) {
   app.footer(footer);
   using namespace tool;
   for (const auto add :
-       {add_run,    add_check,    add_doctor, add_frames, add_graph, add_ports,  add_ps,
-        add_top,    add_trace,    add_cat,    add_info,   add_send,  add_record, add_play,
-        add_replay, add_describe, add_new,    add_key,    add_agent, add_manual})
+       {add_run,    add_check,    add_doctor, add_frames, add_graph, add_ports,      add_ps,
+        add_top,    add_trace,    add_cat,    add_info,   add_send,  add_record,     add_play,
+        add_replay, add_describe, add_new,    add_key,    add_agent, add_completion, add_manual})
     add(app);
 
   if (argc == 1) {
@@ -179,6 +179,10 @@ int main(int argc, char** argv) {
       std::ranges::any_of(verbs, [&](const auto* verb) { return verb->get_name() == first; });
   const std::string command = is_verb ? "hc " + first : "hc";
   try {
+    if (first == "complete" && argc > 3) {  // hc complete -- WORD …, which may be any words
+      complete(app, {argv + 3, argv + argc});
+      return 0;
+    }
     if (!is_verb && !first.empty() && first[0] != '-') {
       become_module(first, argv + 1);
       auto known = module_names();

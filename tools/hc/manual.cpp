@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc completion, hc man: generated from the options of all verbs.
+// hc man: generated from the options of all verbs.
 
 #include <hc/base/format.h>
 
@@ -11,34 +11,6 @@ namespace {
 
 std::vector<const CLI::App*> verbs_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
-}
-
-/// The words that may follow a verb: options and verbs.
-std::string words_of(const CLI::App& verb) {
-  std::vector<std::string> words;
-  for (const auto* each : verbs_of(verb)) words.push_back(each->get_name());
-  for (const auto* option : verb.get_options())
-    for (const auto& name : option->get_lnames()) words.push_back("--" + name);
-  return joined(words, " ");
-}
-
-std::string bash_completion(const CLI::App& app) {
-  std::string text =
-      "# bash completion for hc; source it, or put it into /etc/bash_completion.d\n"
-      "_hc() {\n"
-      "  local word=${COMP_WORDS[COMP_CWORD]} words=\n"
-      "  case ${COMP_WORDS[1]} in\n";
-  for (const auto* verb : verbs_of(app))
-    text += hc::format("    {}) words='{}' ;;\n", verb->get_name(), words_of(*verb));
-  return text +
-         "  esac\n"
-         "  [ \"$COMP_CWORD\" = 1 ] && words=\"" +
-         words_of(app) +
-         " $(ls \"$(dirname \"$(command -v hc)\")/../libexec/hypercolumn\" 2>/dev/null)\"\n"
-         "  # shellcheck disable=SC2207 # words have no spaces\n"
-         "  COMPREPLY=($(compgen -W \"$words\" -- \"$word\") $(compgen -f -- \"$word\"))\n"
-         "}\n"
-         "complete -o filenames -F _hc hc\n";
 }
 
 /// Escapes text for roff.
@@ -79,8 +51,6 @@ std::string man_page(const CLI::App& app) {
 }  // namespace
 
 void add_manual(CLI::App& app) {
-  auto* completion = app.add_subcommand("completion", "Print a completion script for bash");
-  completion->callback([&app] { print(bash_completion(app)); });
   auto* man = app.add_subcommand("man", "Print the manual page of hc");
   man->callback([&app] { print(man_page(app)); });
 }

@@ -41,9 +41,14 @@ inline void add_source(CLI::App& verb, std::string& uri, std::string& of) {
   add_of(verb, of);
 }
 
+/// Prints the words that may stand where the last one is, a line each, for shells.
+/// @param words  of the command line, after `hc`; the last one may be empty.
+void complete(const CLI::App& app, const std::vector<std::string>& words);
+
 void add_agent(CLI::App& app);
 void add_cat(CLI::App& app);
 void add_check(CLI::App& app);
+void add_completion(CLI::App& app);
 void add_describe(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_frames(CLI::App& app);
