@@ -120,10 +120,6 @@ class Watching(Graphs):
         self.assertIn('no module "nosuch"', self.hc("graph restart camera nosuch" + of, 2))
         self.assertIn("not expected: more", self.hc("graph stop more" + of, 2))
         self.assertIn("stop excludes graph", self.hc("graph g.toml stop" + of, 2))
-        self.assertIn(
-            'no module "out"; a file is "file:out.mtp"',
-            self.hc("graph link camera.left out.mtp" + of, 2),
-        )
 
     def test_graphs_of_one_name_are_listed_as_of_takes_them(self):
         name, one = self.run_named("twin")
@@ -141,9 +137,7 @@ class Watching(Graphs):
         name, _ = self.run_named("ports")
         self.environment["HC_GRAPH"] = name
         self.shell("hc record camera.left", 2)
-        self.assertIn(
-            "camera.left is a port of a running graph: to record it, add an output FILE", self.err
-        )
+        self.assertIn("camera.left is a port of a running graph", self.err)
         self.assertFalse(os.path.exists(self.path("camera.left")))
         self.shell("hc record brightness.mean y.mtp --count 3")
         self.assertEqual(self.shell("hc cat y.mtp").count("table"), 3)
@@ -153,8 +147,8 @@ class Watching(Graphs):
         self.assertIn("\n5 messages", self.shell("hc info camera.left --count 5"))
         self.shell("hc view camera.left --save v.png --count 2")
         self.assertTrue(os.path.exists(self.path("v.png")))
-        self.shell("hc info z.mtp", 2)
-        self.assertIn('z.mtp: no such file, and no port "z.mtp"', self.err)
+        self.shell("hc info z.nothing", 2)
+        self.assertIn('z.nothing: no such file, and no port "z.nothing"', self.err)
 
     def test_a_port_is_observed_by_name_and_nothing_changes(self):
         name, process = self.run_named("observed")

@@ -164,8 +164,7 @@ Words completions(const CLI::App& app, const Words& words) {
   if (before == "--in" || name == "cat" || name == "info" || name == "play" || name == "record" ||
       name == "trace")
     if (!word.starts_with("-")) return Running(of).outputs;
-  if (verb == nullptr)
-    return word.starts_with("-") ? options_of_module(name) : Running(of).outputs;
+  if (verb == nullptr) return word.starts_with("-") ? options_of_module(name) : Running(of).outputs;
   if (word.starts_with("-")) return options_of(inner == nullptr ? *verb : *inner);
   if (inner != nullptr && words.size() > 2)
     return name == "graph" ? words_of_graph(words[1], words.size() - 2, Running(of)) : Words();
@@ -186,8 +185,9 @@ void add_completion(CLI::App& app) {
   completion->add_option("shell", *shell, "bash, zsh or fish")
       ->capture_default_str()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
-  completion->callback(
-      [shell] { print(*shell == "bash" ? kBash : *shell == "zsh" ? kZsh : kFish); });
+  completion->callback([shell] {
+    print(*shell == "bash" ? kBash : *shell == "zsh" ? kZsh : kFish);
+  });
 }
 
 void complete(const CLI::App& app, const std::vector<std::string>& words) {

@@ -142,32 +142,40 @@ void link(const RunningGraph& graph, const std::string& from, const std::string&
   const auto loop = value_or_fail(hc::Loop::make());
   hc::GraphClient client(*loop, graph);
   std::optional<std::string> failure;  // "": it is open
-  bool is_accepted = false;
+  bool is_answered = false, is_accepted = false;
   auto take_state = [&](const hc::GraphState& state, auto) {
     for (const auto& each : state.links)
-      if (is_accepted && each.from == from && each.to == to &&
+      if (is_accepted && !failure && each.from == from && each.to == to &&
           (each.status.empty() || each.status == hc::kNotConnected))
         failure.emplace();
   };
   auto take_log = [&](const hc::LogLine& line, auto) {
-    const bool is_refusal = line.module == module && line.text.starts_with("command \"link ");
-    if (is_refusal) failure = line.text.substr(line.text.find("\": ") + 3);
+    if (line.module != module || failure) return;
+    if (line.text.starts_with("command \"link "))
+      failure = line.text.substr(line.text.find("\": ") + 3);
+    // A file that cannot be written ends no module.
+    if (line.level == hc::Level::Error &&
+        line.text.find(to.substr(to.find(':') + 1)) != std::string::npos)
+      failure = line.text;
   };
   auto end = [&] { failure = "the graph has ended"; };
   if (const auto watched = client.watch({take_state, take_log, end}); !watched)
     throw Failure(watched.error());
   client.command({command}, [&](const hc::Result<hc::GraphAnswer>& answer) {
+    is_answered = true;
     is_accepted = answer && answer->is_ok;
     if (!answer) failure = answer.error().detail;
     if (answer && !is_accepted) failure = joined(answer->rows, "\n");
-    if (is_accepted && is_inside) failure.emplace();
+    if (is_accepted && is_inside && !failure) failure.emplace();
   });
   const auto late = loop->call_at(std::chrono::steady_clock::now() + kPatience, [&] {
     if (is_accepted) failure = module + " has not opened the link within 5 s";
   });
-  const auto stopped = value_or_fail(
-      loop->watch(hc::stop_descriptor(), EPOLLIN, [&](auto) { failure = "interrupted"; }));
-  while (!failure)
+  const auto stopped = value_or_fail(loop->watch(hc::stop_descriptor(), EPOLLIN, [&](auto) {
+    is_answered = true;
+    failure = "interrupted";
+  }));
+  while (!failure || !is_answered)
     if (const auto turned = loop->turn(); !turned) throw Failure(turned.error());
   if (failure->empty()) return;
   if (is_accepted) static_cast<void>(hc::ask(graph, {"unlink " + from + " " + to}));
