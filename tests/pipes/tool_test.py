@@ -372,7 +372,7 @@ class Tool(Pipes):
         self.shell("hc record r.mtp copy.mtp && cmp r.mtp copy.mtp")
         self.shell("hc record --in r.mtp other.mtp && cmp r.mtp other.mtp")
         self.shell("hc record r.mtp copy.mtp three.mcap")
-        self.assertRegex(self.shell("hc info three.mcap"), r"\nr +.*\ncopy +")
+        self.assertRegex(self.shell("hc info three.mcap"), r"\ncopy +10 .*(\n.*)*\nr +10 ")
 
     def test_record_does_not_wait_for_messages_from_a_terminal(self):
         # `script` runs a command with a terminal at its standard input.
