@@ -289,7 +289,7 @@ void Page::take_command(std::uint64_t number, const std::string& command) {
     if (const auto problem = stop(asked, words)) answer(asked, *problem);
     return;
   }
-  if (words[0] == "observe" || words[0] == "reply")
+  if (words[0] == "observe" || words[0] == "feed" || words[0] == "reply")
     return answer(asked, {"no command \"" + words[0] + "\"; streams are at /streams"});
   if (session.right < web::Right::Operate && words[0] != "describe")
     return answer(asked, {lacks(session.right, web::Right::Operate)});
