@@ -42,8 +42,8 @@ class Ports(Graphs):
         self.name, self.process = self.run_named("words")
         self.environment["HC_GRAPH"] = self.name
 
-    def refused(self, command, reason):
-        self.shell(command, 2)
+    def refused(self, command, reason, status=2):
+        self.shell(command, status)
         self.assertIn(reason, self.err)
 
     def test_a_port_is_never_taken_for_a_file(self):
@@ -156,7 +156,7 @@ class Ports(Graphs):
         self.assertEqual(len(lines), table.count("\n"))
         self.assertRegex(self.shell("hc ports brightness"), "^image +in   .*\nmean +out  table")
         self.assertRegex(self.shell("hc ports depth.toml"), r"\ndepth.depth +out  ")
-        self.refused("hc ports brigthness", 'no graph or program "brigthness", did you mean')
+        self.refused("hc ports brigthness", 'no graph or program "brigthness", did you mean', 1)
 
     def complete(self, *words):
         command = " ".join("'%s'" % word for word in words)
