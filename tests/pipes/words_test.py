@@ -156,6 +156,9 @@ class Ports(Graphs):
         self.assertEqual(len(lines), table.count("\n"))
         self.assertRegex(self.shell("hc ports brightness"), "^image +in   .*\nmean +out  table")
         self.assertRegex(self.shell("hc ports depth.toml"), r"\ndepth.depth +out  ")
+        # Neither /usr/bin/head, nor the graph depth.toml.
+        self.assertRegex(self.shell("hc ports head"), "^workspace.bids +in  ")
+        self.assertRegex(self.shell("hc ports depth"), r"\ndepth +out  ")
         self.refused("hc ports brigthness", 'no graph or program "brigthness", did you mean', 1)
 
     def complete(self, *words):

@@ -37,14 +37,14 @@ std::vector<Described> describe_running(const std::string& of) {
   return all;
 }
 
-/// @param what  a program, or else a graph.
+/// @param what  a module of ours, a graph, or else another program, such as /usr/bin/head.
 std::vector<Described> describe_word(const std::string& what) {
-  const auto program = what.ends_with(".toml") ? "" : find_program(what);
-  if (!program.empty()) return {{"", value_or_fail(hc::describe_program(program), what)}};
+  auto known = module_names();
   hc::LoadOptions graph;
   graph.file = find_graph(what);
-  if (!graph.file.ends_with(".toml")) {
-    auto known = module_names();
+  if (std::ranges::find(known, what) != known.end() || !graph.file.ends_with(".toml")) {
+    const auto program = find_program(what);
+    if (!program.empty()) return {{"", value_or_fail(hc::describe_program(program), what)}};
     for (auto& name : shipped_graphs()) known.push_back(std::move(name));
     throw Failure(hc::Code::NotFound,
                   hc::format("no graph or program \"{}\"{}", what, hc::suggestion(what, known)));
