@@ -159,7 +159,7 @@ class Ports(Graphs):
         # Neither /usr/bin/head, nor the graph depth.toml.
         self.assertRegex(self.shell("hc ports head"), "^workspace.bids +in  ")
         self.assertRegex(self.shell("hc ports depth"), r"\ndepth +out  ")
-        self.refused("hc ports brigthness", 'no graph or program "brigthness", did you mean', 1)
+        self.refused("hc ports brightniss", 'no graph or program "brightniss", did you mean', 1)
 
     def complete(self, *words):
         command = " ".join("'%s'" % word for word in words)
