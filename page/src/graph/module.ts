@@ -37,6 +37,8 @@ class ModuleView {
   readonly element: HTMLElement;
   private description?: Description;
   private parameterViews?: Map<string, ParameterView>;
+  /** Whether the description has arrived, or there is none: a control is not replaced in use. */
+  private isDescribed = false;
   private readonly failures = new Failures();
   private portsKey = "";
   private readonly ends: (() => void)[] = [];
@@ -74,9 +76,10 @@ class ModuleView {
   private async askDescription(): Promise<void> {
     const { server } = this.host;
     const description = await describe(server, this.name);
-    if (!description || this.description) return;
+    if (this.description || (!description && this.isDescribed)) return;
+    this.isDescribed = true;
     this.description = description;
-    this.summary.textContent = description.summary ?? "";
+    this.summary.textContent = description?.summary ?? "";
     this.parameterViews = undefined;
     this.portsKey = "";
     if (server.state) this.update(server.state);
@@ -120,6 +123,7 @@ class ModuleView {
   }
 
   private updateParameters(module: GraphModule): void {
+    if (!this.isDescribed) return;
     if (!this.parameterViews) {
       const described = this.description?.parameters ?? [];
       const known = new Map(described.map((each) => [each.name, each]));
