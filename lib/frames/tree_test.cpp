@@ -192,6 +192,7 @@ TEST(Tree, WhatIsNotFedIsWhereItsParentIsAndWhatIsSilentWhereItWas) {
 
 TEST(Tree, MayHoldSeveral) {
   Tree tree = head_tree();
+  for (const char* name : {"map", "landmark"}) ASSERT_TRUE(tree.add(name));
   ASSERT_TRUE(tree.fix("map", "landmark", shift(1)));
   EXPECT_TRUE(tree.nearest("map", "landmark", kTime));
   EXPECT_FALSE(tree.nearest("world", "landmark", kTime));

@@ -156,7 +156,7 @@ class Read(Pipes):
         self.assertEqual(count_said(), 2)
 
     def test_a_language_that_is_missing_is_one_line(self):
-        self.shell("hc read --language no_such --in image=/dev/null", status=1)
+        self.shell("hc read --language no_such --in image=/dev/null", status=2)
         self.assertEqual(len(self.err.splitlines()), 1, self.err)
         self.assertIn("Tesseract has no language no_such", self.err)
 
