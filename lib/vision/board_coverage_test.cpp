@@ -22,7 +22,7 @@ BoardView view_at(const StereoCalibration& cameras, const cv::Vec3d& centre,
   return view_of(kTestBoard, BoardPose::at(kTestBoard, turn, centre), cameras);
 }
 
-/// Somebody who does what the advice says.
+/// The next view of a person that follows the advice.
 BoardView view_by(const std::string& advice, const StereoCalibration& cameras) {
   const std::map<std::string, cv::Vec3d> turns = {{"to the left (the left", {0, 0.5, 0}},
                                                   {"to the right (the right", {0, -0.5, 0}},

@@ -148,7 +148,7 @@ TEST(Calibration, RefusesWhatDoesNotDetermineTheCameras) {
   EXPECT_FALSE(calibrate(pairs.views, kHeld, pairs.size));
 }
 
-/// @param wanted  a part of what is said.
+/// @param wanted  a part of the error text.
 void expect_undetermined(const StereoCalibration& truth, const Hand& hand,
                          const std::string& wanted, int count = 15) {
   const auto pairs = made_up(truth, count, 0.1, hand);

@@ -78,9 +78,8 @@ class LiveCameras {
   LiveCameras(const LiveCameras&) = delete;
   LiveCameras& operator=(const LiveCameras&) = delete;
 
-  /// Waits for the next image or pair; nothing on timeout. What a reader cannot keep up with is
-  /// dropped, but not what has come in a burst.
-  /// Errors: without `reopen`, those of a camera.
+  /// Waits for the next image or pair; nothing on timeout. Images are dropped for a slow reader,
+  /// but not those of a burst. Errors: without `reopen`, those of a camera.
   hc::Result<std::optional<Taken>> next(std::chrono::milliseconds timeout);
   /// Applies settings to all cameras, if they changed.
   void adjust(const Adjustment& adjustment);

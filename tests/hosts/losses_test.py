@@ -64,7 +64,7 @@ class Losses(HostsTest):
             messages, lambda state: self.module(state, "camera")["status"] == "waiting"
         )
         self.assertIn("host h1 is not connected", self.module(waits, "camera")["detail"])
-        # The graph can be changed meanwhile; what is there counts when it is back.
+        # The graph can be changed meanwhile; the host gets the changes when it is back.
         self.assertEqual(self.ask(process, "set camera.rate=20", "restart brightness"), ["ok"])
         host.cut(False)
         state = self.flows(messages, state["links"][0]["messages"])

@@ -86,7 +86,7 @@ void Dialer::lost(TimePoint now, bool was_of_use, std::string why,
   next_try_ = was_of_use ? now : std::min(now + draw_pause(backoff_, random_), give_up_);
 }
 
-/// Begins to look up the peer's name, or takes what was found. Whether there are addresses to try.
+/// Begins to look up the name of the peer, or takes the result. Returns whether it has an address.
 bool Dialer::has_addresses(TimePoint now) {
   if (!peer_.find) return true;
   std::optional<Found> found;
