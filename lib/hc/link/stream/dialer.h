@@ -87,7 +87,7 @@ class Dialer {
   /// up; -1: neither.
   [[nodiscard]] int descriptor() const;
   /// The poll events that the attempt or lookup waits for.
-  [[nodiscard]] short events() const { return attempt_ ? events_ : POLLIN; }
+  [[nodiscard]] short events() const { return attempt_ ? events_ : short{POLLIN}; }
   /// When to call dial() again at the latest.
   [[nodiscard]] TimePoint due() const;
   /// Whether all addresses have been tried and have refused: no peer listens.
