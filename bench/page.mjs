@@ -77,8 +77,7 @@ try {
   await way.selectOption("left");
 
   // Motion to photon: pushes of the stick while the task is to point, then turns of a person's head.
-  await page.getByRole("button", { name: "Take the seat" }).click();
-  await page.locator('[data-task="point"]').click();
+  await page.getByRole("button", { name: "Take the seat" }).click(); // which chooses to point
   await inFocus(page, "point");
   await wait(2000);
   await page.locator(".seat").focus();
