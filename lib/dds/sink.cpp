@@ -133,6 +133,11 @@ class DdsSink final : public Sink {
     give_up();
   }
 
+  [[nodiscard]] bool is_behind() const override {
+    const std::lock_guard lock(mutex_);
+    return !queue_.empty();
+  }
+
   [[nodiscard]] Traffic traffic() const override {
     const std::lock_guard lock(mutex_);
     return traffic_;

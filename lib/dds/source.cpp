@@ -248,7 +248,7 @@ Result<std::unique_ptr<Source>> open_source(const Uri& uri, const LinkOptions& o
   auto wait = HC_TRY(number_option(uri, "wait", 0));
   auto reconnect = HC_TRY(number_option(uri, "reconnect", 0));
   Policy unpaced = policy;
-  unpaced.rate = 0;
+  unpaced.rate = unpaced.bandwidth = 0;
   auto source = std::make_unique<DdsSource>(unpaced, options, std::chrono::seconds(wait),
                                             std::chrono::seconds(reconnect));
   HC_TRY(source->begin(place));

@@ -12,11 +12,12 @@ struct Traffic {
   std::uint64_t messages = 0;
   /// As on the wire; without one, the elements (inproc), or the elements and the header (shm).
   std::uint64_t bytes = 0;
-  /// Messages delayed by `rate`: sent later, or also counted as dropped.
+  /// Messages delayed by `rate` or `bandwidth`: sent later, or also counted as dropped.
   std::uint64_t delayed = 0;
   /// Messages dropped because a newer one arrived while the reader was slow (`keep`).
   std::uint64_t dropped_newer = 0;
-  /// Messages dropped because a newer one arrived while they were delayed (`rate`).
+  /// Messages dropped because a newer one arrived while they were delayed (`rate`, `bandwidth`), or
+  /// nothing had changed (`idle_rate`).
   std::uint64_t throttled = 0;
   /// Messages dropped because the memory of the link was used up (`memory`).
   std::uint64_t dropped_memory = 0;

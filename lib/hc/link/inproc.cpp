@@ -132,6 +132,11 @@ class InprocSink final : public Sink {
     return {};
   }
 
+  [[nodiscard]] bool is_behind() const override {
+    std::lock_guard lock(channel_->mutex);
+    return !channel_->messages.empty();
+  }
+
   [[nodiscard]] Traffic traffic() const override {
     std::lock_guard lock(channel_->mutex);
     Traffic all = channel_->losses;

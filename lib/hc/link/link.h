@@ -123,6 +123,10 @@ class Sink {
   /// afterwards.
   virtual void abandon() {}
 
+  /// Whether a message has not been handed over completely: its pace, the network or the reader is
+  /// slower than what is sent. False for memory that readers share.
+  [[nodiscard]] virtual bool is_behind() const { return false; }
+
   /// What send() has accepted so far; a message to several readers counts once.
   [[nodiscard]] virtual Traffic traffic() const = 0;
 

@@ -11,24 +11,25 @@ namespace {
 class PacedSource final : public Source {
  public:
   PacedSource(std::unique_ptr<Source> source, const Policy& policy, std::unique_ptr<Loop> loop)
-      : source_(std::move(source)), pace_(policy.rate, policy.burst), loop_(std::move(loop)) {}
+      : source_(std::move(source)), pace_(policy), loop_(std::move(loop)) {}
 
   Result<Got> take(Message& message) override {
     // The callbacks do nothing; this re-arms the descriptor for events from now on.
     HC_TRY(loop_->turn(std::chrono::milliseconds(0)));
     const auto now = std::chrono::steady_clock::now();
-    if (auto ready = pace_.ready_at(now); ready > now) {
+    if (auto ready = pace_.ready_at(now, 1); ready > now) {
       message = {};
       if (!timer_) hold(ready);
       return Got::Nothing;
     }
     const bool was_held = static_cast<bool>(timer_);
     HC_TRY(watch());
-    const auto overtaken = source_->traffic().dropped_newer;
+    const auto before = source_->traffic();
     auto got = source_->take(message);
-    if (was_held) overtaken_ += source_->traffic().dropped_newer - overtaken;
+    const auto after = source_->traffic();
+    if (was_held) overtaken_ += after.dropped_newer - before.dropped_newer;
     if (!got || *got != Got::Message) return got;
-    pace_.take(now);
+    pace_.take(now, after.bytes - before.bytes);
     if (was_held) ++delayed_;
     return got;
   }
@@ -65,8 +66,8 @@ class PacedSource final : public Source {
   }
 
   std::unique_ptr<Source> source_;
-  TokenBucket pace_;
-  std::uint64_t overtaken_ = 0, delayed_ = 0;  // messages, because of the rate
+  Pace pace_;
+  std::uint64_t overtaken_ = 0, delayed_ = 0;  // messages, because of the pace
   std::unique_ptr<Loop> loop_;
   Loop::Handle socket_, wake_;  // the source's descriptors, while a message may be taken
   Loop::Handle timer_;          // while none may

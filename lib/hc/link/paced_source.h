@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Limits the rate of a link at its reader, for writers that cannot because they write into memory
+// Limits the pace of a link at its reader, for writers that cannot because they write into memory
 // shared by all readers. Internal.
 
 #include <memory>
@@ -10,10 +10,10 @@
 
 namespace hc::internal {
 
-/// A source that passes the messages of `source` on at the rate of `policy`. Messages overtaken
+/// A source that passes the messages of `source` on at the pace of `policy`. Messages overtaken
 /// meanwhile count as Traffic::throttled, delayed ones as Traffic::delayed.
 ///
-/// @returns  `source` itself if there is no rate. Errors: System.
+/// @returns  `source` itself if it is not limited. Errors: System.
 Result<std::unique_ptr<Source>> make_paced(std::unique_ptr<Source> source, const Policy& policy);
 
 }  // namespace hc::internal

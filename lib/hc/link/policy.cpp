@@ -2,9 +2,12 @@
 #include <hc/link/policy.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <tuple>
 #include <utility>
+
+#include <hc/base/text.h>
 
 namespace hc::internal {
 
@@ -26,12 +29,36 @@ Result<Policy> parse_policy(const Uri& uri) {
         HC_TRY(number_option(uri, key, default_value, {1, TokenBucket::kMost, has_units}));
     *value = static_cast<std::uint64_t>(number);
   }
+  if (const auto bandwidth = uri.option("bandwidth", ""); !bandwidth.empty())
+    policy.bandwidth = HC_TRY(parse_bandwidth(bandwidth));
   constexpr std::int64_t kLongest = 86'400;  // [s]
   const auto timeout = HC_TRY(number_option(uri, "timeout", 0, {0, kLongest}));
   policy.timeout = std::chrono::seconds(timeout);
   if (policy.rate == 0 && !uri.option("burst", "").empty())
     return Error{Code::Invalid, "option burst needs rate"};
   return policy;
+}
+
+Result<std::uint64_t> parse_bandwidth(std::string_view text) {
+  constexpr double kLeast = 1e3, kMost = 4e9;  // [byte/s]
+  constexpr std::string_view kPrefixes = "kMG";
+  const auto digits = text.substr(0, text.find_first_not_of("0123456789."));
+  auto unit = text.substr(digits.size());
+  if (unit.starts_with(' ')) unit.remove_prefix(1);
+  double number = 0, factor = 1;
+  if (const auto prefix = kPrefixes.find(unit.substr(0, 1)); !unit.empty() && prefix < 3) {
+    factor = std::pow(1000, prefix + 1);
+    unit.remove_prefix(1);
+  }
+  if (unit == "bit/s") factor /= 8;
+  const bool is_unit = unit == "bit/s" || unit == "B/s" || (unit.empty() && factor == 1);
+  if (!is_unit || !read_number(digits, number) || number * factor < kLeast ||
+      number * factor > kMost)
+    return Error{Code::Invalid,
+                 "option bandwidth is from 1 kB/s to 4 GB/s, as in 500 kB/s, 2 MB/s "
+                 "or 5 Mbit/s, not \"" +
+                     std::string(text) + '"'};
+  return static_cast<std::uint64_t>(number * factor);
 }
 
 // `rate` parts of 1e-9 token are added per nanosecond, which is exact.
@@ -51,17 +78,21 @@ void TokenBucket::fill(TimePoint now) {
   level_ = fills ? capacity_ : level_ + elapsed * rate_;
 }
 
-TimePoint TokenBucket::ready_at(TimePoint now) {
+TimePoint TokenBucket::ready_at(TimePoint now, std::uint64_t amount) {
   if (rate_ == 0) return now;
   fill(now);
-  if (level_ >= kTick) return now;
-  return now + std::chrono::nanoseconds((kTick - level_ + rate_ - 1) / rate_);
+  const auto wanted = static_cast<std::int64_t>(std::min(amount, kMost)) * kTick;
+  const auto missing = std::min(wanted, capacity_) - level_;
+  if (missing <= 0) return now;
+  return now + std::chrono::nanoseconds((missing - 1) / rate_ + 1);
 }
 
-void TokenBucket::take(TimePoint now) {
+void TokenBucket::take(TimePoint now, std::uint64_t amount) {
   if (rate_ == 0) return;
   fill(now);
-  level_ -= kTick;
+  // Not below -kMost tokens, so that no sum overflows; a message has less than 4 GB.
+  level_ -= static_cast<std::int64_t>(std::min(amount, kMost)) * kTick;
+  level_ = std::max(level_, -static_cast<std::int64_t>(kMost) * kTick);
 }
 
 bool Patience::waits(std::uint64_t taken, TimePoint now) {

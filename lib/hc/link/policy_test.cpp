@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hc/link/queue.h>
@@ -148,6 +150,69 @@ std::vector<int> left_of(SendQueue<int>& queue, int count, std::uint64_t bytes, 
   return left;
 }
 
+TEST(Policy, ABandwidthIsInBytesOrBits) {
+  for (const auto& [text, bytes] :
+       std::vector<std::pair<std::string, std::uint64_t>>{{"2 MB/s", 2'000'000},
+                                                          {"2MB/s", 2'000'000},
+                                                          {"500 kB/s", 500'000},
+                                                          {"0.5 MB/s", 500'000},
+                                                          {"5 Mbit/s", 625'000},
+                                                          {"8kbit/s", 1000},
+                                                          {"4 GB/s", 4'000'000'000},
+                                                          {"1500", 1500}}) {
+    const auto bandwidth = parse_bandwidth(text);
+    ASSERT_TRUE(bandwidth) << bandwidth.error().detail;
+    EXPECT_EQ(*bandwidth, bytes) << text;
+  }
+  for (const char* text : {"", "2M", "2 MB", "MB/s", "-1 MB/s", "1e9", "999", "5 GB/s", "2 mb/s",
+                           "2 MB/s ", "1.2.3 MB/s", "nan", "99999999999999999999 B/s"})
+    EXPECT_FALSE(parse_bandwidth(text)) << text;
+  EXPECT_EQ(policy_of("?bandwidth=2M").error().detail,
+            "option bandwidth is from 1 kB/s to 4 GB/s, as in 500 kB/s, 2 MB/s or 5 Mbit/s, not "
+            "\"2M\"");
+  EXPECT_TRUE(policy_of("?bandwidth=2MB/s")->is_paced());
+}
+
+TEST(Pace, NoSecondHasMoreThanTheBandwidthAndABurst) {
+  Pace pace(*policy_of("?bandwidth=1MB/s"));
+  constexpr std::uint64_t kSize = 1000;
+  std::vector<TimePoint> passed;
+  for (auto now = kBegin; passed.size() < 5000;) {
+    pace.take(now, kSize);
+    passed.push_back(now);
+    now = std::max(now, pace.ready_at(now, kSize));
+    if (passed.size() == 2500) now += seconds(10);  // a pause does not add up
+  }
+  std::size_t most = 0, begin = 0;
+  for (std::size_t i = 0; i < passed.size(); ++i) {
+    while (passed[i] - passed[begin] >= seconds(1)) ++begin;
+    most = std::max(most, i - begin + 1);
+  }
+  EXPECT_GT(most * kSize, 999'000U);
+  EXPECT_LE(most * kSize, 1'027'000U);
+}
+
+TEST(Pace, AMessageLargerThanABurstPassesAlone) {
+  Pace pace(*policy_of("?bandwidth=1MB/s"));
+  EXPECT_EQ(pace.ready_at(kBegin, 5'000'000), kBegin);
+  pace.take(kBegin, 5'000'000);
+  EXPECT_EQ(pace.ready_at(kBegin, 1),
+            kBegin + seconds(5) - milliseconds(25) + std::chrono::microseconds(1));
+  EXPECT_EQ(pace.ready_at(kBegin, 5'000'000), kBegin + seconds(5));
+}
+
+TEST(SendQueue, BytesAreHeldBackToo) {
+  Traffic traffic;
+  SendQueue<int> queue(*policy_of("?keep=latest&bandwidth=1MB/s"));
+  EXPECT_TRUE(queue.pass(kBegin, 100'000));
+  EXPECT_FALSE(queue.pass(kBegin, 1000));
+  queue.push(1, 1000, traffic);
+  EXPECT_EQ(queue.ready_at(kBegin, traffic), kBegin + milliseconds(76));
+  queue.push(2, 1000, traffic);
+  EXPECT_EQ(traffic.throttled, 1U);
+  EXPECT_EQ(queue.pop(kBegin + milliseconds(76)), 2);
+}
+
 TEST(SendQueue, CountsMessagesThatShareAnItem) {
   Traffic traffic;
   SendQueue<int> queue(*policy_of(""));
@@ -208,9 +273,9 @@ TEST(SendQueue, TheNewestStaysHoweverLarge) {
 TEST(SendQueue, WhatThePaceKeepsBackIsCountedOnce) {
   Traffic traffic;
   SendQueue<int> queue(*policy_of("?keep=2&rate=10&burst=2"));
-  EXPECT_TRUE(queue.pass(kBegin));
-  EXPECT_TRUE(queue.pass(kBegin));
-  ASSERT_FALSE(queue.pass(kBegin));
+  EXPECT_TRUE(queue.pass(kBegin, 1));
+  EXPECT_TRUE(queue.pass(kBegin, 1));
+  ASSERT_FALSE(queue.pass(kBegin, 1));
   for (int i = 0; i < 5; ++i) {
     queue.push(i, 1, traffic);
     EXPECT_EQ(queue.ready_at(kBegin, traffic), kBegin + milliseconds(100));

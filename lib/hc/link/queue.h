@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A queue of messages to be sent, bounded in number and memory, with a limited rate. Internal.
+// A queue of messages to be sent, bounded in number and memory, at a limited pace. Internal.
 // Pure: time is passed in.
 
 #include <algorithm>
@@ -21,7 +21,7 @@ template <typename Item>
 class SendQueue {
  public:
   explicit SendQueue(const Policy& policy)
-      : keep_(policy.keep), memory_(policy.memory), pace_(policy.rate, policy.burst) {}
+      : keep_(policy.keep), memory_(policy.memory), pace_(policy) {}
 
   [[nodiscard]] bool empty() const { return items_.empty(); }
   [[nodiscard]] std::size_t messages() const { return messages_; }
@@ -36,7 +36,7 @@ class SendQueue {
 
   /// Adds a message and drops the excess, unless all are kept.
   void push(Item item, std::uint64_t bytes, Traffic& traffic) {
-    // If the first message is delayed by the rate, so are all after it.
+    // If the first message is delayed by the pace, so are all after it.
     bool held = !items_.empty() && items_.front().held;
     items_.push_back({std::move(item), bytes, 1, false});
     bytes_ += bytes;
@@ -59,23 +59,23 @@ class SendQueue {
   /// When the first message may be sent: `now` or later; TimePoint::max() if the queue is empty.
   TimePoint ready_at(TimePoint now, Traffic& traffic) {
     if (items_.empty()) return TimePoint::max();
-    auto ready = pace_.ready_at(now);
+    auto ready = pace_.ready_at(now, items_.front().bytes);
     if (ready > now) hold(items_.front(), traffic);
     return ready;
   }
 
   /// Removes the first message, which must be ready.
   Item pop(TimePoint now) {
-    pace_.take(now);
+    pace_.take(now, items_.front().bytes);
     return remove_front();
   }
 
-  /// Whether a new message may bypass the queue, which must be empty; takes its token if so.
-  bool pass(TimePoint now) {
+  /// Whether a new message may bypass the queue, which must be empty; takes its tokens if so.
+  bool pass(TimePoint now, std::uint64_t bytes) {
     if (!items_.empty()) return false;
     if (!pace_.limited()) return true;
-    if (pace_.ready_at(now) > now) return false;
-    pace_.take(now);
+    if (pace_.ready_at(now, bytes) > now) return false;
+    pace_.take(now, bytes);
     return true;
   }
 
@@ -98,7 +98,7 @@ class SendQueue {
     Item item;
     std::uint64_t bytes;
     std::size_t messages;
-    bool held;  // delayed by the rate
+    bool held;  // delayed by the pace
   };
 
   static void hold(Entry& entry, Traffic& traffic) {
@@ -125,7 +125,7 @@ class SendQueue {
   std::uint64_t memory_;
   std::uint64_t bytes_ = 0;
   std::size_t messages_ = 0;
-  TokenBucket pace_;
+  Pace pace_;
   std::deque<Entry> items_;
 };
 

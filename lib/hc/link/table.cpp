@@ -33,8 +33,9 @@ std::vector<Transport>& table() {
       dialing<unix_peer>("unix", "", check_name),
       listening<listen_unix>("unix-listen", "", check_name),
       {"inproc", "", kPolicyOptions, open_inproc_source, open_inproc_sink, check_name},
-      {"shm", "keep rate burst spin wait reconnect", "readers stay wait keep memory timeout",
-       open_shm_source, open_shm_sink, check_name},
+      {"shm", "keep rate burst bandwidth spin wait reconnect",
+       "readers stay wait keep bandwidth memory timeout", open_shm_source, open_shm_sink,
+       check_name},
   };
   return transports;
 }

@@ -155,6 +155,17 @@ TEST_P(LinkConformance, ARateKeepsMessagesBack) {
   EXPECT_EQ(losses().dropped_memory + losses().dropped_disconnect, 0U);
 }
 
+TEST_P(LinkConformance, ABandwidthKeepsBytesBack) {
+  open("", "bandwidth=1MB/s");
+  const auto begin = std::chrono::steady_clock::now();
+  transfer(20, 10'000);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  // All but the first and a burst wait for the bytes before them.
+  EXPECT_GE(taken.count(), (20 * 10'000 - 10'000 - 25'000) / 1e6);
+  EXPECT_GT(losses().delayed, 0U);
+  EXPECT_EQ(losses().lost(), 0U);
+}
+
 TEST_P(LinkConformance, AWriterThatLosesNothingWaitsForItsTurn) {
   open("", "rate=1000");
   transfer(20, 10);

@@ -23,6 +23,13 @@ bool is_tcp(int descriptor) {
   return ::getsockopt(descriptor, IPPROTO_TCP, TCP_INFO, &info, &size) == 0;
 }
 
+/// Limits what waits in the kernel to be sent to about 1/40 s, or messages would grow old there
+/// where the network is slower than the bandwidth.
+void keep_short(int descriptor, std::uint64_t bandwidth) {
+  const int most = static_cast<int>(std::clamp<std::uint64_t>(bandwidth / 40, 4096, 1 << 20));
+  ::setsockopt(descriptor, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &most, sizeof most);
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Connection>> Connection::make(ConnectedSocket connection,
@@ -43,6 +50,7 @@ Result<std::unique_ptr<Connection>> Connection::make(ConnectedSocket connection,
 
 void Connection::connect(ConnectedSocket connection, TimePoint now) {
   is_tcp_ = is_tcp(connection.get());
+  if (is_tcp_ && bandwidth_ > 0) keep_short(connection.get(), bandwidth_);
   writer_.start(std::move(connection));
   blocked_ = false;
   connected_at_ = now;
@@ -90,7 +98,7 @@ Result<bool> Connection::hand_over(std::unique_lock<std::mutex>& lock, Outgoing&
     if (failed_) return *failed_;
     if (drops_for_reader(message, now)) return false;
   }
-  if (connected() && !blocked_ && queue_.pass(now)) {
+  if (connected() && !blocked_ && queue_.pass(now, message.size())) {
     put(message.borrowed(), now);
   } else {
     queue_.push(writer_waits_ ? message.borrowed() : message.kept(), message.size(), losses_);
@@ -367,6 +375,11 @@ Traffic Connection::traffic() const {
 std::optional<std::size_t> Connection::peers() {
   std::lock_guard lock(mutex_);
   return connected() ? 1 : 0;
+}
+
+bool Connection::is_behind() const {
+  std::lock_guard lock(mutex_);
+  return blocked_ || !queue_.empty();
 }
 
 Traffic Connection::losses() const {

@@ -76,6 +76,7 @@ class Connection final : public Sink {
   void abandon() override;
   [[nodiscard]] Traffic traffic() const override;
   std::optional<std::size_t> peers() override;
+  [[nodiscard]] bool is_behind() const override;
 
   // For sinks with several connections, which count messages themselves.
   /// Sends a message. Returns whether everything sent so far has been written to the descriptor.
@@ -93,6 +94,7 @@ class Connection final : public Sink {
  private:
   Connection(const Policy& policy, const LinkOptions& options, std::unique_ptr<Dialer> dialer)
       : writer_waits_(policy.writer_waits()),
+        bandwidth_(policy.bandwidth),
         stop_(options.stop),
         log_(options.log),
         dialer_(std::move(dialer)),
@@ -133,6 +135,7 @@ class Connection final : public Sink {
 
   mutable std::mutex mutex_;
   const bool writer_waits_;
+  const std::uint64_t bandwidth_;
   const int stop_;
   const LogSink log_;
   std::unique_ptr<Dialer> dialer_;

@@ -108,7 +108,7 @@ inline constexpr const char* kListeners = "HC_LISTENERS";
 Status check_host_port(const Uri& uri);
 
 /// The options of a Policy, which all sinks have.
-inline constexpr const char* kPolicyOptions = "keep rate burst memory timeout";
+inline constexpr const char* kPolicyOptions = "keep rate burst bandwidth memory timeout";
 
 /// The transport whose ends connect to the peer from `find`.
 /// @param options  in addition to those of all such transports.

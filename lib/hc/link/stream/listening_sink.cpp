@@ -96,6 +96,10 @@ class ListeningSink final : public Sink {
     return all;
   }
 
+  [[nodiscard]] bool is_behind() const override {
+    return std::ranges::any_of(peers_, [](const auto& peer) { return peer->is_behind(); });
+  }
+
   std::optional<std::size_t> peers() override {
     let_in();
     for (std::size_t i = peers_.size(); i-- > 0;) {
