@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kSmallest = 0.01;
 constexpr int kBestQuality = 100;
+constexpr double kSlowest = 0.01, kFastest = 1000;  // idle_rate [message/s]
 
 /// Parses an option if it is given; false if it is not a number in the range.
 template <typename Number>
@@ -39,6 +40,9 @@ Result<Conversion> take_conversion(Uri& uri) {
     return invalid("option quality needs as=jpeg");
   if (!read(uri, "scale", kSmallest, 1.0, conversion.scale))
     return invalid("option scale is a number from 0.01 to 1");
+  if (!read(uri, "idle_rate", kSlowest, kFastest, conversion.idle_rate))
+    return invalid("option idle_rate is a number from 0.01 to 1000");
+  conversion.pair = uri.option("pair", "");
   std::erase_if(uri.options, [](const auto& option) {
     return std::ranges::find(kConversionOptions, option.first) != kConversionOptions.end();
   });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Conversion of messages before they are sent over a link: downscaling of images, re-encoding.
+// Conversion of messages before they are sent over a link: downscaling of images, re-encoding, and
+// which of them are sent at all.
 // Options of a link's URI that transports do not see. Pure.
 
 #include <array>
@@ -19,14 +20,19 @@ struct Conversion {
   std::optional<Encoding> as;  ///< nullopt: the encoding of the output
   std::optional<int> quality;  ///< of JPEG, 1 … 100
   double scale = 1;            ///< of width and height, 0.01 … 1
+  double idle_rate = 0;        ///< while messages do not change [message/s]; 0: all are sent
+  /// Links of one module that are adapted alike to their bandwidth; empty: each by itself.
+  std::string pair;
 
+  /// Whether messages are sent in the form that they have.
   [[nodiscard]] bool is_none() const { return !as && scale == 1; }
 };
 
 /// The options of a conversion, in the order in which they are parsed.
-inline constexpr std::array<std::string_view, 3> kConversionOptions = {"as", "quality", "scale"};
+inline constexpr std::array<std::string_view, 5> kConversionOptions = {"as", "quality", "scale",
+                                                                       "idle_rate", "pair"};
 
-/// Removes `as=`, `quality=` and `scale=` from a URI's options.
+/// Removes `as=`, `quality=`, `scale=`, `idle_rate=` and `pair=` from a URI's options.
 ///
 /// Errors: Invalid; also for a quality without as=jpeg.
 Result<Conversion> take_conversion(Uri& uri);

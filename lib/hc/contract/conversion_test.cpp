@@ -26,6 +26,17 @@ TEST(Conversion, IsTakenOutOfAUri) {
   EXPECT_TRUE(take_conversion(none)->is_none());
 }
 
+TEST(Conversion, ALinkMaySlowDownAndBelongToOthers) {
+  const auto conversion = taken("idle_rate=0.5&pair=view.left");
+  ASSERT_TRUE(conversion) << conversion.error().detail;
+  EXPECT_EQ(conversion->idle_rate, 0.5);
+  EXPECT_EQ(conversion->pair, "view.left");
+  EXPECT_TRUE(conversion->is_none());
+  for (const char* rate : {"0", "-1", "1001", "inf", "x"})
+    EXPECT_EQ(taken("idle_rate=" + std::string(rate)).error().detail,
+              "option idle_rate is a number from 0.01 to 1000");
+}
+
 TEST(Conversion, IsRefused) {
   for (const char* scale :
        {"scale=0", "scale=1.01", "scale=-1", "scale=nan", "scale=1e-3", "scale=x"})

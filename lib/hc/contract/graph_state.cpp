@@ -100,6 +100,8 @@ void visit_link(Link& link, Visit visit) {
   visit("status", link.status);
   visit("keep", link.keep);
   visit("rate", link.rate);
+  visit("bandwidth", link.bandwidth);
+  visit("images", link.images);
   visit("messages", link.traffic.messages);
   visit("bytes", link.traffic.bytes);
   visit("per_second", link.per_second);

@@ -65,7 +65,10 @@ struct LinkState {
   std::string status;     ///< why it is down: "camera: waiting"; empty: it is up
   std::string keep;       ///< as in the graph file
   double rate = 0;        ///< limit [message/s]; 0: none
-  Traffic traffic;        ///< of the sender, plus the reader's drops
+  double bandwidth = 0;   ///< limit [byte/s]; 0: none
+  /// Quality of JPEG and scale of images, as they are adapted to the bandwidth.
+  std::optional<std::array<double, 2>> images;
+  Traffic traffic;  ///< of the sender, plus the reader's drops
   /// As measured by the reader, or by the sender if the reader reports nothing.
   double per_second = 0, bytes_per_second = 0;
   std::uint64_t ignored = 0;                 ///< by the reader, because it was out of focus

@@ -19,7 +19,8 @@ constexpr std::size_t column_of(std::size_t member) {
   return member < kIgnored ? member : kMore + member - kIgnored;
 }
 constexpr std::size_t kPeers = column_of(kTrafficMembers.size());
-static_assert(kPeers + 1 == kCounterColumns.size());
+constexpr std::size_t kQuality = kPeers + 1, kScale = kQuality + 1;
+static_assert(kScale + 1 == kCounterColumns.size());
 
 template <std::size_t kColumns>
 Message make_table(std::span<const std::array<std::int64_t, kColumns>> rows) {
@@ -34,7 +35,7 @@ Message make_table(std::span<const std::array<std::int64_t, kColumns>> rows) {
 LinkCounters counters_of(std::span<const std::int64_t> given) {
   Row row{};
   std::fill(row.begin() + kAge, row.begin() + kMore, -1);
-  row[kPeers] = -1;
+  std::fill(row.begin() + kPeers, row.end(), -1);
   std::copy_n(given.begin(), std::min(given.size(), row.size()), row.begin());
   LinkCounters link;
   for (std::size_t i = 0; i < kTrafficMembers.size(); ++i)
@@ -43,6 +44,8 @@ LinkCounters counters_of(std::span<const std::int64_t> given) {
   std::copy_n(row.begin() + kAge, link.age.size(), link.age.begin());
   std::copy_n(row.begin() + kGap, link.gap.size(), link.gap.begin());
   link.peers = row[kPeers];
+  link.quality = row[kQuality];
+  link.scale = row[kScale];
   return link;
 }
 
@@ -58,6 +61,8 @@ Message make_counters(std::span<const LinkCounters> links) {
     std::copy(link.age.begin(), link.age.end(), row.begin() + kAge);
     std::copy(link.gap.begin(), link.gap.end(), row.begin() + kGap);
     row[kPeers] = link.peers;
+    row[kQuality] = link.quality;
+    row[kScale] = link.scale;
   }
   return make_table<kCounterColumns.size()>(rows);
 }

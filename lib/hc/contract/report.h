@@ -31,18 +31,21 @@ struct LinkCounters {
   Durations age{-1, -1, -1};  ///< of messages, since the measurement (R11)
   Durations gap{-1, -1, -1};  ///< inter-arrival time
   std::int64_t peers = -1;    ///< connected peers; -1: unknown, or not applicable
+  /// Of images that are adapted to a bandwidth: quality of JPEG, and scale [1/1000]; -1: none are.
+  std::int64_t quality = -1, scale = -1;
 };
 
 /// The columns of Report::Counters, in order.
 struct CounterColumn {
   std::string_view name, meaning;
 };
-constexpr std::array<CounterColumn, 17> kCounterColumns = {{
+constexpr std::array<CounterColumn, 19> kCounterColumns = {{
     {"messages", "messages that went over the link"},
     {"bytes", "their bytes"},
-    {"delayed", "messages delayed by `rate`; they went later, or are among the dropped"},
+    {"delayed",
+     "messages delayed by `rate` or `bandwidth`; they went later, or are among the dropped"},
     {"dropped_newer", "dropped: a newer message arrived first (`keep`)"},
-    {"throttled", "dropped while delayed by `rate`"},
+    {"throttled", "dropped for `rate`, `bandwidth` or `idle_rate`"},
     {"dropped_memory", "dropped: no memory (`memory`)"},
     {"dropped_disconnect",
      "lost at a disconnect (`reconnect`, `stay`), or when the link was removed"},
@@ -56,6 +59,8 @@ constexpr std::array<CounterColumn, 17> kCounterColumns = {{
     {"dropped_timeout", "dropped: the reader had taken nothing for too long (`timeout`)"},
     {"bad", "received and dropped: damaged, or not what the input takes"},
     {"peers", "peers that are connected; -1: unknown, or of a file"},
+    {"quality", "of JPEG, as images are adapted to `bandwidth`; -1: they are not"},
+    {"scale", "of width and height, likewise [1/1000]"},
 }};
 
 /// A table of i64, one row per link.

@@ -2,8 +2,10 @@
 #include <hc/module/outlets.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include <hc/compress/compress.h>
 #include <hc/module/ending.h>
 #include <hc/module/management.h>
 
@@ -46,6 +48,13 @@ void set_no_waiting(Uri& uri, std::uint32_t keep) {
 
 }  // namespace
 
+bool internal::AdaptedLinks::is_behind() const {
+  return std::ranges::any_of(outlets, [](const auto& each) {
+    const auto outlet = each.lock();
+    return outlet && outlet->sink && outlet->sink->is_behind();
+  });
+}
+
 std::shared_ptr<Outlet> Module::Outlets::open(const Uri& uri, const std::string& port,
                                               std::uint32_t keep) {
   Uri opened = uri;
@@ -69,8 +78,31 @@ std::shared_ptr<Outlet> Module::Outlets::open(const Uri& uri, const std::string&
   outlet->port = port;
   outlet->sink = std::move(*sink);
   outlet->conversion = *conversion;
+  // By the messages' clock no message is lost.
+  if (!module_.message_time_) adapt(outlet, value_or_end(internal::parse_policy(opened)));
   outlets_.push_back(outlet);
   return outlet;
+}
+
+/// Makes what thins out and adapts the messages of an outlet.
+void Module::Outlets::adapt(const std::shared_ptr<Outlet>& outlet,
+                            const internal::Policy& policy) const {
+  const Conversion& conversion = outlet->conversion;
+  if (conversion.idle_rate > 0)
+    outlet->idle = std::make_shared<internal::IdleRate>(conversion.idle_rate);
+  if (policy.bandwidth == 0) return;
+  for (const auto& other : outlets_)
+    if (!conversion.pair.empty() && other->conversion.pair == conversion.pair)
+      outlet->adapted = other->adapted;
+  if (!outlet->adapted) {
+    const internal::Form best{conversion.quality.value_or(kJpegQuality), conversion.scale};
+    const bool may_scale = (*parse_uri(outlet->uri)).option("scale", "").empty();
+    const internal::Adaptation::Limits limits{policy.bandwidth, best, may_scale,
+                                              !policy.writer_waits()};
+    outlet->adapted = std::make_shared<internal::AdaptedLinks>(
+        internal::AdaptedLinks{internal::Adaptation(limits), {}});
+  }
+  outlet->adapted->outlets.push_back(outlet);
 }
 
 void Module::Outlets::open(const internal::PortLink& link) {
@@ -128,8 +160,12 @@ void Module::Outlets::count_peers() {
 void Module::Outlets::add_counters(std::vector<LinkCounters>& rows) const {
   for (const auto& outlet : outlets_) {
     auto& row = rows.emplace_back();
-    row.traffic = outlet->sink ? outlet->sink->traffic() : outlet->traffic;
+    row.traffic = outlet->counted();
     row.peers = outlet->peers;
+    if (!outlet->adapted) continue;
+    const auto form = outlet->adapted->adaptation.form();
+    row.quality = form.quality;
+    row.scale = std::lround(1000 * form.scale);
   }
 }
 

@@ -8,11 +8,25 @@
 #include <vector>
 
 #include <hc/contract/report.h>
+#include <hc/link/policy.h>
+#include <hc/module/adaptation.h>
 #include <hc/module/arguments.h>
 #include <hc/module/link_opener.h>
 #include <hc/module/trace.h>
 
 namespace hc {
+namespace internal {
+
+/// Links whose images are adapted alike to their bandwidth.
+struct AdaptedLinks {
+  Adaptation adaptation;
+  std::vector<std::weak_ptr<const Outlet>> outlets;
+
+  /// Whether one of them has not handed over its last image.
+  [[nodiscard]] bool is_behind() const;
+};
+
+}  // namespace internal
 
 class Module::Outlets {
  public:
@@ -49,6 +63,7 @@ class Module::Outlets {
   /// @param keep  of an output that never waits; else 0.
   std::shared_ptr<internal::Outlet> open(const Uri& uri, const std::string& port,
                                          std::uint32_t keep);
+  void adapt(const std::shared_ptr<internal::Outlet>& outlet, const internal::Policy& policy) const;
   internal::OutputState& output_of(const internal::PortLink& link) {
     return link.is_trace ? trace_.output : *module_.outputs_[link.port];
   }

@@ -48,16 +48,28 @@ struct OutputOptions {
 namespace internal {
 
 struct TogetherState;
+struct AdaptedLinks;
+class IdleRate;
 
 /// A link by which messages of an output leave.
 struct Outlet {
   std::string uri, port;
-  std::unique_ptr<Sink> sink;  ///< null once the reader has disconnected
-  Conversion conversion;       ///< of its messages
-  Traffic traffic;             ///< as it was when the link ended
-  std::int64_t peers = -1;     ///< at the last report; see LinkCounters
-  Route route;                 ///< which messages it takes
+  std::unique_ptr<Sink> sink;             ///< null once the reader has disconnected
+  Conversion conversion;                  ///< of its messages
+  std::shared_ptr<AdaptedLinks> adapted;  ///< to its bandwidth; null: not
+  std::shared_ptr<IdleRate> idle;         ///< null: it does not slow down
+  std::uint64_t thinned = 0;              ///< messages dropped by these two
+  Traffic traffic;                        ///< as it was when the link ended
+  std::int64_t peers = -1;                ///< at the last report; see LinkCounters
+  Route route;                            ///< which messages it takes
 
+  /// What its sink has counted, or had when the link ended.
+  [[nodiscard]] Traffic counted() const {
+    Traffic all = sink ? sink->traffic() : traffic;
+    all.messages += thinned;
+    all.throttled += thinned;
+    return all;
+  }
   void end() {
     traffic = sink->traffic();
     sink.reset();

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // How messages leave a module.
+#include <chrono>
+#include <optional>
 #include <utility>
 
 #include <hc/compress/compress.h>
 #include <hc/compress/scale.h>
 #include <hc/module/loop.h>
+#include <hc/module/outlets.h>
 
 namespace hc {
 namespace {
 
 using internal::Outlet;
+
+constexpr std::size_t kHeaderBytes = 80;  // about
 
 /// A message in the form that a link asks for; one that cannot be converted is left as it is.
 Message converted(const Message& message, const Conversion& conversion) {
@@ -25,11 +30,35 @@ Message converted(const Message& message, const Conversion& conversion) {
   return value_or_end(compress(made, *conversion.as, conversion.quality.value_or(kJpegQuality)));
 }
 
+/// The message as a link is to send it; nullopt: the link is spared this one.
+std::optional<Message> made_for(Outlet& outlet, const Message& message) {
+  const auto now = std::chrono::steady_clock::now();
+  if (outlet.idle && !outlet.idle->lets_pass(message, now)) return {};
+  if (!outlet.adapted || !can_scale(message.header.info))
+    return converted(message, outlet.conversion);
+  auto& adaptation = outlet.adapted->adaptation;
+  const auto form = adaptation.choose(message.header.time, now, outlet.adapted->is_behind());
+  if (!form) return {};
+  auto conversion = outlet.conversion;
+  conversion.as = conversion.as.value_or(Encoding::Jpeg);
+  conversion.quality = form->quality;
+  conversion.scale = form->scale;
+  auto made = converted(message, conversion);
+  adaptation.note_size(made.elements.size() + kHeaderBytes);
+  return made;
+}
+
+Status send_converted(Outlet& outlet, const Message& message) {
+  const auto made = made_for(outlet, message);
+  if (made) return outlet.sink->send(*made);
+  ++outlet.thinned;
+  return {};
+}
+
 /// Sends by an outlet; false if its reader has left, which ends the outlet.
 bool send_to(Outlet& outlet, const std::string& port, const Message& message) {
-  auto sent = outlet.conversion.is_none()
-                  ? outlet.sink->send(message)
-                  : outlet.sink->send(converted(message, outlet.conversion));
+  const bool is_plain = outlet.conversion.is_none() && !outlet.adapted && !outlet.idle;
+  auto sent = is_plain ? outlet.sink->send(message) : send_converted(outlet, message);
   if (sent) return true;
   const auto& error = sent.error();
   if (error.code != Code::Closed)
