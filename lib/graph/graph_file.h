@@ -154,8 +154,9 @@ Graph parse_graph(std::string_view text, const Environment& environment, Problem
                   const ReadFile& read_file = {});
 
 /// The keys of a link's policy, in the order in which they are checked.
-inline constexpr std::array<std::string_view, 8> kPolicyKeys = {
-    "keep", "rate", "burst", "memory", "timeout", "as", "quality", "scale"};
+inline constexpr std::array<std::string_view, 10> kPolicyKeys = {
+    "keep",    "rate", "burst",   "bandwidth", "memory",
+    "timeout", "as",   "quality", "scale",     "idle_rate"};
 
 /// Checks the policy in a URI's options. Errors: Invalid.
 Status check_policy(Uri policy);

@@ -85,6 +85,14 @@ program = "seer"
             (std::map<std::string, std::string>{{"memory", "8M"}, {"rate", "10"}}));
 }
 
+TEST(Plan, LinksThatAreTakenTogetherAreAdaptedAlike) {
+  auto planned = must(plan("[modules.task]\n[modules.pair]\n" +
+                           link_text("task.command", "pair.left", "bandwidth = 5000\n") +
+                           link_text("task.bid", "pair.right", "bandwidth = \"5 kB/s\"\n")));
+  for (const auto& link : planned.links)
+    EXPECT_TRUE(link.sender_uri.ends_with("&pair=pair.left")) << link.sender_uri;
+}
+
 TEST(Plan, AnInputSaysHowManyMessagesItsLinksKeep) {
   auto planned =
       must(plan("[modules.source]\n[modules.keeper]\n" + link_text("source.left", "keeper.in") +

@@ -131,13 +131,13 @@ class ModuleReader {
   void read_policy(const Node& option, GraphLink& link) {
     std::string& text = link.policy[option.key].value;
     link.policy[option.key].place = option.place;
-    const bool is_scale = option.key == "scale";
+    const bool is_fraction = option.key == "scale" || option.key == "idle_rate";
     if (option.as<std::int64_t>() != nullptr || option.as<std::string>() != nullptr ||
-        (is_scale && option.as<double>() != nullptr))
+        (is_fraction && option.as<double>() != nullptr))
       text = *Fields::scalar(option);
     if (text.empty())
       fields_.add(option, "\"{}\" must be a {} or a string", option.key,
-                  is_scale ? "number" : "whole number");
+                  is_fraction ? "number" : "whole number");
   }
 
   /// Problems: the first wrong option, whose value is cleared.

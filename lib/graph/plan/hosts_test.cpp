@@ -183,7 +183,37 @@ TEST(HostsOfAGraph, HaveImagesConvertedByTheirSender) {
       "shm:t.camera.image.fixed.any?readers=1&stay=1&keep=latest&as=jpeg&quality=80&scale=0.5");
 }
 
+TEST(HostsOfAGraph, HaveImagesFollowTheBandwidth) {
+  const std::string policy = R"(bandwidth = "2 MB/s", idle_rate = 0.5, rate = 20)";
+  auto planned = must(plan_hosts(seen(policy)));
+  EXPECT_EQ(planned.links[0].sender_uri,
+            "tls-listen:0.0.0.0:7001?readers=1&stay=1&key=/proc/self/fd/3&peer=F0&keep=latest&"
+            "bandwidth=2MB/s&idle_rate=0.5&rate=20");
+  EXPECT_EQ(planned.links[0].policy.at("bandwidth"), "2 MB/s");
+  // Over shared memory the reader holds messages back, and the sender adapts them.
+  planned = must(plan_hosts(seen(policy, "any", "robot")));
+  EXPECT_EQ(planned.links[0].sender_uri,
+            "shm:t.camera.image.fixed.any?readers=1&stay=1&keep=latest&bandwidth=2MB/s&idle_rate="
+            "0.5");
+  EXPECT_TRUE(planned.links[0].reader_uri.ends_with("&keep=latest&rate=20&bandwidth=2MB/s"))
+      << planned.links[0].reader_uri;
+}
+
 TEST(HostsOfAGraph, HaveNothingConvertedThatCannotBe) {
+  EXPECT_EQ(wrong(kHosts + seen("bandwidth = \"2M\"")),
+            "g.toml:13: option bandwidth is from 1 kB/s to 4 GB/s, as in 500 kB/s, 2 MB/s or 5 "
+            "Mbit/s, not \"2M\"");
+  EXPECT_EQ(wrong(kHosts + seen("bandwidth = \"2 MB/s\"", "in")),
+            "g.toml:13: camera.image: bandwidth: scale changes the size of images, and the input "
+            "takes rgb_image 640 x 480 of 3 x u8; set scale");
+  EXPECT_EQ(wrong(kHosts + seen("bandwidth = 5000, scale = 1", "in")), "");
+  EXPECT_EQ(wrong(kHosts + seen("idle_rate = 0")),
+            "g.toml:13: option idle_rate is a number from 0.01 to 1000");
+  for (const char* key : {"bandwidth = 5000", "idle_rate = 1"})
+    EXPECT_TRUE(
+        wrong(kHosts + seen(key, "any", "", "far"))
+            .starts_with("g.toml:13: module camera cannot have \"" + std::string(key).substr(0, 9)))
+        << key;
   EXPECT_EQ(wrong(kHosts + seen("scale = 1.5")),
             "g.toml:13: option scale is a number from 0.01 to 1");
   EXPECT_EQ(wrong(kHosts + seen("quality = 80")), "g.toml:13: option quality needs as=jpeg");

@@ -144,7 +144,7 @@ class LinkCheck {
   }
 
   /// The sender sets the policy of a link, except over shared memory, where the reader sets `keep`,
-  /// `rate` and `burst`. Each end of a DDS topic has its own.
+  /// `rate`, `burst` and `bandwidth`. Each end of a DDS topic has its own.
   void check_outer_policy(const GraphLink& link) {
     const bool is_input = !link.from.uri.empty();
     const std::string& uri = (is_input ? link.from : link.to).uri;
@@ -152,7 +152,7 @@ class LinkCheck {
     const bool is_shared = uri.starts_with("shm:");
     for (const auto& [key, value] : link.policy) {
       if (value.value.empty()) continue;
-      const bool is_pace = key == "rate" || key == "burst";
+      const bool is_pace = key == "rate" || key == "burst" || key == "bandwidth";
       if (is_input && !(is_shared && (is_pace || key == "keep")))
         problems_.add(value.place,
                       "a link from outside cannot have " + key + ": its sender sets it");
@@ -165,6 +165,8 @@ class LinkCheck {
   /// result.
   void check_conversion(const GraphLink& link, const std::vector<PortType>& given,
                         const std::vector<PortType>& taken) {
+    if (const auto limit = link.policy.find("bandwidth"); limit != link.policy.end())
+      check_bandwidth(link, limit->second, given, taken);
     Uri options;
     const Lined<std::string>* first = nullptr;
     for (const auto key : kConversionOptions) {
@@ -182,6 +184,18 @@ class LinkCheck {
     if (!conversion) return;  // already reported
     if (const auto what = hindrance(*conversion, given, taken); !what.empty())
       problems_.add(first->place, link.from.text() + ": " + what);
+  }
+
+  /// The sender must be able to adapt images, and the reader to take them in other sizes.
+  void check_bandwidth(const GraphLink& link, const Lined<std::string>& limit,
+                       const std::vector<PortType>& given, const std::vector<PortType>& taken) {
+    if (!planning_.description_of(link.from.module)->control)
+      return problems_.add(limit.place, kNeedsControl, link.from.module, "bandwidth");
+    Conversion smaller;
+    smaller.scale = 1. / 2;
+    if (given.empty() || !can_scale(given.front().info) || link.policy.contains("scale")) return;
+    if (const auto what = hindrance(smaller, given, taken); !what.empty())
+      problems_.add(limit.place, link.from.text() + ": bandwidth: " + what + "; set scale");
   }
 
   void check_route(const GraphLink& link) {

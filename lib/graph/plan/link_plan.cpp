@@ -29,21 +29,30 @@ std::string digest(std::string_view text) {
 
 using Keys = std::span<const std::string_view>;
 
-/// Policy keys of the sender: a link with one of them cannot share its sending end; over DDS only
-/// the last three count. Then policy keys of the reader; over shared memory only the first two.
-constexpr std::array<std::string_view, 4> kOfSender = {"memory", "as", "quality", "scale"};
+/// Policy keys of the sender: a link with one of them cannot share its sending end; over DDS all
+/// but the first count. Then policy keys of the reader; over shared memory only the first two, and
+/// the bandwidth, to which the sender adapts images.
+constexpr std::array<std::string_view, 6> kOfSender = {"memory", "as",        "quality",
+                                                       "scale",  "idle_rate", "bandwidth"};
 constexpr std::array<std::string_view, 3> kOfReader = {"rate", "burst", "memory"};
-constexpr Keys kConversion = Keys(kOfSender).last<3>(), kPace = Keys(kOfReader).first<2>();
+constexpr Keys kConversion = Keys(kOfSender).last<5>(), kPace = Keys(kOfReader).first<2>();
+constexpr Keys kBandwidth = Keys(kOfSender).last<1>();
 constexpr std::array<std::string_view, 1> kTimeout = {"timeout"};
 
 bool has(Keys keys, const std::string& key) {
   return std::ranges::find(keys, key) != keys.end();
 }
 
+/// Adds an option, without the blank in "2 MB/s": a URI has none.
+void add_option(Uri& uri, const std::string& key, std::string value) {
+  std::erase(value, ' ');
+  uri.options.emplace_back(key, std::move(value));
+}
+
 /// Adds the options of a link's policy that are among `keys`.
 void add_policy(Uri& uri, const GraphLink& link, Keys keys) {
   for (const auto& [key, value] : link.policy)
-    if (has(keys, key)) uri.options.emplace_back(key, value.value);
+    if (has(keys, key)) add_option(uri, key, value.value);
 }
 
 void add_keep(Uri& uri, const std::string& keep) {
@@ -291,6 +300,7 @@ class LinkPlanner {
       add_policy(writer, link, kOfSender);
       add_keep(reader, draft.keep);
       add_policy(reader, link, kPace);
+      add_policy(reader, link, kBandwidth);
     } else if (draft.transport->name == "dds") {
       writer.options.emplace_back("interface", interfaces_of(draft.name, true, link));
       reader.options.emplace_back("interface", interfaces_of(draft.name, false, link));
@@ -305,6 +315,7 @@ class LinkPlanner {
       add_policy(writer, link, kPace);
     }
     add_policy(writer, link, kTimeout);
+    add_pair(writer, link);
     if (sender.uri.empty()) {
       sender.uri = writer.text();
       add_end(link.from, {false, link.from.port, sender.uri, draft.sender_route});
@@ -314,6 +325,16 @@ class LinkPlanner {
             reconnects(link)};
   }
 
+  /// Names the reader of a link with a bandwidth, where it takes this input together with others:
+  /// the sender then adapts the images of all of them alike.
+  void add_pair(Uri& writer, const GraphLink& link) const {
+    const Description* reader = planning_.description_of(link.to.module);
+    if (!link.policy.contains("bandwidth") || reader == nullptr) return;
+    for (const auto& group : reader->together)
+      if (std::ranges::find(group, link.to.port) != group.end())
+        writer.options.emplace_back("pair", link.to.module + "." + group.front());
+  }
+
   /// Plans a link to or from a URI.
   PlannedLink plan_outside(const GraphLink& link, const Draft& draft) {
     const bool is_input = !link.from.uri.empty();
@@ -321,7 +342,7 @@ class LinkPlanner {
     const std::string keep{uri.option("keep", draft.keep)};
     if (uri.option("keep", "").empty()) add_keep(uri, keep);
     for (const auto& [key, value] : link.policy)
-      if (key != "keep") uri.options.emplace_back(key, value.value);
+      if (key != "keep") add_option(uri, key, value.value);
     PlannedLink planned{link.from.text(), link.to.text(), {}, {}, keep, {}, false};
     (is_input ? planned.reader_uri : planned.sender_uri) = uri.text();
     if (is_input)

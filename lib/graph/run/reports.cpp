@@ -24,6 +24,8 @@ std::string end_key(const PlannedEnd& end) {
 void add(const LinkCounters& row, LinkCounters& sum) {
   sum.traffic += row.traffic;
   sum.ignored += row.ignored;
+  sum.quality = row.quality;
+  sum.scale = row.scale;
   if (row.age.back() < sum.age.back()) return;
   sum.age = row.age;
   sum.gap = row.gap;
@@ -124,6 +126,8 @@ void Reports::count(Counted& counted, const LinkCounters& row, bool is_input, Mo
   add(row, report);
   report.age = row.age;
   report.gap = row.gap;
+  report.quality = row.quality;
+  report.scale = row.scale;
   counted.report = report;
 }
 

@@ -9,6 +9,7 @@
 #include <graph/global_workspace.h>
 #include <graph/run/runner.h>
 #include <hc/base/format.h>
+#include <hc/link/policy.h>
 
 namespace hc::internal {
 namespace {
@@ -44,6 +45,8 @@ LinkState state_of(const PlannedLink& link, const RunningModules& modules, bool 
   state.transport = inside.substr(0, inside.find_first_of("-:"));
   if (auto rate = link.policy.find("rate"); rate != link.policy.end())
     state.rate = std::atof(rate->second.c_str());
+  if (auto limit = link.policy.find("bandwidth"); limit != link.policy.end())
+    state.bandwidth = static_cast<double>(parse_bandwidth(limit->second).value_or(0));
   for (const auto* module : {modules.at(link.from), modules.at(link.to)}) {
     const auto status = module == nullptr ? ModuleStatus::Running : module->status();
     const bool is_up = status == ModuleStatus::Running || status == ModuleStatus::Ended;
@@ -57,6 +60,9 @@ LinkState state_of(const PlannedLink& link, const RunningModules& modules, bool 
   const auto *sender = report_of(false), *reader = report_of(true);
   const auto* counts = sender != nullptr ? sender : reader;
   if (counts != nullptr) state.traffic = counts->traffic;
+  if (counts != nullptr && counts->scale >= 0)
+    state.images = {
+        {static_cast<double>(counts->quality), static_cast<double>(counts->scale) / 1000}};
   // Rates are the reader's: a sender also counts queued and dropped messages.
   if (const auto* last = reader != nullptr ? reader : counts; last != nullptr) {
     state.per_second = last->per_second;
