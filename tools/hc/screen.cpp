@@ -168,6 +168,14 @@ void add_modules(const hc::GraphState& state, std::vector<Line>& lines) {
   }
 }
 
+/// Such as "at most 500kB/s: quality 62, scale 0.75".
+std::string bandwidth_in_words(const hc::LinkState& link) {
+  const auto limit = "at most " + short_number(link.bandwidth) + "B/s";
+  if (!link.images) return limit;
+  const auto [quality, scale] = *link.images;
+  return hc::format("{}: quality {:.0f}, scale {:.3g}", limit, quality, scale);
+}
+
 void add_links(const hc::GraphState& state, std::size_t width, std::vector<Line>& lines) {
   std::vector<Column<hc::LinkState>> columns = {
       {"1/s", 6, [](const auto& l) { return short_number(l.per_second); }},
@@ -196,6 +204,7 @@ void add_links(const hc::GraphState& state, std::size_t width, std::vector<Line>
     };
     note(link.status);
     if (link.rate > 0) note("at most " + short_number(link.rate) + "/s");
+    if (link.bandwidth > 0) note(bandwidth_in_words(link));
     note(losses_in_words(link.traffic));
     if (link.ignored > 0) note("ignored: not in focus");
     if (link.traffic.bad > 0) note(std::to_string(link.traffic.bad) + " bad");

@@ -7,7 +7,7 @@ import { Failures } from "./failures";
 import { layoutOf, pathThrough, type Box, type Layout, type Line, type Point } from "./layout";
 import { linkKey, portOf, structureOf, type Edge, type Structure } from "./structure";
 import { Viewport } from "./viewport";
-import { bytesText, dropTexts, durationText, latencyText, percentText, rateText } from "./words";
+import { bytesText, limitTexts, durationText, latencyText, percentText, rateText } from "./words";
 
 export interface DrawingEvents {
   openModule(name: string): void;
@@ -257,7 +257,7 @@ function linkText(link: GraphLink): string {
     link.status,
     rateText(link.per_second) || "nothing comes",
     link.age ? `latency ${latencyText(link.age)}` : "",
-    ...dropTexts(link),
+    ...limitTexts(link),
   ].filter((fact) => fact !== "");
   return `${link.from} → ${portOf(link.to)} of ${link.to.split(".")[0]}: ${facts.join("; ")}`;
 }

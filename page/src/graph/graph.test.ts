@@ -8,7 +8,7 @@ import { DropRates } from "./drops";
 import { Failures } from "./failures";
 import { layoutOf } from "./layout";
 import { structureOf } from "./structure";
-import { bytesText, dropTexts, durationText, moduleCondition, rateText } from "./words";
+import { bytesText, durationText, limitTexts, moduleCondition, rateText } from "./words";
 
 function moduleNamed(name: string, other: Partial<GraphModule> = {}): GraphModule {
   return {
@@ -39,6 +39,8 @@ function linkOf(from: string, to: string, other: Partial<GraphLink> = {}): Graph
     status: "",
     keep: "all",
     rate: 0,
+    bandwidth: 0,
+    images: null,
     messages: 0,
     bytes: 0,
     per_second: 0,
@@ -48,6 +50,7 @@ function linkOf(from: string, to: string, other: Partial<GraphLink> = {}): Graph
     dropped_newer: 0,
     dropped_memory: 0,
     dropped_disconnect: 0,
+    dropped_timeout: 0,
     ignored: 0,
     in_workspace: false,
     age: null,
@@ -160,10 +163,12 @@ test("a failure is shown for a while after the module was restarted", () => {
 
 test("drops are reported with their reasons and counted per second", () => {
   const link = linkOf("a.out", "b.in", { dropped_newer: 2, ignored: 1200 });
-  assert.deepEqual(dropTexts(link), [
+  assert.deepEqual(limitTexts(link), [
     "2 dropped for a newer message",
     "1,200 ignored, because another task had the focus",
   ]);
+  const limited = { ...link, bandwidth: 5e5, images: [62, 0.75] as const, dropped_newer: 0 };
+  assert.equal(limitTexts(limited)[0], "at most 500 kB/s: quality 62, scale 0.75");
   const rates = new DropRates();
   rates.take(stateOf([], [link], 1));
   const later = { ...link, dropped_newer: 7 };

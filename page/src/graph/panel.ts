@@ -5,7 +5,7 @@ import { Drawing } from "./drawing";
 import type { Point } from "./layout";
 import { linkKey, type Edge } from "./structure";
 import { Tables } from "./table";
-import { dropTexts, latencyText, rateText } from "./words";
+import { limitTexts, latencyText, rateText } from "./words";
 import { WorkspaceView } from "./workspace";
 
 /** Below this width the tables are shown first [px]. */
@@ -29,7 +29,7 @@ export const graphPanel: PanelKind = (args, host) => {
       return;
     }
     const buttons = links.map((link) => {
-      const facts = [rateText(link.per_second), latencyText(link.age), ...dropTexts(link)];
+      const facts = [rateText(link.per_second), latencyText(link.age), ...limitTexts(link)];
       return h("button", { onclick: () => (closeMenu(), openLink(link)) }, [
         h("b", `${link.from} → ${link.to}`),
         h("span.small", facts.filter((fact) => fact !== "").join("; ")),

@@ -5,7 +5,7 @@ import { h, setText } from "../shell";
 import { linkKey } from "./structure";
 import {
   bytesText,
-  dropTexts,
+  limitTexts,
   durationText,
   moduleCondition,
   percentText,
@@ -111,7 +111,7 @@ export class Tables {
         { title: "data", text: (l) => `${bytesText(l.bytes_per_second)}/s` },
         { title: "latency, median", text: (l) => (l.age ? durationText(l.age[0]) : "") },
         { title: "p99", text: (l) => (l.age ? durationText(l.age[1]) : "") },
-        { title: "late or dropped", text: (l) => dropTexts(l).join("; ") },
+        { title: "limit, late or dropped", text: (l) => limitTexts(l).join("; ") },
       ],
       linkKey,
       (link) => (link.status ? "broken" : "works") + (link.in_workspace ? " in-workspace" : ""),

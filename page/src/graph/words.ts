@@ -37,24 +37,39 @@ export function percentText(part: number): string {
 
 /** Texts for messages that were delayed, dropped or ignored. */
 const dropWords: readonly [keyof GraphLink & string, (count: string) => string][] = [
-  ["delayed", (count) => `${count} delayed by the rate of the link`],
-  ["throttled", (count) => `${count} dropped by the rate of the link`],
+  ["delayed", (count) => `${count} delayed by the pace of the link`],
+  ["throttled", (count) => `${count} dropped by the pace of the link`],
   ["dropped_newer", (count) => `${count} dropped for a newer message`],
   ["dropped_memory", (count) => `${count} dropped for lack of memory`],
   ["dropped_disconnect", (count) => `${count} lost when the link disconnected`],
+  ["dropped_timeout", (count) => `${count} dropped because the reader hung`],
   ["ignored", (count) => `${count} ignored, because another task had the focus`],
 ];
 
-/** Texts for a link's messages that did not arrive in time, by cause. */
-export function dropTexts(link: GraphLink): string[] {
-  return dropWords
+/** The limit of a link, and how its images are adapted to it; "" without a limit. */
+export function bandwidthText({ bandwidth, images }: GraphLink): string {
+  if (bandwidth <= 0) return "";
+  const limit = `at most ${bytesText(bandwidth)}/s`;
+  return images ? `${limit}: quality ${images[0]}, scale ${images[1]}` : limit;
+}
+
+/** Texts for a link's limit, and for its messages that did not arrive in time, by cause. */
+export function limitTexts(link: GraphLink): string[] {
+  const dropped = dropWords
     .filter(([key]) => Number(link[key]) > 0)
     .map(([key, text]) => text(Number(link[key]).toLocaleString("en")));
+  return [bandwidthText(link), ...dropped].filter((text) => text !== "");
 }
 
 /** Messages of a link that were dropped or lost; ignored ones did reach the reader. */
 export function droppedCount(link: GraphLink): number {
-  return link.throttled + link.dropped_newer + link.dropped_memory + link.dropped_disconnect;
+  return (
+    link.throttled +
+    link.dropped_newer +
+    link.dropped_memory +
+    link.dropped_disconnect +
+    link.dropped_timeout
+  );
 }
 
 /** Median and 99th percentile of a latency: "31 ms, at most 48 ms". */

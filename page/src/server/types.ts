@@ -38,6 +38,10 @@ export interface GraphLink {
   readonly status: string;
   readonly keep: string | number;
   readonly rate: number;
+  /** Limit [byte/s]; 0: none. */
+  readonly bandwidth: number;
+  /** Quality of JPEG and scale of images, as they are adapted to the bandwidth. */
+  readonly images: readonly [number, number] | null;
   readonly messages: number;
   readonly bytes: number;
   readonly per_second: number;
@@ -47,6 +51,7 @@ export interface GraphLink {
   readonly dropped_newer: number;
   readonly dropped_memory: number;
   readonly dropped_disconnect: number;
+  readonly dropped_timeout: number;
   readonly ignored: number;
   readonly in_workspace: boolean;
   readonly age: Percentiles | null;
