@@ -5,7 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <utility>
 
+#include <hc/base/format.h>
+#include <vision/crossing.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -14,26 +18,20 @@ namespace {
 
 using Corners = std::vector<cv::Point2f>;
 
-/// The largest window around a corner without another line of the board: half its side [px].
-int window_of(const Corners& corners, const Board& board, int row, int column) {
+constexpr int kAprilTags = 587;  // of the family 36h11
+
+/// The room around a corner; see room_around().
+float room_of(const Corners& corners, const Board& board, int row, int column) {
   const auto at = [&](int r, int c) {
     return corners[static_cast<std::size_t>(r * board.columns + c)];
   };
   const cv::Point2f p = at(row, column);
-  // Of the distance to those lines, since they are nearer to each other on the far side.
-  constexpr float kShare = 0.6F;
-  constexpr float kLeast = 2, kMost = 11;
-  float half = kMost / kShare;
+  float room = std::numeric_limits<float>::infinity();
   for (const int r : {row - 1, row + 1})
-    for (const int c : {column - 1, column + 1}) {
-      if (r < 0 || r >= board.rows || c < 0 || c >= board.columns) continue;
-      // The parallel lines through the neighbours touch a square of this size.
-      const cv::Point2f across = at(row, c) - p, down = at(r, column) - p;
-      const auto area = static_cast<float>(std::abs(across.cross(down)));
-      half = std::min({half, area / (std::abs(across.x) + std::abs(across.y)),
-                       area / (std::abs(down.x) + std::abs(down.y))});
-    }
-  return static_cast<int>(std::max(kLeast, kShare * half));
+    for (const int c : {column - 1, column + 1})
+      if (r >= 0 && r < board.rows && c >= 0 && c < board.columns)
+        room = std::min(room, room_around(at(row, c) - p, at(r, column) - p));
+  return room;
 }
 
 /// The sum of differences of pairs of neighbours in a line of squares [grey level].
@@ -114,9 +112,8 @@ bool find_corners(const cv::Mat& image, const Board& board, Corners& corners) {
   return are_even(board, corners);
 }
 
-}  // namespace
-
-std::vector<cv::Point3f> Board::corners() const {
+/// Places row by row [m].
+std::vector<cv::Point3f> rows_of(int columns, int rows, double square) {
   std::vector<cv::Point3f> points;
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column)
@@ -125,17 +122,60 @@ std::vector<cv::Point3f> Board::corners() const {
   return points;
 }
 
+}  // namespace
+
+std::vector<cv::Point3f> Board::corners() const {
+  if (kind == BoardKind::Chessboard) return rows_of(columns, rows, square);
+  if (kind == BoardKind::Charuco) return rows_of(columns - 1, rows - 1, square);
+  std::vector<cv::Point3f> points;
+  const double pitch = marker * (1 + spacing);
+  for (int row = rows - 1; row >= 0; --row)
+    for (int column = 0; column < columns; ++column)
+      for (const auto& [right, down] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
+        points.emplace_back(static_cast<float>(column * pitch + right * marker),
+                            static_cast<float>(row * pitch + down * marker), 0.0F);
+  return points;
+}
+
+std::string Board::text() const {
+  const char* form = kind == BoardKind::Chessboard ? "board of {} x {} inner corners"
+                     : kind == BoardKind::Charuco  ? "ChArUco board of {} x {} squares"
+                                                   : "AprilGrid of {} x {} tags";
+  return hc::format(form, columns, rows);
+}
+
+Status Board::check() const {
+  const auto invalid = [](const char* why) { return Error{Code::Invalid, why}; };
+  if (kind == BoardKind::AprilGrid) {
+    if (columns < 2 || rows < 2) return invalid("columns and rows: at least 2 tags each");
+    if (columns * rows > kAprilTags) return invalid("columns and rows: 36h11 has 587 tags");
+    if (!(marker > 0)) return invalid("marker_size is missing: the side of a tag");
+    if (!(spacing > 0)) return invalid("tag_spacing is 0: it is relative to the side of a tag");
+    return {};
+  }
+  if (columns < 3 || rows < 3) return invalid("columns and rows: at least 3 each");
+  if (!(square > 0)) return invalid("square is not above 0");
+  if (kind == BoardKind::Chessboard)
+    return columns == rows ? Status(invalid("columns and rows are equal")) : Status();
+  if (!(marker > 0)) return invalid("marker_size is missing: the side of a marker");
+  if (!(marker < square)) return invalid("marker_size is not below square");
+  return {};
+}
+
+std::vector<cv::Point3f> BoardView::on(const Board& board) const {
+  const auto all = board.corners();
+  std::vector<cv::Point3f> shown;
+  for (std::size_t i = 0; i < left.size(); ++i) shown.push_back(all[number(i)]);
+  return shown;
+}
+
 void refine_board(const cv::Mat& grey, const Board& board, std::vector<cv::Point2f>& corners) {
   const Corners rough = corners;
-  Corners one(1);
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const int half = window_of(rough, board, static_cast<int>(i) / board.columns,
-                               static_cast<int>(i) % board.columns);
-    one[0] = rough[i];
-    cv::cornerSubPix(grey, one, {half, half}, {-1, -1},
-                     {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-3});
-    corners[i] = one[0];
-  }
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    refine_crossing(grey,
+                    room_of(rough, board, static_cast<int>(i) / board.columns,
+                            static_cast<int>(i) % board.columns),
+                    corners[i]);
 }
 
 std::optional<BoardView> find_board(const cv::Mat& left, const cv::Mat& right, const Board& board) {
@@ -151,9 +191,18 @@ std::optional<BoardView> find_board(const cv::Mat& left, const cv::Mat& right, c
 
 double difference(const BoardView& a, const BoardView& b) {
   double sum = 0;
-  for (std::size_t i = 0; i < a.left.size(); ++i)
-    sum += cv::norm(a.left[i] - b.left[i]) + cv::norm(a.right[i] - b.right[i]);
-  return sum / static_cast<double>(2 * a.left.size());
+  std::size_t common = 0;
+  for (std::size_t i = 0, j = 0; i < a.left.size() && j < b.left.size();) {
+    const auto one = a.number(i), other = b.number(j);
+    if (one == other) {
+      sum += cv::norm(a.left[i] - b.left[j]) + cv::norm(a.right[i] - b.right[j]);
+      ++common;
+    }
+    i += one <= other;
+    j += other <= one;
+  }
+  return common == 0 ? std::numeric_limits<double>::infinity()
+                     : sum / static_cast<double>(2 * common);
 }
 
 }  // namespace hc::vision

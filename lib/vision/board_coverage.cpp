@@ -28,7 +28,7 @@ cv::Vec3d normal_of(const BoardView& view, const Board& board, cv::Size size) {
   const cv::Matx33d M(focal, 0, size.width / 2.0, 0, focal, size.height / 2.0, 0, 0, 1);
   cv::Vec3d turn, shift;
   cv::Matx33d R;
-  cv::solvePnP(board.corners(), view.left, M, {}, turn, shift);
+  cv::solvePnP(view.on(board), view.left, M, {}, turn, shift);
   cv::Rodrigues(turn, R);
   const cv::Vec3d normal(R(0, 2), R(1, 2), R(2, 2));
   return normal[2] < 0 ? -normal : normal;

@@ -21,8 +21,9 @@ struct BoardPose {
   static BoardPose at(const Board& board, const cv::Vec3d& turn, const cv::Vec3d& centre) {
     BoardPose pose;
     cv::Rodrigues(turn, pose.R);
-    pose.t = centre - pose.R * cv::Vec3d((board.columns - 1) * board.square / 2,
-                                         (board.rows - 1) * board.square / 2, 0);
+    const auto corners = board.corners();
+    const cv::Scalar middle = cv::mean(corners);
+    pose.t = centre - pose.R * cv::Vec3d(middle[0], middle[1], 0);
     return pose;
   }
   /// The same in the frame of another camera.
@@ -45,7 +46,8 @@ inline std::vector<cv::Point2f> corners_of(const Board& board, const BoardPose& 
 /// @param pose  in the left camera's frame.
 inline BoardView view_of(const Board& board, const BoardPose& pose, const StereoCalibration& pair) {
   return {corners_of(board, pose, pair.M1, pair.D1),
-          corners_of(board, pose.seen_by_right(pair), pair.M2, pair.D2)};
+          corners_of(board, pose.seen_by_right(pair), pair.M2, pair.D2),
+          {}};
 }
 
 }  // namespace hc::vision

@@ -104,13 +104,18 @@ double match_deviation(const StereoCalibration& c, const Shared& covariance, cv:
 
 }  // namespace
 
-Deviations deviations_of(const StereoCalibration& c, const std::vector<cv::Point3f>& board,
+Deviations deviations_of(const StereoCalibration& c,
+                         const std::vector<std::vector<cv::Point3f>>& board,
                          const std::vector<std::vector<cv::Point2f>>& left) {
   Shared sum = Shared::Zero();
-  for (const auto& corners : left) sum += information(c, board, corners);
+  std::size_t corners = 0;
+  for (std::size_t view = 0; view < left.size(); ++view) {
+    sum += information(c, board[view], left[view]);
+    corners += left[view].size();
+  }
   const auto unit = inverse(sum);
   if (!unit) return {};
-  const auto numbers = 4 * static_cast<double>(board.size() * left.size());
+  const auto numbers = 4 * static_cast<double>(corners);
   const double unknowns = kNumbers + kPose * static_cast<double>(left.size());
   // rms is of points, of two numbers each.
   const double variance = c.rms * c.rms / 2 * numbers / (numbers - unknowns);

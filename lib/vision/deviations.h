@@ -27,9 +27,10 @@ struct Deviations {
 ///
 /// The errors of all corners are taken for independent, and small enough for a linear
 /// approximation. Infinite where the views leave a number free.
-/// @param board  its corners.  @param left  their places in the left image, for each view [px].
+/// @param board  the corners of each view on the board [m].
+/// @param left  their places in the left image [px].
 Deviations deviations_of(const StereoCalibration& calibration,
-                         const std::vector<cv::Point3f>& board,
+                         const std::vector<std::vector<cv::Point3f>>& board,
                          const std::vector<std::vector<cv::Point2f>>& left);
 
 }  // namespace hc::vision

@@ -64,15 +64,13 @@ double epipolar_error(const StereoCalibration& c, const Points& points) {
 }  // namespace
 
 Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& board, cv::Size size) {
-  if (board.columns < 3 || board.rows < 3 || board.columns == board.rows || !(board.square > 0))
-    return Error{Code::Invalid,
-                 "board: columns and rows must differ and be at least 3, square above 0"};
+  HC_TRY(board.check());
   if (views.size() < kLeastViews)
     return Error{Code::NotFound, std::to_string(views.size()) + " views of the board, at least " +
                                      std::to_string(kLeastViews) + " are needed"};
   Points points;
   for (const auto& view : views) {
-    points.object.push_back(board.corners());
+    points.object.push_back(view.on(board));
     points.left.push_back(view.left);
     points.right.push_back(view.right);
   }
@@ -92,7 +90,7 @@ Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& boar
       points.right.erase(points.right.begin() + worst);
       result = solve(points, size, errors);
     }
-    result.deviations = deviations_of(result.calibration, points.object.front(), points.left);
+    result.deviations = deviations_of(result.calibration, points.object, points.left);
     HC_TRY(result.deviations.check());
     result.calibration.focal_deviation = result.deviations.focal;
     rectify(result.calibration);
@@ -108,9 +106,10 @@ Result<Calibrated> calibrate(std::span<const BoardView> views, const Board& boar
 }
 
 double error_of(const StereoCalibration& c, std::span<const BoardView> views, const Board& board) {
-  const auto corners = board.corners();
   double sum = 0;
+  std::size_t count = 0;
   for (const auto& view : views) {
+    const auto corners = view.on(board);
     cv::Vec3d turn, shift, right_turn;
     cv::Matx33d turned;
     if (!cv::solvePnP(corners, view.left, c.M1, c.D1, turn, shift))
@@ -121,8 +120,9 @@ double error_of(const StereoCalibration& c, std::span<const BoardView> views, co
     cv::projectPoints(corners, turn, shift, c.M1, c.D1, left);
     cv::projectPoints(corners, right_turn, c.R * shift + c.T, c.M2, c.D2, right);
     sum += cv::norm(left, view.left, cv::NORM_L2SQR) + cv::norm(right, view.right, cv::NORM_L2SQR);
+    count += 2 * corners.size();
   }
-  return std::sqrt(sum / static_cast<double>(2 * corners.size() * views.size()));
+  return std::sqrt(sum / static_cast<double>(count));
 }
 
 std::array<double, 9> Calibrated::numbers() const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Calibrates two cameras from views of a chessboard, and judges how well the views determine them.
+// Calibrates two cameras from views of a board, and judges how well the views determine them.
 // No messages.
 
 #include <array>

@@ -116,6 +116,27 @@ TEST(Calibration, FindsCamerasThatAreKnown) {
   EXPECT_LT(found.epipolar, 0.2) << "px";
 }
 
+TEST(Calibration, EachViewMayShowAnotherPartOfTheBoard) {
+  const auto truth = squinting();
+  auto pairs = made_up(truth, 25, 0.1);
+  std::mt19937 random(7);
+  for (auto& view : pairs.views) {
+    BoardView part;
+    const auto first = random() % 27;
+    for (std::size_t i = first; i < first + 27; ++i) {
+      part.numbers.push_back(i);
+      part.left.push_back(view.left[i]);
+      part.right.push_back(view.right[i]);
+    }
+    view = part;
+  }
+  const auto found = must(calibrate(pairs.views, kHeld, pairs.size));
+  EXPECT_NEAR(found.calibration.rms, 0.1 * std::sqrt(2), 0.02) << "px: the noise in x and y";
+  EXPECT_NEAR(found.calibration.M1(0, 0), 600, 5);
+  EXPECT_LT(cv::norm(found.calibration.T - truth.T), 1e-3) << "m";
+  EXPECT_NEAR(error_of(truth, pairs.views, kHeld), 0.1 * std::sqrt(2), 0.03) << "px";
+}
+
 TEST(Calibration, LeavesOutAViewThatIsWrong) {
   auto pairs = made_up(squinting(), 15, 0.1);
   for (auto& corner : pairs.views[4].right) corner.y += 9;
