@@ -93,7 +93,7 @@ void compare_corners(const DrawingCamera& camera, const StereoCalibration& pair)
       const auto pose =
           BoardPose::at(kBoard, {tilt * std::cos(about), tilt * std::sin(about), 0}, {0, 0, 0.4});
       const cv::Mat image =
-          camera.draw(print_of(kBoard), pose, 2, 0.7, static_cast<std::uint64_t>(i + 1));
+          camera.draw(printed(kBoard), pose, 2, 0.7, static_cast<std::uint64_t>(i + 1));
       const Corners truth = corners_of(kBoard, pose, pair.M1, pair.D1);
       if (const auto view = hc::vision::find_board(image, image, kBoard))
         ours.add(view->left, truth);
@@ -120,8 +120,8 @@ void compare_calibrations(const DrawingCamera& left, const DrawingCamera& right,
     const auto pose =
         BoardPose::at(kBoard, {0.6 * spread(random), 0.6 * spread(random), 0.3 * spread(random)},
                       {0.05 + 0.2 * z * spread(random), 0.15 * z * spread(random), z});
-    const cv::Mat l = left.draw(print_of(kBoard), pose, 2, 0.7, 2 * i);
-    const cv::Mat r = right.draw(print_of(kBoard), pose.seen_by_right(truth), 2, 0.7, 2 * i + 1);
+    const cv::Mat l = left.draw(printed(kBoard), pose, 2, 0.7, 2 * i);
+    const cv::Mat r = right.draw(printed(kBoard), pose.seen_by_right(truth), 2, 0.7, 2 * i + 1);
     if (const auto view = hc::vision::find_board(l, r, kBoard)) ours.push_back(*view);
     BoardView view;
     if (!find_as_sample(l, kBoard, view.left) || !find_as_sample(r, kBoard, view.right)) continue;
@@ -172,7 +172,7 @@ int main() {
   const StereoCalibration pair = hc::vision::squinting();
   const DrawingCamera left(pair.M1, pair.D1, pair.size), right(pair.M2, pair.D2, pair.size);
   const cv::Mat board =
-      left.draw(print_of(kBoard), BoardPose::at(kBoard, {0.3, -0.2, 0.1}, {0, 0, 0.5}));
+      left.draw(printed(kBoard), BoardPose::at(kBoard, {0.3, -0.2, 0.1}, {0, 0, 0.5}));
   cv::Mat incomplete = board.clone();
   incomplete.colRange(0, 330).setTo(110);
   std::printf(

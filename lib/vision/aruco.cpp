@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include <hc/base/format.h>
 #include <opencv2/aruco.hpp>
 
 namespace hc::vision {
@@ -55,6 +56,19 @@ Result<ArucoFinder> ArucoFinder::make(const std::string& dictionary) {
   detector->dictionary = pointer_to(aruco::getPredefinedDictionary(
       static_cast<DictionaryName>(named - std::begin(kDictionaries))));
   return ArucoFinder(std::move(detector));
+}
+
+Status ArucoFinder::has(std::size_t markers) const {
+  const auto all = static_cast<std::size_t>(detector_->dictionary->bytesList.rows);
+  if (markers <= all) return {};
+  return Error{Code::Invalid,
+               hc::format("the dictionary has {} markers, the board {}", all, markers)};
+}
+
+cv::Mat ArucoFinder::cells(int id) const {
+  const auto& all = *detector_->dictionary;
+  return 255 *
+         aruco::Dictionary::getBitsFromByteList(all.bytesList.rowRange(id, id + 1), all.markerSize);
 }
 
 std::vector<Marker> ArucoFinder::find(const cv::Mat& grey) const {

@@ -29,7 +29,7 @@ const DrawingCamera& drawing_camera() {
 /// The largest distance of the corners found from those drawn [px].
 double worst_corner(const cv::Vec3d& tilt) {
   const auto pose = BoardPose::at(kTestBoard, tilt, {0, 0, 0.4});
-  const cv::Mat image = drawing_camera().draw(print_of(kTestBoard), pose);
+  const cv::Mat image = drawing_camera().draw(printed(kTestBoard), pose);
   const auto view = must(find_board(image, image, kTestBoard));
   const auto truth = corners_of(kTestBoard, pose, kDrawnCamera, kDrawnLens);
   double worst = 0, worst_reversed = 0;
@@ -52,6 +52,10 @@ TEST(Board, TheSameCornerHasTheSamePlaceInBothImages) {
   BoardView moved = view;
   for (auto& corner : moved.left) corner.x += 10;
   EXPECT_NEAR(difference(view, moved), 5, 1e-3) << "px: the mean of both eyes";
+  BoardView first_two{{view.left[0], view.left[1]}, {view.right[0], view.right[1]}, {0, 1}};
+  EXPECT_NEAR(difference(first_two, moved), 5, 1e-3) << "px: of the corners in common";
+  BoardView third{{view.left[2]}, {view.right[2]}, {2}};
+  EXPECT_TRUE(std::isinf(difference(first_two, third))) << "no corner in common";
   EXPECT_FALSE(find_board(cv::Mat::zeros(480, 640, CV_8U), image, kTestBoard));
   EXPECT_FALSE(find_board(cv::Mat(), cv::Mat(), kTestBoard));
   for (const int side : {1, 2, 7, 30}) {
@@ -74,7 +78,7 @@ TEST(Board, TiltedCornersAreWhereTheyWereDrawn) {
 
 // Processor time, on which other processes have no influence; a search once took 8 to 34 s.
 TEST(Board, AWrongOrIncompleteBoardIsNotSearchedForLong) {
-  cv::Mat image = drawing_camera().draw(print_of(kTestBoard),
+  cv::Mat image = drawing_camera().draw(printed(kTestBoard),
                                         BoardPose::at(kTestBoard, {0.3, -0.2, 0.1}, {0, 0, 0.5}));
   ASSERT_TRUE(find_board(image, image, kTestBoard));
   const std::clock_t begin = std::clock();

@@ -4,9 +4,12 @@
 
 #include <cstdint>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <vision/board_pose_test.h>
+#include <vision/board_print.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -16,20 +19,15 @@ namespace hc::vision {
 struct Print {
   cv::Mat picture;     ///< (H, W) u8
   double dot = 1;      ///< side of its pixels [m]
-  cv::Point2d origin;  ///< first inner corner, from the picture's top left edge [m]
+  cv::Point2d origin;  ///< of Board::corners(), from the picture's top left edge [m]
 };
 
-/// A chessboard in a white margin of a square, which begins and ends with a black square.
-inline Print print_of(const Board& board, int dots = 32) {
-  const cv::Size squares(board.columns + 1, board.rows + 1);
-  Print print{
-      cv::Mat((squares.height + 2) * dots, (squares.width + 2) * dots, CV_8U, cv::Scalar(230)),
-      board.square / dots,
-      {2 * board.square, 2 * board.square}};
-  for (int row = 0; row < squares.height; ++row)
-    for (int column = row % 2; column < squares.width; column += 2)
-      print.picture(cv::Rect((column + 1) * dots, (row + 1) * dots, dots, dots)).setTo(20);
-  return print;
+/// @param dictionary  of a ChArUco board.
+inline Print printed(const Board& board, const std::string& dictionary = "") {
+  const auto print = print_of(board, dictionary);
+  if (!print) throw std::runtime_error(print.error().detail);
+  const double dot = board.kind == BoardKind::AprilGrid ? board.marker / 80 : board.square / 64;
+  return {image_of(*print, dot, 20, 230), dot, print->origin};
 }
 
 /// A camera that draws what it sees.

@@ -2,6 +2,7 @@
 #pragma once
 // Finds markers of each kind in images. No messages. A finder belongs to one thread.
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
@@ -20,6 +21,11 @@ class ArucoFinder {
   /// Errors: NotFound.
   static Result<ArucoFinder> make(const std::string& dictionary);
 
+  /// Whether the dictionary has so many markers. Errors: Invalid (it has fewer).
+  [[nodiscard]] Status has(std::size_t markers) const;
+  /// What is inside the black border of a marker: (N, N) u8, a pixel a cell, 0 or 255.
+  [[nodiscard]] cv::Mat cells(int id) const;
+
   /// @param grey  (H, W) u8.
   /// Cost: 5 ms at 800×600.
   [[nodiscard]] std::vector<Marker> find(const cv::Mat& grey) const;
@@ -35,7 +41,9 @@ class AprilTagFinder {
  public:
   /// @param decimate  edges are searched in an image reduced by this factor [1]: 1 finds the most,
   ///     2 takes a third of the time.
-  explicit AprilTagFinder(double decimate);
+  /// @param wide_borders  find tags with a black border of two cells as well, as Kalibr prints
+  /// them.
+  explicit AprilTagFinder(double decimate, bool wide_borders = false);
 
   /// @param grey  (H, W) u8.
   /// Cost: 20 to 35 ms at 800×600 and decimate 1.
@@ -45,6 +53,9 @@ class AprilTagFinder {
   struct Detector;
   std::shared_ptr<Detector> detector_;
 };
+
+/// What is inside the black border of an AprilTag (36h11): (6, 6) u8, a pixel a cell, 0 or 255.
+cv::Mat apriltag_cells(int id);
 
 /// Filled squares of one saturated colour on white. The rotation of a square is ambiguous: top left
 /// is the corner that gives the least rotation.
