@@ -10,9 +10,13 @@
 
 namespace hc::vision {
 
-Result<BoardViews> BoardViews::make(const Board& board, std::size_t most) {
-  if (board.columns == board.rows) return Error{Code::Invalid, "columns and rows are equal"};
-  return BoardViews(board, most);
+Result<BoardViews> BoardViews::make(const Board& board, std::size_t most,
+                                    const std::string& dictionary) {
+  HC_TRY(board.check());
+  BoardViews views(board, most);
+  if (board.kind != BoardKind::Chessboard)
+    views.finder_ = HC_TRY(MarkedBoardFinder::make(board, dictionary));
+  return views;
 }
 
 Result<bool> BoardViews::take(const cv::Mat& left, const cv::Mat& right, double min_difference) {
@@ -20,7 +24,7 @@ Result<bool> BoardViews::take(const cv::Mat& left, const cv::Mat& right, double 
     return Error{Code::Unsupported, "the images have different sizes"};
   image_size_ = left.size();
   ++pairs_;
-  last_ = find_board(left, right, board_);
+  last_ = finder_ ? finder_->find(left, right) : find_board(left, right, board_);
   if (!last_) return false;
   ++found_;
   const double far = min_difference * image_size_.width;
@@ -50,8 +54,8 @@ Result<Calibrated> BoardViews::calibrate() const {
   if (calibrated) return calibrated;
   Error error = calibrated.error();
   if (views_.size() < kLeastViews)
-    error.detail += hc::format("; the board of {} x {} inner corners was found in {} of {} pairs",
-                               board_.columns, board_.rows, found_, pairs_);
+    error.detail +=
+        hc::format("; the {} was found in {} of {} pairs", board_.text(), found_, pairs_);
   else if (!advice_.empty())
     error.detail += "; " + advice_;
   return error;

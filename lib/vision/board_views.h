@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Collects different views of a chessboard to calibrate two cameras. No messages; plain cv::Mat in.
+// Collects different views of a board to calibrate two cameras. No messages; plain cv::Mat in.
 
 #include <cstddef>
 #include <optional>
@@ -10,6 +10,7 @@
 #include <hc/base/result.h>
 #include <vision/board.h>
 #include <vision/board_coverage.h>
+#include <vision/marked_board.h>
 #include <vision/stereo_fit.h>
 #include <opencv2/core.hpp>
 
@@ -18,17 +19,20 @@ namespace hc::vision {
 class BoardViews {
  public:
   /// @param most  views to keep: a further one replaces one that hardly differs from another.
-  /// Errors: Invalid (columns equal rows).
-  static Result<BoardViews> make(const Board& board, std::size_t most);
+  /// @param dictionary  of a ChArUco board.
+  /// Errors: Invalid (as Board::check()); as for MarkedBoardFinder::make().
+  static Result<BoardViews> make(const Board& board, std::size_t most,
+                                 const std::string& dictionary = "");
 
   /// Finds the board in a pair of images, and keeps the view unless it is too similar to another.
   ///
-  /// @param left, right  as for find_board().
+  /// @param left, right  as for find_board(), MarkedBoardFinder::find().
   /// @param min_difference  minimum difference() from any other view, as a share of the
   ///     images' width, 0 … 1.
   /// @returns  whether the view was kept. Errors: Unsupported (images of different sizes).
   Result<bool> take(const cv::Mat& left, const cv::Mat& right, double min_difference);
 
+  [[nodiscard]] const Board& board() const { return board_; }
   [[nodiscard]] std::size_t size() const { return views_.size(); }
   /// Pairs of images so far, and those in which the board was found.
   [[nodiscard]] std::size_t pairs() const { return pairs_; }
@@ -53,6 +57,7 @@ class BoardViews {
   void thin_out();
 
   Board board_;
+  std::optional<MarkedBoardFinder> finder_;  // unless it is a chessboard
   std::size_t most_;
   std::vector<BoardView> views_;
   std::optional<BoardView> last_;  // of the last pair
