@@ -27,14 +27,17 @@ int fuzz_stereo(const std::uint8_t* data, std::size_t size) {
   const int disparities = 16 * (1 + data[5] % 16);
   const auto matcher = hc::vision::semi_global_matcher({.disparities = disparities});
   hc::vision::Disparities found;
-  const auto status = matcher->match(left, right, found);
+  const auto status = matcher->match(left, right, found, hc::vision::Eyes::Both);
   if (!status) {
     HC_CHECK(!status.error().detail.empty(), width, height);
     return 0;
   }
-  double least = 0, most = 0;
-  cv::minMaxLoc(found.disparity, &least, &most);
-  HC_CHECK(found.disparity.size() == left.size() && found.confidence.size() == left.size(), width);
-  HC_CHECK(least >= 0 && most <= disparities, least, most);
+  HC_CHECK(found.confidence.size() == left.size(), width);
+  for (const cv::Mat* disparity : {&found.disparity, &found.right}) {
+    double least = 0, most = 0;
+    cv::minMaxLoc(*disparity, &least, &most);
+    HC_CHECK(disparity->size() == left.size(), width);
+    HC_CHECK(least >= 0 && most <= disparities, least, most);
+  }
   return 0;
 }

@@ -59,32 +59,19 @@ class SemiGlobalMatcher final : public StereoMatcher {
     matching_.disparities = options.disparities;
   }
 
-  Status match(const cv::Mat& left, const cv::Mat& right, Disparities& found) override {
+  Status match(const cv::Mat& left, const cv::Mat& right, Disparities& found, Eyes eyes) override {
     HC_TRY(check(left, right));
     cv::parallel_for_({0, 2}, [&](const cv::Range& range) {
       for (int i = range.start; i < range.end; ++i)
         prepare(i == 0 ? left : right, i == 1, i == 0 ? left_ : right_);
     });
-    const auto stripes = stripes_of(left.rows);
-    const auto count = static_cast<int>(stripes.size()) - 1;
     raw_.create(left.size(), CV_16U);
+    raw_right_.create(left.size(), CV_16U);
     found.confidence.create(left.size(), CV_8U);
-    scratch_.resize(static_cast<std::size_t>(count));
-    cv::parallel_for_(
-        {0, count},
-        [&](const cv::Range& range) {
-          for (auto i = static_cast<std::size_t>(range.start);
-               i < static_cast<std::size_t>(range.end); ++i)
-            match_rows(
-                {&left_, &right_, left.cols, stripes[i], stripes[i + 1], &raw_, &found.confidence},
-                matching_, scratch_[i]);
-        },
-        count);
-    constexpr int kMedian = 3;  // side of the window [px]
-    cv::medianBlur(raw_, clean_, kMedian);
-    speckles_.remove(clean_, speckle_size_, kSubPixels);
-    smoother_.smooth(clean_, raw_);
-    raw_.convertTo(found.disparity, CV_32F, 1.0 / kSubPixels);
+    match_stripes({&left_, &right_, left.cols, 0, 0, &raw_, &found.confidence,
+                   eyes == Eyes::Both ? &raw_right_ : nullptr});
+    clean(raw_, found.disparity);
+    if (eyes == Eyes::Both) clean(raw_right_, found.right);
     // The median fills some holes.
     cv::max(found.confidence, 1, found.confidence);
     cv::compare(raw_, 0, known_, cv::CMP_GT);
@@ -93,9 +80,37 @@ class SemiGlobalMatcher final : public StereoMatcher {
   }
 
  private:
+  /// @param whole  without rows.
+  void match_stripes(const Stripe& whole) {
+    const auto rows = stripes_of(whole.disparity->rows);
+    const auto count = static_cast<int>(rows.size()) - 1;
+    scratch_.resize(static_cast<std::size_t>(count));
+    cv::parallel_for_(
+        {0, count},
+        [&](const cv::Range& range) {
+          for (auto i = static_cast<std::size_t>(range.start);
+               i < static_cast<std::size_t>(range.end); ++i) {
+            Stripe stripe = whole;
+            stripe.begin = rows[i];
+            stripe.end = rows[i + 1];
+            match_rows(stripe, matching_, scratch_[i]);
+          }
+        },
+        count);
+  }
+
+  /// @param[in,out] raw  of match_rows(); smoothed. @param[out] disparity  [px].
+  void clean(cv::Mat& raw, cv::Mat& disparity) {
+    constexpr int kMedian = 3;  // side of the window [px]
+    cv::medianBlur(raw, clean_, kMedian);
+    speckles_.remove(clean_, speckle_size_, kSubPixels);
+    smoother_.smooth(clean_, raw);
+    raw.convertTo(disparity, CV_32F, 1.0 / kSubPixels);
+  }
+
   SemiGlobal matching_;
   int speckle_size_;
-  cv::Mat left_, right_, raw_, clean_, known_;
+  cv::Mat left_, right_, raw_, raw_right_, clean_, known_;
   std::vector<Scratch> scratch_;
   SpeckleFilter speckles_;
   Smoother smoother_;
@@ -114,21 +129,33 @@ class OpenCvMatcher final : public StereoMatcher {
                                options.speckle_size, kSpeckleRange, cv::StereoSGBM::MODE_SGBM_3WAY);
   }
 
-  Status match(const cv::Mat& left, const cv::Mat& right, Disparities& found) override {
+  Status match(const cv::Mat& left, const cv::Mat& right, Disparities& found, Eyes eyes) override {
     HC_TRY(check(left, right));
     // OpenCV 4.6 writes out of bounds otherwise.
     if (left.cols <= matcher_->getNumDisparities())
       return Error{Code::Invalid, hc::format("images of {} x {} are not wider than {} disparities",
                                              left.cols, left.rows, matcher_->getNumDisparities())};
-    matcher_->compute(grey_of(left), grey_of(right), sixteenths_);
-    constexpr int kScale = cv::StereoMatcher::DISP_SCALE;
-    sixteenths_.convertTo(found.disparity, CV_32F, 1.0 / kScale);
-    cv::max(found.disparity, 0.0, found.disparity);  // unknown is -1 there, 0 here
+    const cv::Mat grey_left = grey_of(left), grey_right = grey_of(right);
+    find(grey_left, grey_right, found.disparity);
     cv::compare(found.disparity, 0.0, found.confidence, cv::CMP_GT);
+    if (eyes == Eyes::Left) return {};
+    // Mirrored, the right eye is the left one.
+    cv::Mat mirrored_left, mirrored_right;
+    cv::flip(grey_left, mirrored_right, 1);
+    cv::flip(grey_right, mirrored_left, 1);
+    find(mirrored_left, mirrored_right, found.right);
+    cv::flip(found.right, found.right, 1);
     return {};
   }
 
  private:
+  void find(const cv::Mat& left, const cv::Mat& right, cv::Mat& disparity) {
+    constexpr int kScale = cv::StereoMatcher::DISP_SCALE;
+    matcher_->compute(left, right, sixteenths_);
+    sixteenths_.convertTo(disparity, CV_32F, 1.0 / kScale);
+    cv::max(disparity, 0.0, disparity);  // unknown is -1 there, 0 here
+  }
+
   cv::Ptr<cv::StereoSGBM> matcher_;
   cv::Mat sixteenths_;
 };

@@ -33,6 +33,43 @@ Pair shifted_pair(cv::Size size, int shift) {
   return {scene(cv::Rect({0, 0}, size)).clone(), scene(cv::Rect({shift, 0}, size)).clone()};
 }
 
+/// A square before a ground that comes nearer from top to bottom, in both eyes.
+struct Scene {
+  static constexpr int kHeight = 240, kNear = 40;
+  static constexpr int kWidth = 400;
+
+  Scene() {
+    cv::Mat ground(kHeight, kWidth + kNear, CV_8U), square = ground.clone();
+    cv::RNG rng(3);
+    for (cv::Mat* texture : {&ground, &square}) {
+      rng.fill(*texture, cv::RNG::UNIFORM, 0, 255);
+      cv::GaussianBlur(*texture, *texture, {5, 5}, 0);
+    }
+    for (const bool is_right : {false, true}) {
+      cv::Mat across(kHeight, kWidth, CV_32F), down = across.clone(), truth = across.clone();
+      cv::Mat on_square = cv::Mat::zeros(across.size(), CV_8U), over;
+      for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+          const auto in_left = static_cast<float>(x + (is_right ? kNear : 0));
+          const bool is_near = y >= 80 && y < 160 && in_left >= 160 && in_left < 260;
+          const float shift = is_near ? kNear : 6 + 0.05F * static_cast<float>(y);
+          truth.at<float>(y, x) = shift;
+          across.at<float>(y, x) = static_cast<float>(x) + (is_right ? shift : 0);
+          down.at<float>(y, x) = static_cast<float>(y);
+          on_square.at<std::uint8_t>(y, x) = is_near ? 255 : 0;
+        }
+      cv::Mat& image = is_right ? pair.right : pair.left;
+      cv::remap(ground, image, across, down, cv::INTER_LINEAR);
+      cv::remap(square, over, across, down, cv::INTER_LINEAR);
+      over.copyTo(image, on_square);
+      (is_right ? right_truth : left_truth) = truth;
+    }
+  }
+
+  Pair pair;
+  cv::Mat left_truth, right_truth;  // disparities [px]
+};
+
 /// Aloe as in graphs/depth.toml; the whole graph must give the same figures (tests/pipes).
 struct Aloe {
   Aloe() {
@@ -78,6 +115,25 @@ TEST_P(EachMatcher, TakesColourAndGrey) {
   EXPECT_EQ(cv::norm(of_grey.disparity, of_both.disparity, cv::NORM_INF), 0);
 }
 
+TEST_P(EachMatcher, FindsTheDisparitiesOfBothEyes) {
+  const Scene scene;
+  Disparities found, of_one;
+  const auto matcher = make({.disparities = 64});
+  ASSERT_TRUE(matcher->match(scene.pair.left, scene.pair.right, found, Eyes::Both));
+  ASSERT_TRUE(matcher->match(scene.pair.left, scene.pair.right, of_one));
+  EXPECT_EQ(cv::norm(found.disparity, of_one.disparity, cv::NORM_INF), 0);
+  const auto check = [&](const cv::Mat& disparity, const cv::Mat& truth, int from) {
+    const cv::Rect part(from, 0, Scene::kWidth - 64, Scene::kHeight);  // without OpenCV's band
+    const auto one = score(disparity(part), truth(part), 1);
+    EXPECT_LT(100 * one.bad_share(), 1.5) << "% of valid pixels";
+    EXPECT_LT(100 * one.hole_share(), 6) << "% of all: also what one eye does not see";
+    const cv::Rect on_square(from == 0 ? 130 : 170, 90, 80, 60);
+    EXPECT_EQ(score(disparity(on_square), truth(on_square), 0.5).wrong_share(), 0);
+  };
+  check(found.disparity, scene.left_truth, 64);
+  check(found.right, scene.right_truth, 0);
+}
+
 TEST_P(EachMatcher, SaysWhatItDoesNotTake) {
   const auto matcher = make({.disparities = 64});
   Disparities found;
@@ -94,6 +150,8 @@ TEST_P(EachMatcher, SaysWhatItDoesNotTake) {
   EXPECT_EQ(error(image, cv::Mat(100, 200, CV_8UC4)),
             "the right image is not u8 with one or three channels");
   EXPECT_EQ(error(image, image), "") << "without any texture";
+  ASSERT_TRUE(matcher->match(image, image, found, Eyes::Both));
+  EXPECT_EQ(found.right.size(), image.size());
 }
 
 INSTANTIATE_TEST_SUITE_P(Matchers, EachMatcher, testing::Values("semi_global", "opencv"),
@@ -104,10 +162,11 @@ TEST(SemiGlobalMatcher, DoesNotDependOnTheNumberOfThreads) {
   const int before = cv::getNumThreads();
   Disparities first, other;
   cv::setNumThreads(1);
-  ASSERT_TRUE(semi_global_matcher({})->match(aloe.pair.left, aloe.pair.right, first));
+  ASSERT_TRUE(semi_global_matcher({})->match(aloe.pair.left, aloe.pair.right, first, Eyes::Both));
   for (const int threads : {2, 3, 8}) {
     cv::setNumThreads(threads);
-    ASSERT_TRUE(semi_global_matcher({})->match(aloe.pair.left, aloe.pair.right, other));
+    ASSERT_TRUE(semi_global_matcher({})->match(aloe.pair.left, aloe.pair.right, other, Eyes::Both));
+    EXPECT_EQ(cv::norm(first.right, other.right, cv::NORM_INF), 0) << threads;
     EXPECT_EQ(cv::norm(first.disparity, other.disparity, cv::NORM_INF), 0) << threads;
     EXPECT_EQ(cv::norm(first.confidence, other.confidence, cv::NORM_INF), 0) << threads;
   }

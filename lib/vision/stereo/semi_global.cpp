@@ -69,9 +69,47 @@ HWY_INLINE V blocks_from(D d, V low, V high) {
 /// The costs of all disparities of a pixel.
 template <class D, std::size_t kVectors>
 struct Costs {
+  using V = hn::Vec<D>;
+  static constexpr std::size_t kLanes = hn::MaxLanes(D());
+
   // Explicit because GCC compiles the implicit one without the instructions of NEON vectors.
   Costs() = default;
-  hn::Vec<D> v[kVectors];
+
+  static HWY_INLINE Costs load(const Byte* from) {
+    Costs costs;
+    for (std::size_t k = 0; k < kVectors; ++k) costs.v[k] = hn::Load(D(), from + k * kLanes);
+    return costs;
+  }
+  HWY_INLINE void store(Byte* to) const {
+    for (std::size_t k = 0; k < kVectors; ++k) hn::Store(v[k], D(), to + k * kLanes);
+  }
+
+  /// The disparities of vector k.
+  static HWY_INLINE V indices(std::size_t k) {
+    return hn::Add(hn::Iota(D(), Byte{0}), hn::Set(D(), static_cast<Byte>(k * kLanes)));
+  }
+
+  /// Vector k of the costs of the disparities greater by one; `last` is after the last cost.
+  HWY_INLINE V next_of(std::size_t k, V last) const {
+    const D d;
+    const V next = blocks_from<1>(d, v[k], k + 1 == kVectors ? last : v[k + 1]);
+    return hn::CombineShiftRightBytes<1>(d, next, v[k]);
+  }
+
+  /// For each disparity, the lesser cost of the two next to it.
+  HWY_INLINE Costs next_to() const {
+    const D d;
+    constexpr std::size_t kLastBlock = kLanes <= 16 ? 0 : kLanes / 16 - 1;
+    const V never = hn::Set(d, kNever);
+    Costs min;
+    for (std::size_t k = 0; k < kVectors; ++k) {
+      const V before = blocks_from<kLastBlock>(d, k == 0 ? never : v[k - 1], v[k]);
+      min.v[k] = hn::Min(hn::CombineShiftRightBytes<15>(d, v[k], before), next_of(k, never));
+    }
+    return min;
+  }
+
+  V v[kVectors];
 };
 
 template <class D, std::size_t kVectors>
@@ -106,6 +144,9 @@ class Sweep {
                  {&north_west_, row + rows * kBytes},
                  {&winners_, sizeof(Winner) * width_},
                  {&best_, 2 * bytes},
+                 {&window_, 2 * kBytes},
+                 {&right_costs_, bytes},
+                 {&right_disparities_, bytes},
                  {&down_, bytes},
                  {&down_right_, bytes},
                  {&down_left_, bytes}};
@@ -132,8 +173,9 @@ class Sweep {
         sweep<true, false>(row, above);
       else
         sweep<true, true>(row, above);
-      if (y > stripe_.begin)
-        write_row(stripe_.disparity->ptr<std::uint16_t>(y - 1), stripe_.margin->ptr(y - 1));
+      if (y <= stripe_.begin) continue;
+      write_row(stripe_.disparity->ptr<std::uint16_t>(y - 1), stripe_.margin->ptr(y - 1));
+      if (is_for_both_) write_right_row(above, stripe_.right_disparity->ptr<std::uint16_t>(y - 1));
     }
   }
 
@@ -207,7 +249,7 @@ class Sweep {
     const auto count = static_cast<std::size_t>(disparities_);
     if (x + 1 >= kBytes && count == kBytes) return costs;
     for (std::size_t k = 0; k < kVectors; ++k) {
-      const V index = indices(k);
+      const V index = C::indices(k);
       const auto is_outside = hn::Gt(index, hn::Set(d, static_cast<Byte>(std::min(x, kBytes - 1))));
       const auto is_unwanted = hn::Gt(index, hn::Set(d, static_cast<Byte>(count - 1)));
       costs.v[k] = hn::IfThenElse(is_outside, hn::Set(d, kOutside), costs.v[k]);
@@ -252,35 +294,6 @@ class Sweep {
     }
   }
 
-  static HWY_INLINE void store(const C& costs, Byte* to) {
-    for (std::size_t k = 0; k < kVectors; ++k) hn::Store(costs.v[k], D(), to + k * kLanes);
-  }
-  static HWY_INLINE C load(const Byte* from) {
-    C costs;
-    for (std::size_t k = 0; k < kVectors; ++k) costs.v[k] = hn::Load(D(), from + k * kLanes);
-    return costs;
-  }
-
-  /// For each disparity, the lesser cost of the two next to it.
-  static HWY_INLINE C next_to(const C& costs) {
-    const D d;
-    C min;
-    constexpr std::size_t kLastBlock = kLanes <= 16 ? 0 : kLanes / 16 - 1;
-    const V never = hn::Set(d, kNever);
-    for (std::size_t k = 0; k < kVectors; ++k) {
-      const V below = blocks_from<kLastBlock>(d, k == 0 ? never : costs.v[k - 1], costs.v[k]);
-      const V above = blocks_from<1>(d, costs.v[k], k + 1 == kVectors ? never : costs.v[k + 1]);
-      min.v[k] = hn::Min(hn::CombineShiftRightBytes<15>(d, costs.v[k], below),
-                         hn::CombineShiftRightBytes<1>(d, above, costs.v[k]));
-    }
-    return min;
-  }
-
-  /// The disparities of a vector of costs.
-  static HWY_INLINE V indices(std::size_t k) {
-    return hn::Add(hn::Iota(D(), Byte{0}), hn::Set(D(), static_cast<Byte>(k * kLanes)));
-  }
-
   /// Absolute differences of the grey levels of a row to those `step` bytes before.
   void differences(const Byte* grey, std::ptrdiff_t step, Byte* to) const {
     const D d;
@@ -302,6 +315,7 @@ class Sweep {
     const Row to_right = right, to_left = left;
     C west, east;
     for (std::size_t k = 0; k < kVectors; ++k) west.v[k] = east.v[k] = hn::Zero(D());
+    if (kLeft && copy.is_for_both_) std::fill_n(copy.window_, kBytes, kNever);
     for (std::size_t i = 0; i < copy.width_; ++i) {
       if constexpr (kRight) copy.step_right(to_right, i, west);
       if constexpr (kLeft) {
@@ -317,10 +331,10 @@ class Sweep {
     const D d;
     const std::size_t at = x * kBytes;
     const C costs = matching_costs(x);
-    store(costs, row.costs + at);
+    costs.store(row.costs + at);
     C to, north, north_west, north_east, sums;
     for (auto& v : sums.v) v = hn::Zero(d);
-    const V min = arrive(costs, west, next_to(west), slope_, jump(row.along[x]), to);
+    const V min = arrive(costs, west, west.next_to(), slope_, jump(row.along[x]), to);
     settle(to, min_of_lanes(d, min), sums);
     west = to;
     const V min_n = arrive(costs, north_ + at, slope_, jump(down_[x]), north);
@@ -330,22 +344,22 @@ class Sweep {
     settle(north, min_of_lanes(d, min_n), sums);
     settle(north_west, min_of_lanes(d, min_nw), sums);
     settle(north_east, min_of_lanes(d, min_ne), sums);
-    store(north, north_ + at);
-    store(north_west, north_west_ + at);
-    store(north_east, north_east_ + at);
-    store(sums, row.sums + at);
+    north.store(north_ + at);
+    north_west.store(north_west_ + at);
+    north_east.store(north_east_ + at);
+    sums.store(row.sums + at);
   }
 
   /// The path to a pixel from the east, which completes its sums.
   HWY_INLINE void step_left(const Row& row, std::size_t x, C& east) const {
     const D d;
     const std::size_t at = x * kBytes;
-    C to, sums = load(row.sums + at);
+    C to, sums = C::load(row.sums + at);
     const V min =
-        arrive(load(row.costs + at), east, next_to(east), slope_, jump(row.along[x + 1]), to);
+        arrive(C::load(row.costs + at), east, east.next_to(), slope_, jump(row.along[x + 1]), to);
     settle(to, min_of_lanes(d, min), sums);
     east = to;
-    store(sums, row.sums + at);
+    sums.store(row.sums + at);
   }
 
   /// The winners of some pixels. Separate from the steps of the paths because pixels are
@@ -353,13 +367,39 @@ class Sweep {
   HWY_INLINE void find_winners(const Row& row, std::size_t begin, std::size_t end) const {
     auto* winners = reinterpret_cast<Winner*>(winners_);
     for (std::size_t x = begin; x < end; ++x) winners[x] = winner_of(row.sums + x * kBytes);
+    if (is_for_both_) find_right_winners(row, begin, end);
+  }
+
+  /// The winners of the right image's pixels, whose sums are on the diagonals of those of the left
+  /// image: a step to the left moves each right pixel to the disparity less by one, until it is
+  /// opposite at 0. Of equal costs the last one wins, which is that of the smallest disparity.
+  HWY_INLINE void find_right_winners(const Row& row, std::size_t begin, std::size_t end) const {
+    const D d;
+    const V never = hn::Set(d, kNever);
+    C min = C::load(window_), disparity = C::load(window_ + kBytes);
+    for (std::size_t x = end; x-- > begin;) {
+      const C costs = C::load(row.sums + x * kBytes);
+      for (std::size_t k = 0; k < kVectors; ++k) {
+        min.v[k] = hn::Min(min.v[k], costs.v[k]);
+        disparity.v[k] =
+            hn::IfThenElse(hn::Eq(min.v[k], costs.v[k]), C::indices(k), disparity.v[k]);
+      }
+      right_costs_[x] = hn::GetLane(min.v[0]);
+      right_disparities_[x] = hn::GetLane(disparity.v[0]);
+      for (std::size_t k = 0; k < kVectors; ++k) {
+        min.v[k] = min.next_of(k, never);
+        disparity.v[k] = disparity.next_of(k, never);
+      }
+    }
+    min.store(window_);
+    disparity.store(window_ + kBytes);
   }
 
   /// The disparity with the minimum cost of a pixel; the smallest if there are several.
   HWY_INLINE Winner winner_of(const Byte* sums) const {
     const D d;
     const V never = hn::Set(d, kNever);
-    const C costs = load(sums);
+    const C costs = C::load(sums);
     V min = costs.v[0];
     for (std::size_t k = 1; k < kVectors; ++k) min = hn::Min(min, costs.v[k]);
     min = min_of_lanes(d, min);
@@ -372,19 +412,20 @@ class Sweep {
     const V below = hn::Set(d, static_cast<Byte>(first - 1));
     for (std::size_t k = 0; k < kVectors; ++k) {
       // Unsigned: the winner and its neighbours become 0, 1, 2.
-      const auto is_far = hn::Gt(hn::Sub(indices(k), below), hn::Set(d, Byte{2}));
+      const auto is_far = hn::Gt(hn::Sub(C::indices(k), below), hn::Set(d, Byte{2}));
       other = hn::Min(other, hn::IfThenElse(is_far, costs.v[k], never));
     }
     const Byte cost = hn::GetLane(min);
     const auto disparity = static_cast<Byte>(first);
     return {disparity, cost, static_cast<Byte>(hn::GetLane(min_of_lanes(d, other)) - cost),
-            fraction(sums, disparity)};
+            fraction(sums + disparity, 1, disparity)};
   }
 
-  /// The sub-pixel offset of the minimum of a V through the three costs [1/64 px].
-  HWY_INLINE std::int8_t fraction(const Byte* sums, int disparity) const {
+  /// The sub-pixel offset of the minimum of a V through the three costs [1/64 px], which are `step`
+  /// bytes apart.
+  HWY_INLINE std::int8_t fraction(const Byte* cost, std::ptrdiff_t step, int disparity) const {
     if (disparity == 0 || disparity + 1 >= disparities_) return 0;
-    const int below = sums[disparity - 1], at = sums[disparity], above = sums[disparity + 1];
+    const int below = cost[-step], at = *cost, above = cost[step];
     const int rise = std::max(below, above) - at;
     if (rise <= 0 || std::max(below, above) == kNever) return 0;
     return static_cast<std::int8_t>((below - above) * (kSubPixels / 2) / rise);
@@ -397,9 +438,6 @@ class Sweep {
     const auto* winners = reinterpret_cast<const Winner*>(winners_);
     auto* best = reinterpret_cast<std::uint16_t*>(best_);
     std::fill_n(best, width_, kNone);
-    const auto is_clear = [this](const Winner& winner, std::size_t x) {
-      return winner.margin >= margin_ && winner.disparity <= x && winner.cost != kNever;
-    };
     for (std::size_t x = 0; x < width_; ++x) {
       const Winner winner = winners[x];
       const bool clear = is_clear(winner, x);
@@ -418,11 +456,37 @@ class Sweep {
     }
   }
 
+  /// Writes the disparities of the right image's pixels that pass the same check: the partner is
+  /// clear, and its disparity the same. @param row  that of `winners_`.
+  void write_right_row(const Row& row, std::uint16_t* disparity) const {
+    constexpr auto kDiagonal = static_cast<std::ptrdiff_t>(kBytes + 1);
+    const auto* winners = reinterpret_cast<const Winner*>(winners_);
+    for (std::size_t x = 0; x < width_; ++x) {
+      const std::size_t own = right_disparities_[x];
+      const std::size_t partner = right_costs_[x] == kNever ? x : x + own;
+      const Winner winner = winners[partner];
+      const bool agrees = right_costs_[x] != kNever && is_clear(winner, partner) &&
+                          std::abs(winner.disparity - static_cast<int>(own)) <= left_right_;
+      disparity[x] = 0;
+      if (!agrees) continue;
+      const int offset = partner + 1 == width_ ? 0
+                                               : fraction(row.sums + partner * kBytes + own,
+                                                          kDiagonal, static_cast<int>(own));
+      const int found = static_cast<int>(own) * kSubPixels + offset;
+      disparity[x] = static_cast<std::uint16_t>(std::max(1, found));
+    }
+  }
+
+  [[nodiscard]] bool is_clear(const Winner& winner, std::size_t x) const {
+    return winner.margin >= margin_ && winner.disparity <= x && winner.cost != kNever;
+  }
+
   const Stripe& stripe_;
   const SemiGlobal& options_;
   const std::size_t width_, plane_;
   const int disparities_ = options_.disparities, margin_ = options_.margin;
   const int left_right_ = options_.left_right;
+  const bool is_for_both_ = stripe_.right_disparity != nullptr;
   const Byte* const jumps_ = options_.penalties.jump.data();
   const V slope_ = hn::Set(D(), options_.penalties.slope);
   const V before_first_ = hn::VecFromMask(D(), hn::FirstN(D(), 1));
@@ -436,6 +500,11 @@ class Sweep {
   Byte* north_west_ = nullptr;
   Byte* winners_ = nullptr;
   Byte* best_ = nullptr;  // of each pixel of the right image, its cost · 256 + its disparity, u16
+  // For both eyes: of each pixel of the right image the winner, and before, of those opposite to
+  // the disparities of a left pixel, the minimum so far and its disparity.
+  Byte* window_ = nullptr;
+  Byte* right_costs_ = nullptr;
+  Byte* right_disparities_ = nullptr;
   // Differences of the grey levels of a row to those of the row above.
   Byte* down_ = nullptr;
   Byte* down_right_ = nullptr;

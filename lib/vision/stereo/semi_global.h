@@ -57,6 +57,8 @@ struct Stripe {
   int begin, end;
   cv::Mat* disparity;  ///< (H, W) u16 [1/64 px], 0 where unknown
   cv::Mat* margin;     ///< (H, W) u8: cost margin of the best disparity; 0: unknown
+  /// The same as `disparity` for the pixels of the right image, not mirrored; null: not wanted.
+  cv::Mat* right_disparity = nullptr;
 };
 
 /// Width of the border of a Stripe's images, which repeats the outermost pixels.

@@ -20,15 +20,20 @@ class Plain {
   Plain(const cv::Mat& left, const cv::Mat& right, const SemiGlobal& options)
       : left_(left), right_(right), options_(options), count_(options.disparities) {}
 
-  void run(cv::Mat& disparity, cv::Mat& margin) {
+  void run(cv::Mat& disparity, cv::Mat& margin, cv::Mat& right_disparity) {
     disparity.create(left_.size(), CV_16U);
     margin.create(left_.size(), CV_8U);
+    right_disparity.create(left_.size(), CV_16U);
     const auto begins = stripes_of(left_.rows);
     for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
       paths_.assign(4, Row(static_cast<std::size_t>(left_.cols), Costs()));
       for (int y = std::max(0, begins[i] - kWarmUpRows); y < begins[i + 1]; ++y) {
-        const auto winners = match_row(y);
-        if (y >= begins[i]) write(y, winners, disparity, margin);
+        const auto sums = match_row(y);
+        std::vector<Winner> winners;
+        for (const Costs& sum : sums) winners.push_back(winner(sum));
+        if (y < begins[i]) continue;
+        write(y, winners, disparity, margin);
+        write_right(y, sums, winners, right_disparity);
       }
     }
   }
@@ -80,7 +85,8 @@ class Plain {
     return to;
   }
 
-  std::vector<Winner> match_row(int y) {
+  /// The sums of the path costs.
+  Row match_row(int y) {
     const int width = left_.cols;
     Row costs, sums(static_cast<std::size_t>(width), Costs(static_cast<std::size_t>(count_)));
     for (int x = 0; x < width; ++x) {
@@ -114,9 +120,7 @@ class Plain {
     for (int x = width - 1; x >= 0; --x)
       add(x, path = arrive(costs[static_cast<std::size_t>(x)], path,
                            grey(left_, y, x) - grey(left_, y, x + 1)));
-    std::vector<Winner> winners;
-    for (const Costs& sum : sums) winners.push_back(winner(sum));
-    return winners;
+    return sums;
   }
 
   Winner winner(const Costs& sum) const {
@@ -128,17 +132,41 @@ class Plain {
         other = std::min(other, sum[static_cast<std::size_t>(d)]);
     found.margin = other - found.cost;
     if (found.disparity == 0 || found.disparity == count_ - 1) return found;
-    const int below = best[-1], above = best[1], rise = std::max(below, above) - *best;
-    if (rise > 0 && std::max(below, above) < kMost)
-      found.fraction = (below - above) * (kSubPixels / 2) / rise;
+    found.fraction = fraction(best[-1], *best, best[1]);
     return found;
   }
 
+  static int fraction(int below, int at, int above) {
+    const int rise = std::max(below, above) - at;
+    if (rise <= 0 || std::max(below, above) >= kMost) return 0;
+    return (below - above) * (kSubPixels / 2) / rise;
+  }
+
+  bool is_usable(const Winner& winner, int x) const {
+    return winner.margin >= options_.margin && winner.disparity <= x && winner.cost < kMost;
+  }
+
+  void write_right(int y, const Row& sums, const std::vector<Winner>& winners,
+                   cv::Mat& disparity) const {
+    for (int x = 0; x < left_.cols; ++x) {
+      // The costs of the pixel's partners, which are on a diagonal.
+      Costs costs;
+      for (int d = 0; d < count_ && x + d < left_.cols; ++d)
+        costs.push_back(sums[static_cast<std::size_t>(x + d)][static_cast<std::size_t>(d)]);
+      const auto best = std::min_element(costs.begin(), costs.end());
+      const auto own = static_cast<int>(best - costs.begin());
+      const Winner& partner = winners[static_cast<std::size_t>(x + own)];
+      const bool is_known = *best < kMost && is_usable(partner, x + own) &&
+                            std::abs(partner.disparity - own) <= options_.left_right;
+      const bool is_inside = own > 0 && own + 1 < static_cast<int>(costs.size());
+      const int offset = is_inside ? fraction(best[-1], *best, best[1]) : 0;
+      disparity.at<std::uint16_t>(y, x) =
+          static_cast<std::uint16_t>(is_known ? std::max(1, own * kSubPixels + offset) : 0);
+    }
+  }
+
   void write(int y, const std::vector<Winner>& winners, cv::Mat& disparity, cv::Mat& margin) const {
-    const auto usable = [&](int x) {
-      const Winner& w = winners[static_cast<std::size_t>(x)];
-      return w.margin >= options_.margin && w.disparity <= x && w.cost < kMost;
-    };
+    const auto usable = [&](int x) { return is_usable(winners[static_cast<std::size_t>(x)], x); };
     std::vector<int> best(winners.size(), kMost), partner_disparity(winners.size());
     for (int x = 0; x < left_.cols; ++x) {
       const Winner& w = winners[static_cast<std::size_t>(x)];
@@ -189,7 +217,7 @@ void draw_pair(cv::Size size, int near, int far, std::uint64_t seed, cv::Mat& le
 }
 
 void match(const cv::Mat& left, const cv::Mat& right, const SemiGlobal& options, cv::Mat& disparity,
-           cv::Mat& margin) {
+           cv::Mat& margin, cv::Mat* right_disparity) {
   cv::Mat flipped, padded[2];
   cv::flip(right, flipped, 1);
   for (int i = 0; i < 2; ++i)
@@ -197,10 +225,12 @@ void match(const cv::Mat& left, const cv::Mat& right, const SemiGlobal& options,
                        kBorder + kReadBeyond, cv::BORDER_REPLICATE);
   disparity.create(left.size(), CV_16U);
   margin.create(left.size(), CV_8U);
+  if (right_disparity != nullptr) right_disparity->create(left.size(), CV_16U);
   const auto begins = stripes_of(left.rows);
   Scratch scratch;
   for (std::size_t i = 0; i + 1 < begins.size(); ++i)
-    match_rows({&padded[0], &padded[1], left.cols, begins[i], begins[i + 1], &disparity, &margin},
+    match_rows({&padded[0], &padded[1], left.cols, begins[i], begins[i + 1], &disparity, &margin,
+                right_disparity},
                options, scratch);
 }
 
@@ -230,11 +260,12 @@ TEST_P(SemiGlobalOf, IsThePlainOneBitByBit) {
     draw_pair({c.width, c.height}, std::min(c.width, c.disparities) / 2, 3, 7, left, right);
     SemiGlobal options;
     options.disparities = c.disparities;
-    cv::Mat disparity, margin, plain_disparity, plain_margin;
-    match(left, right, options, disparity, margin);
-    Plain(left, right, options).run(plain_disparity, plain_margin);
-    EXPECT_EQ(cv::norm(disparity, plain_disparity, cv::NORM_INF), 0);
-    EXPECT_EQ(cv::norm(margin, plain_margin, cv::NORM_INF), 0);
+    cv::Mat plain[3], both[3], one[2];  // disparity, margin, disparity of the right eye
+    Plain(left, right, options).run(plain[0], plain[1], plain[2]);
+    match(left, right, options, both[0], both[1], &both[2]);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(cv::norm(both[i], plain[i], cv::NORM_INF), 0) << i;
+    match(left, right, options, one[0], one[1], nullptr);
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(cv::norm(one[i], plain[i], cv::NORM_INF), 0) << i;
   }
 }
 
