@@ -45,6 +45,7 @@ void Conversation::end() {
   quiet_at_.reset();
   is_heading_sure_ = false;
   has_halted_ = halt_follows_ = false;
+  delay_.reset();
 }
 
 void Conversation::try_again(MonotonicTime now) {
@@ -161,12 +162,17 @@ std::chrono::nanoseconds Conversation::on_line(std::size_t bytes) const {
 }
 
 /// When the unit was at the reported position.
-/// @param answered  bytes of the answers.
-MonotonicTime Conversation::seen_at(MonotonicTime now, const Look& look,
-                                    std::size_t answered) const {
-  const auto earliest = look.sent, latest = now - on_line(answered);
-  if (latest >= earliest) return earliest + (latest - earliest) / 2;
-  return look.time + (now - look.time) / 2;  // the line is faster than set
+MonotonicTime Conversation::seen_at(MonotonicTime now, const Look& look) {
+  // When the answer began, at the latest; it is complete before its last byte, the line feed.
+  const auto begun = now - on_line(heard_bytes_ - 1);
+  if (begun < look.sent) return look.time + (now - look.time) / 2;  // the line is faster than set
+  const auto free = std::min(std::max(look.sent, heard_after_), begun);
+  const auto delay = begun - free;
+  constexpr int kRecent = 16;
+  // While earlier answers are on the line, they hide the unit's own delay.
+  if (!delay_ || free == look.sent)
+    delay_ = std::min(delay, delay_.value_or(delay) + (delay - delay_.value_or(delay)) / kRecent);
+  return look.sent + *delay_ / 2;
 }
 
 bool Conversation::awaits(Awaits answer) const {
@@ -246,6 +252,8 @@ void Conversation::hear(MonotonicTime now, const Reply& reply) {
   const Awaits awaited = awaited_.front();
   awaited_.pop_front();
   overdue_ = now + kTimeOut;
+  const auto before = std::exchange(answered_, now);
+  if (awaited == Awaits::Pan) heard_after_ = before;
   if (is_refusal) {
     remark_ = "refused: " + reply.text;
     if (awaited == Awaits::PanSet || awaited == Awaits::TiltSet) is_heading_sure_ = false;
@@ -282,7 +290,7 @@ void Conversation::hear_place(MonotonicTime now, int axis, const std::string& te
   place_time_ = look.time;
   // Such a late answer was waiting to be read: its time is unknown.
   if (now - look.time >= kTimeOut) return;
-  const auto time = seen_at(now, look, heard_bytes_);
+  const auto time = seen_at(now, look);
   gaze_ = Gaze{heard_[0] * step(0), tilt_at(time, -heard_[1] * step(1)), time};
 }
 

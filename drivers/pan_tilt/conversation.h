@@ -60,8 +60,9 @@ class Conversation {
   /// start. While the unit refuses a pace, it is sent again every kTimeOut, and commands fail.
   void set_pace(double speed, double acceleration);
   /// Sets the rate of bytes in each direction [1/s]; 0 (default): infinite. A unit reports its
-  /// position when the question arrives, after all earlier bytes; the answer takes time, too. The
-  /// remaining delay is assumed to be half before and half after that.
+  /// position when the question arrives, after all earlier bytes. The answer takes time, too, and
+  /// follows earlier answers on the line. Half of the least remaining delay of the recent answers
+  /// is assumed to be before the report; what exceeds it, the host was late to read.
   void set_line(double bytes_per_second) { bytes_per_second_ = bytes_per_second; }
   /// Halts a commanded motion after this time without a command, and any motion found at the start;
   /// 0: never.
@@ -101,8 +102,7 @@ class Conversation {
   [[nodiscard]] bool awaits(Awaits answer) const;
   [[nodiscard]] std::chrono::nanoseconds on_line(std::size_t bytes) const;
   struct Look;
-  [[nodiscard]] MonotonicTime seen_at(MonotonicTime now, const Look& look,
-                                      std::size_t answered) const;
+  [[nodiscard]] MonotonicTime seen_at(MonotonicTime now, const Look& look);
   [[nodiscard]] double tilt_at(MonotonicTime time, double seen);
   [[nodiscard]] bool arrived() const;
   [[nodiscard]] bool is_late(MonotonicTime now) const;
@@ -144,7 +144,9 @@ class Conversation {
   bool is_heading_sure_ = false;  // the unit has accepted the command
   Places heard_ = {};
   std::size_t heard_bytes_ = 0;
-  MonotonicTime place_time_{0};  // when place_ was queried
+  MonotonicTime answered_{0}, heard_after_{0};     // the last answer; the one before heard_
+  std::optional<std::chrono::nanoseconds> delay_;  // least of recent answers
+  MonotonicTime place_time_{0};                    // when place_ was queried
   struct TiltSeen {
     MonotonicTime time;  // of the pan
     double tilt;         // as reported [rad]

@@ -63,9 +63,33 @@ TEST(Conversation, on_a_slow_line_a_gaze_has_the_time_at_which_the_unit_looked_t
     const auto at = std::find_if(turned.begin(), turned.end(),
                                  [&](const auto& each) { return each.first >= gaze.time; });
     ASSERT_NE(at, turned.end());
-    // Answers to commands ahead of it on the line delay it.
-    constexpr double kFastest = 1.05, kOff = 0.0045;  // [rad/s], [s]
+    // Answers to commands are ahead of it on the line. A step is 1 ms.
+    constexpr double kFastest = 1.05, kOff = 0.0015;  // [rad/s], [s]
     EXPECT_NEAR(gaze.pan, at->second * kStep, kFastest * kOff);
+  }
+}
+
+TEST(Conversation, an_answer_that_is_read_late_has_the_time_at_which_the_unit_looked_there) {
+  Line line;
+  line.begin_slowly();
+  line.run(milliseconds(500));
+  line.gazes.clear();
+  line.host.command(line.now, 1, 0.5);
+  line.run(milliseconds(700));  // until its speed is constant
+  const double speed =
+      (line.unit.pan(line.seconds()) - line.unit.pan(line.seconds() - 0.001)) * 1e3;
+  for (int i = 0; i < 10; ++i) {
+    const double at = line.unit.pan(line.seconds()), from = line.seconds();
+    line.gazes.clear();
+    line.run(milliseconds(20));
+    line.is_read = false;  // another process has the processor
+    line.run(milliseconds(9));
+    line.is_read = true;
+    line.run(milliseconds(11));
+    for (const auto& gaze : line.gazes) {
+      const double passed = std::chrono::duration<double>(gaze.time).count() - from;
+      EXPECT_NEAR(gaze.pan / kStep, at + speed * passed, 0.002 * speed) << "2 ms";
+    }
   }
 }
 

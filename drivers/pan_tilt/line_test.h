@@ -29,6 +29,7 @@ struct Line {
   milliseconds delay{2};
   double bytes_per_second = 0;  // 0: at once
   bool is_silent = false;
+  bool is_read = true;  // else the host's answers wait to be read
   double garbage = 0;
   bool looks = true;
   std::string asked;  // all that the host wrote
@@ -64,7 +65,7 @@ struct Line {
     exchange();
     now += milliseconds(1);
     std::string come;
-    for (; !coming.empty() && coming.front().first <= now; coming.pop_front())
+    for (; is_read && !coming.empty() && coming.front().first <= now; coming.pop_front())
       come += coming.front().second;
     host.take(now, come);
     host.pass(now);

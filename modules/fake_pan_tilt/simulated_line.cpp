@@ -22,11 +22,22 @@ hc::Result<bool> SimulatedLine::plug(bool in) {
 std::string SimulatedLine::serve(double time, const Wire::Faults& faults, bool is_silent) {
   if (terminal_)
     to_unit_.put(time, terminal_->read(), {.bytes_per_second = faults.bytes_per_second});
-  std::string bytes = to_unit_.take(time);
-  const std::string answer = unit_.take(time, bytes) + unit_.pass(time);
-  if (!is_silent) from_unit_.put(time, answer, faults);
+  std::string bytes;
+  // A call may be late; a unit is not.
+  for (auto due = unit_due(); due && *due <= time; due = unit_due()) {
+    served_ = std::max(served_, *due);
+    const std::string arrived = to_unit_.take(served_);
+    const std::string answer = unit_.take(served_, arrived);
+    if (!is_silent) from_unit_.put(served_, answer, faults);
+    bytes += arrived;
+  }
   if (terminal_) terminal_->write(from_unit_.take(time));
   return bytes;
+}
+
+std::optional<double> SimulatedLine::unit_due() const {
+  const auto byte = to_unit_.next(), own = unit_.next();
+  return byte && own ? std::min(byte, own) : byte ? byte : own;
 }
 
 double SimulatedLine::pause(double time) const {

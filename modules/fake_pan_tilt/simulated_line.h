@@ -45,7 +45,11 @@ class SimulatedLine {
   static constexpr double kStep =
       hc::pan_tilt::kArcsecondsPerPosition / 3600 * std::numbers::pi / 180;  // [rad/position]
 
+  /// When a byte reaches the unit, or the unit says something.
+  [[nodiscard]] std::optional<double> unit_due() const;
+
   hc::pan_tilt::Unit unit_;
   std::optional<Terminal> terminal_;
   Wire to_unit_, from_unit_;
+  double served_ = 0;  // until when the unit has acted
 };

@@ -78,6 +78,16 @@ TEST_F(SimulatedLineTest, an_answer_is_due_after_its_delay) {
   EXPECT_EQ(line.pause(0.01), SimulatedLine::kLook);
 }
 
+TEST_F(SimulatedLineTest, the_unit_is_in_time_though_it_is_served_late) {
+  plug();
+  ASSERT_TRUE(serial->write("pp100 "));
+  const Wire::Faults slow{.bytes_per_second = 1000};
+  serve(1, slow);
+  const double due = 1.006;  // the last byte
+  serve(1.1, slow);
+  EXPECT_NEAR(line.pan(1.1) / kStep, 1000 * (1.1 - due), 1) << "as if it had been served then";
+}
+
 TEST_F(SimulatedLineTest, what_is_on_its_way_is_lost_when_it_is_unplugged) {
   EXPECT_EQ(line.path(), "");
   EXPECT_FALSE(*line.plug(false));
