@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kMaxWaiting = 256;
 constexpr std::chrono::seconds kSetBack{1};
+constexpr std::chrono::milliseconds kTick{10};
 
 }  // namespace
 
@@ -30,7 +31,10 @@ ModuleFrames::ModuleFrames(Module& module, const Options& options)
     succeed_or_drop(
         feed(mover->parent, mover->child, header.time, value_or_drop(rigid_of(message))));
   });
-  module.every(std::chrono::milliseconds(10), [this] { answer_known(); });
+  module.every(kTick, [this] {
+    silence_ += kTick;
+    answer_known();
+  });
 }
 
 ModuleFrames::Name::Name(const frames::Frame& frame) {
@@ -52,7 +56,7 @@ frames::GraphFrames& ModuleFrames::known() {
 
 Eigen::Isometry3d ModuleFrames::nearest(const frames::Frame& target, const frames::Frame& source,
                                         Time time) {
-  return value_or_end(tree().nearest(target, source, time));
+  return value_or_end(tree().nearest(target, source, given(time)));
 }
 
 Eigen::Isometry3d ModuleFrames::fixed(const frames::Frame& target, const frames::Frame& source) {
@@ -72,14 +76,21 @@ Status ModuleFrames::feed(std::string_view parent, std::string_view child, Time 
     newest = std::max(newest, time);
   }
   fed_ = module_.now();
+  silence_ = {};
   HC_TRY(known().tree.feed(parent, child, time, T_parent_child));
   answer_known();
   return {};
 }
 
 bool ModuleFrames::awaits(const frames::Frame& target, const frames::Frame& source, Time time) {
-  return fed_ > Time() && module_.now() - fed_ < options_.silence &&
-         tree().is_ahead(target, source, time);
+  return fed_ > Time() && silence() < options_.silence &&
+         tree().is_ahead(target, source, given(time));
+}
+
+// After a long handler, poses wait in the input: it is counted in ticks, between which they are
+// taken.
+std::chrono::nanoseconds ModuleFrames::silence() const {
+  return options_.input ? silence_ : module_.now() - fed_;
 }
 
 bool ModuleFrames::is_awaited(const Waiting& waiting) {
@@ -91,7 +102,7 @@ bool ModuleFrames::is_awaited(const Waiting& waiting) {
 
 void ModuleFrames::when_known(const frames::Frame& target, const frames::Frame& source, Time time,
                               Handler handler) {
-  waiting_.push_back({Name(target), Name(source), time, module_.now(), std::move(handler)});
+  waiting_.push_back({Name(target), Name(source), given(time), module_.now(), std::move(handler)});
   answer_known();
 }
 

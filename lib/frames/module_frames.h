@@ -32,6 +32,7 @@ class ModuleFrames {
   struct Options {
     frames::Memory memory = {};  ///< of each moving joint
     /// How long to wait for a pose since the last one, after which the frame counts as at rest.
+    /// Time in which this module could not take poses does not count.
     std::chrono::nanoseconds silence = std::chrono::milliseconds(100);
     std::chrono::nanoseconds first{0};  ///< how long to wait for the very first pose
     bool input = true;                  ///< take poses from an input; false: only feed()
@@ -46,10 +47,13 @@ class ModuleFrames {
 
   /// All frames. An invalid parameter `frames` ends the module. Not before run().
   [[nodiscard]] const frames::Tree& tree() { return known().tree; }
-  /// T_target_source at a time; see frames::Tree::lookup().
+  /// Whether the graph has given them; else they are the default head's.
+  [[nodiscard]] bool are_given() const { return text_.is_set(); }
+  /// T_target_source at a time; see frames::Tree::lookup(). Here and below a time that is not
+  /// given, Time{}, is now.
   [[nodiscard]] Result<Eigen::Isometry3d> lookup(const frames::Frame& target,
                                                  const frames::Frame& source, Time time) {
-    return tree().lookup(target, source, time);
+    return tree().lookup(target, source, given(time));
   }
   /// The same with the nearest known poses: Tree::nearest(). Unknown frames end the module.
   [[nodiscard]] Eigen::Isometry3d nearest(const frames::Frame& target, const frames::Frame& source,
@@ -89,7 +93,10 @@ class ModuleFrames {
     Handler handler;
   };
   frames::GraphFrames& known();
+  [[nodiscard]] Time given(Time time) const { return time > Time() ? time : module_.now(); }
   [[nodiscard]] bool is_awaited(const Waiting& waiting);
+  /// Time without a pose.
+  [[nodiscard]] std::chrono::nanoseconds silence() const;
 
   Module& module_;
   Options options_;
@@ -97,6 +104,7 @@ class ModuleFrames {
   std::optional<frames::GraphFrames> frames_;
   std::map<std::string, Time, std::less<>> newest_;  // pose of each child
   Time fed_;                                         // arrival of the last pose
+  std::chrono::nanoseconds silence_{0};              // since then, with an input
   std::deque<Waiting> waiting_;
 };
 

@@ -45,6 +45,22 @@ TEST_F(DefaultHead, is_known_without_a_graph) {
   EXPECT_THROW(static_cast<void>(frames_.fixed("world", "head")), ModuleError);
 }
 
+TEST_F(DefaultHead, a_time_that_is_not_given_is_now) {
+  feed_at(0);
+  feed_at(10);
+  feed_at(20);
+  pass(10);
+  EXPECT_NEAR(Eigen::AngleAxisd(frames_.nearest("robot", "head", Time()).linear()).angle(), 0.010,
+              1e-9);
+  EXPECT_NEAR(Eigen::AngleAxisd(frames_.lookup("robot", "head", Time())->linear()).angle(), 0.010,
+              1e-9);
+  frames_.when_known("robot", "head", Time(), [this](const auto& T) {
+    answers_.push_back(T ? Eigen::AngleAxisd(T->linear()).angle() : -1);
+  });
+  ASSERT_EQ(answers_.size(), 1);
+  EXPECT_NEAR(answers_[0], 0.010, 1e-9);
+}
+
 TEST_F(DefaultHead, a_time_to_come_is_waited_for_as_long_as_poses_come) {
   feed_at(0);
   ask(10);
@@ -66,6 +82,25 @@ TEST_F(DefaultHead, a_time_to_come_is_waited_for_as_long_as_poses_come) {
   EXPECT_EQ(answers_.at(2), -1);
   EXPECT_NEAR(Eigen::AngleAxisd(frames_.nearest("robot", "head", kStart + 30ms).linear()).angle(),
               0.020, 1e-9);
+}
+
+// A handler that takes 150 ms is followed by an image before the poses of that time.
+TEST_F(DefaultHead, a_pose_that_waits_in_the_input_is_waited_for) {
+  Module module{"test", "A test.", {.clock = &clock_}};
+  ModuleFrames frames{module};
+  const auto feed = [&](std::int64_t ms) {
+    ASSERT_TRUE(frames.feed("robot", "head", kStart + ms * 1ms,
+                            Eigen::Isometry3d(frames::rotation(0, 0, 0.001 * ms))));
+  };
+  feed(0);
+  pass(150);
+  frames.when_known("robot", "head", kStart + 130ms, [this](const auto& T) {
+    answers_.push_back(T ? Eigen::AngleAxisd(T->linear()).angle() : -1);
+  });
+  EXPECT_TRUE(answers_.empty());
+  feed(140);
+  ASSERT_EQ(answers_.size(), 1);
+  EXPECT_NEAR(answers_[0], 0.130, 1e-9);
 }
 
 TEST_F(DefaultHead, without_any_pose_nothing_is_waited_for) {
