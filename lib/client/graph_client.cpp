@@ -53,7 +53,9 @@ void GraphClient::end() {
 
 Status GraphClient::open() {
   static std::atomic<unsigned> clients{0};
-  reply_ = hc::format("unix:@hypercolumn-answer.{}.{}", ::getpid(), clients++);
+  // With the time, as containers that share a network have equal numbers of processes.
+  reply_ = hc::format("unix:@hypercolumn-answer.{}.{}.{}", ::getpid(), clients++,
+                      steady_clock::now().time_since_epoch().count());
   auto answers = HC_TRY(Intake::make(loop_, "unix-listen" + reply_.substr(reply_.find(':')),
                                      [this](const Message& message) { take_answer(message); }));
   auto uri = HC_TRY(parse_uri(graph_.command_uri()));

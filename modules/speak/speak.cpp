@@ -8,6 +8,7 @@
 
 #include <hc/base/format.h>
 #include <hc/mtp/rows.h>
+#include <hc/os/program.h>
 
 namespace {
 
@@ -21,7 +22,7 @@ Speak::Speak(hc::Module& module) : module_(module) {
   module.on(text_, [this](const auto& message) { take(message); });
   module.every(kLook, [this] { speak_due(); });
   module.on_end([this] {
-    while (!queue_.empty()) speak(queue_.pop());
+    while (!queue_.empty() && !hc::stop_requested()) speak(queue_.pop());
   });
 }
 

@@ -169,7 +169,8 @@ class Module(_hypercolumn.Module):
         return handler
 
     def on_end(self, handler: Handler) -> Handler:
-        """Calls a function once, when all inputs have ended; not after an error."""
+        """Calls a function once at the end: when all inputs have ended, after stop(), when no reader
+        is left, or when the module is asked to stop; not after an error."""
         self._on_end(handler)
         return handler
 

@@ -5,14 +5,30 @@
 import re
 import unittest
 
-from harness import Pipes, ROOT
+from graphs import Graphs
+from harness import BUILD, DATA, ROOT
 from recordings import read_messages
-from trace_test import graph
+from trace_test import GRAPH, graph
 
 OPTIONS = " --graph g.toml --check"
 
+# Its link to `small` changes the images that it sends.
+CONVERTED = """
+[modules.camera]
+parameters = {{ source = "%s/aloeL.jpg", width = 200, height = 150, rate = 50, count = 5, loop = true }}
+[modules.small]
+program = "brightness"
+inputs.image = {{ from = "camera.left", keep = "all", {0} }}
+[modules.last]
+program = "%s/tests/programs/delay"
+inputs.in = "small.mean"
+""" % (
+    DATA,
+    BUILD,
+)
 
-class Replay(Pipes):
+
+class Replay(Graphs):
     def record(self, text=graph("0:1 1:end"), kept="kept"):
         self.write("g.toml", "version = 1\n" + text)
         self.shell("hc run g.toml --quiet --record " + kept)
@@ -29,7 +45,7 @@ class Replay(Pipes):
                     "source: not run: a sensor: its outputs come from the recording",
                     "first.out: N messages, the same",
                     "second.out: N messages, the same",
-                    "last: not run: none of its outputs was recorded",
+                    "last.out: N messages, the same",
                 ],
             )
 
@@ -44,7 +60,7 @@ class Replay(Pipes):
             r"row 0, column 0, component 0: 1 recorded, 1.5 replayed\n",
         )
         self.assertEqual(
-            self.err, "hc replay: Malformed: 1 of 2 outputs differ from the recording\n"
+            self.err, "hc replay: Malformed: 1 of 3 outputs differ from the recording\n"
         )
         # What may differ is said for all, for a module or for a port, the most exact counts.
         self.shell("hc replay kept --tolerance 0.5" + changed)
@@ -93,6 +109,80 @@ class Replay(Pipes):
         )
         self.assertGreater(given, handled)
         self.assertRegex(self.shell("hc replay kept" + OPTIONS), "first.out: [1-9].*, the same")
+
+    def test_a_link_changes_what_it_sends_again(self):
+        for change in ('as = "jpeg", quality = 5', "scale = 0.1", 'as = "jpeg", scale = 0.3'):
+            with self.subTest(change=change):
+                self.shell("rm -f kept.mcap")
+                self.record(CONVERTED.format(change), "kept.mcap")
+                out = self.shell("hc replay kept.mcap" + OPTIONS)
+                self.assertIn("\nsmall.mean: 5 messages, the same", out)
+                self.write("g.toml", "version = 1\n" + CONVERTED.format("rate = 100"))
+                out = self.shell("hc replay kept.mcap" + OPTIONS, 1)
+                self.assertIn("\nDIFFERS small.mean: 5 messages, 5 differ", out)
+
+    def set_while_recorded(self, setting, text=graph()):
+        text = text.replace("rate = 2", "rate = 20").replace("seconds = 0.2", "seconds = 0.001")
+        process = self.running_graph(text, "--record kept", "last: started")
+        messages = self.observe(process)
+
+        def sent(state):
+            return next(link["messages"] for link in state["links"] if link["to"] == "last.in")
+
+        before = sent(self.state(messages, sent))
+        self.assertEqual(self.ask(process, setting), ["ok"])
+        self.state(messages, lambda state: sent(state) > before + 20)
+        self.stop(process)
+
+    def test_a_parameter_that_was_set_is_set_again(self):
+        self.set_while_recorded("set second.factor=3")
+        self.assertIn("\n3\n", self.read("kept/second.out.mtp"))
+        out = self.shell("hc replay kept" + OPTIONS)
+        self.assertRegex(out, "\nsecond.out: [0-9]+ messages, the same")
+
+    def test_what_was_set_and_cannot_be_set_again_is_not_judged(self):
+        in_their_time = '[modules.second]\nclock = "messages"\n'
+        self.set_while_recorded(
+            "set second.factor=3", graph(text=GRAPH.replace("[modules.second]\n", in_their_time))
+        )
+        out = self.shell("hc replay kept" + OPTIONS)
+        self.assertIn(
+            "\nsecond: not run: its parameter factor was set while it was recorded, and its clock is "
+            "that of the messages\n",
+            out,
+        )
+
+    def test_what_was_restarted_is_not_judged(self):
+        self.set_while_recorded("restart second")
+        out = self.shell("hc replay kept" + OPTIONS)
+        self.assertIn("\nsecond: not run: it was restarted while it was recorded\n", out)
+
+    def test_what_was_linked_to_something_else_is_not_judged(self):
+        self.set_while_recorded("link source.command second.in rate=20")
+        out = self.shell("hc replay kept" + OPTIONS)
+        self.assertIn(
+            "\nsecond: not run: it was linked to something else while it was recorded, at in\n", out
+        )
+
+    def test_hosts_need_not_be_there(self):
+        self.record()
+        away = '[hosts.robot]\nssh = "nosuch.invalid"\n'
+        text = self.read("g.toml").replace("[modules.source]", away + "[modules.source]")
+        for name in ("first", "last"):
+            text = text.replace("[modules.%s]\n" % name, '[modules.%s]\nhost = "robot"\n' % name)
+        self.write("g.toml", text)
+        out = self.shell("hc replay kept" + OPTIONS)
+        self.assertRegex(out, "\nfirst.out: [0-9]+ messages, the same")
+        self.assertIn("second  (delay)\n  out → last.in\n", self.shell("hc graph g.toml"))
+        self.assertIn("first.out", self.shell("hc ports g.toml"))
+        out = self.shell("hc trace last.in --recording kept --graph g.toml")
+        self.assertIn("first", out)
+        # What a host has of its own is asked there, and the check is about the hosts.
+        self.shell("hc check g.toml", 2)
+        self.assertIn("host robot: ", self.err)
+        self.write("g.toml", text.replace("/delay", "/nosuch"))
+        self.shell("hc graph g.toml", 2)
+        self.assertIn("host robot: ", self.err)
 
     def replay_task(
         self, task, settings, outputs, timed="", options="", kept="kept", eyes="head_eyes.left"
@@ -205,7 +295,7 @@ class Replay(Pipes):
             "first: not run: source.command is not in the recording",
             self.shell("hc replay kept" + OPTIONS),
         )
-        self.shell("hc replay kept --except second" + OPTIONS, 1)
+        self.shell("hc replay kept --except second --except last" + OPTIONS, 1)
         self.assertIn("nothing to compare", self.err)
         self.shell("hc replay kept --out again --graph g.toml")
         self.assertEqual(self.read("again/second.out.mtp"), self.read("kept/second.out.mtp"))

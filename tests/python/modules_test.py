@@ -305,6 +305,40 @@ module.run()
         out, err = process.communicate(timeout=60)
         self.assertEqual((process.returncode, out, err), (0, b"after echo\n", b""))
 
+    def test_its_end_is_called_when_it_is_asked_to_stop(self):
+        text = """
+import hypercolumn as hc
+module = hc.Module("ends", "Says when it ends.")
+numbers = module.input("numbers", hc.table(), "numbers")
+module.on_start(lambda: module.log("started"))
+module.on_end(lambda: module.log("ended"))
+"""
+        for body, last in (
+            ("module.on(numbers)(print)\nmodule.run()", []),
+            ("module.every(60)(print)\nmodule.run()", []),
+            ("module.generate(lambda: module.keep_rate(10))\nmodule.run()", []),
+            ("for message in numbers: pass\nmodule.log('after')", [b"ends: after"]),
+        ):
+            program = self.write_module("module", text + body)
+            for number in signal.SIGTERM, signal.SIGINT, signal.SIGHUP:
+                with self.subTest(body=body, number=number):
+                    process = self.start(
+                        "exec %s --in unix-listen:@%s" % (program, self.link()[4:]), stderr=-1
+                    )
+                    self.assertEqual(process.stderr.readline(), b"ends: started\n")
+                    process.send_signal(number)
+                    _, err = process.communicate(timeout=60)
+                    self.assertEqual(process.returncode, 0, err)
+                    self.assertEqual(err.splitlines(), [*last, b"ends: ended"])
+        # The graph that it is in, too.
+        self.write("g.toml", 'version = 1\n[modules.ends]\nprogram = "%s"\n' % program)
+        graph = self.start("exec hc run g.toml", stderr=-1)
+        while b"ends: started" not in graph.stderr.readline():
+            continue
+        graph.send_signal(signal.SIGINT)
+        _, err = graph.communicate(timeout=60)
+        self.assertIn(b"ends: ended\n", err)
+
     def wait_for_socket(self, name):
         from package import wait_until
 

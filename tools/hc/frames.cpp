@@ -128,7 +128,7 @@ std::string text_of(const GraphFrames& frames, const FramesOptions& options) {
 }
 
 void run(const FramesOptions& options) {
-  const auto plan = load_plan("frames", options.graph);
+  const auto plan = look_at_plan("frames", options.graph);
   // Large enough for a whole recording.
   const hc::frames::Memory memory{.span = std::chrono::hours(24 * 365), .poses = 10'000'000};
   auto frames = value_or_fail(hc::frames::read_frames(plan.frames, memory), options.graph.file);

@@ -21,8 +21,7 @@ std::unique_ptr<hc::Hosts> make_hosts() {
   return value_or_fail(hc::hosts::make_hosts(HC_VERSION), "the key of this host");
 }
 
-hc::LoadedGraph load_graph(std::string_view verb, hc::GraphLoader& loader) {
-  auto loaded = loader.load(nullptr, -1);
+hc::LoadedGraph without_problems(std::string_view verb, hc::Result<hc::LoadedGraph> loaded) {
   if (!loaded && loaded.error().code == hc::Code::NotFound)
     throw Failure(loaded.error().code,
                   loaded.error().detail + "; shipped graphs: " + joined(shipped_graphs()));
@@ -33,10 +32,19 @@ hc::LoadedGraph load_graph(std::string_view verb, hc::GraphLoader& loader) {
 }
 
 hc::Plan load_plan(std::string_view verb, const hc::LoadOptions& options, hc::Hosts* hosts) {
-  const auto own = hosts == nullptr ? make_hosts() : nullptr;
   hc::LoadOptions with_hosts = options;
-  with_hosts.hosts = hosts == nullptr ? own.get() : hosts;
-  return std::move(*load_graph(verb, *hc::make_loader(with_hosts)).plan);
+  with_hosts.hosts = hosts;
+  return std::move(*without_problems(verb, hc::make_loader(with_hosts)->load(nullptr, -1)).plan);
+}
+
+hc::Plan look_at_plan(std::string_view verb, const hc::LoadOptions& options) {
+  hc::LoadOptions here = options;
+  here.programs_here = true;
+  auto loaded = hc::make_loader(here)->load(nullptr, -1);
+  // A program that is only on its host is described there.
+  if (loaded && !loaded->plan && !loaded->graph.hosts.empty())
+    return load_plan(verb, options, make_hosts().get());
+  return std::move(*without_problems(verb, std::move(loaded)).plan);
 }
 
 }  // namespace tool

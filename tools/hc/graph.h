@@ -16,12 +16,13 @@ void add_graph_options(CLI::App& verb, hc::LoadOptions& options);
 /// The other hosts of a graph, not connected yet.
 std::unique_ptr<hc::Hosts> make_hosts();
 
-/// Loads a graph that does not run yet. Prints all problems, a line each, and fails with status 2;
-/// for a missing file, lists the shipped graphs.
-hc::LoadedGraph load_graph(std::string_view verb, hc::GraphLoader& loader);
-/// Loads a plan for inspection only.
-/// @param hosts  null: temporary ones.
-hc::Plan load_plan(std::string_view verb, const hc::LoadOptions& options,
-                   hc::Hosts* hosts = nullptr);
+/// What a loader gave. Prints all problems, a line each, and fails with status 2; for a missing
+/// file, lists the shipped graphs.
+hc::LoadedGraph without_problems(std::string_view verb, hc::Result<hc::LoadedGraph> loaded);
+/// Loads a plan. @param hosts  null: it needs none, as its programs are taken from this one.
+hc::Plan load_plan(std::string_view verb, const hc::LoadOptions& options, hc::Hosts* hosts);
+/// Loads a plan to look at, by the programs of this host. Other hosts need not be there, unless
+/// they have a program that this one lacks.
+hc::Plan look_at_plan(std::string_view verb, const hc::LoadOptions& options);
 
 }  // namespace tool

@@ -47,7 +47,7 @@ void write_svg(const std::string& dot, const std::string& path) {
 void draw(const GraphOptions& options) {
   auto drawing = [&] {
     if (!options.file.file.empty())
-      return drawing_of(load_plan("graph", options.file), options.file.file);
+      return drawing_of(look_at_plan("graph", options.file), options.file.file);
     return drawing_of(state_of(choose_running(options.running), true));
   }();
   if (!options.svg.empty())
@@ -87,18 +87,20 @@ void add_parameters(const RunningGraph& graph, const hc::GraphState& state, cons
                     hc::format("module {} has no parameter \"{}\"{}", module.name, wanted,
                                hc::suggestion(wanted, hc::names_of(parameters))));
     for (const auto& parameter : parameters) {
-      const auto& [name, unit, doc, options, standard, value] = parameter;
+      const auto& name = parameter.name;
+      const auto& options = parameter.options;
       if (!wanted.empty() && name != wanted) continue;
       const auto found = module.parameters.find(name);
-      const std::string now = found == module.parameters.end() ? hc::text(standard) : found->second;
+      const std::string now =
+          found == module.parameters.end() ? hc::text(parameter.default_value) : found->second;
       const auto range =
           options.choices.empty() ? hc::range_in_words(options) : joined(options.choices, " or ");
-      const auto default_text = hc::text(standard);
-      rows.push_back(
-          {hc::format("{}.{} = {}{}", module.name, name, now, unit.empty() ? "" : " " + unit),
-           hc::format("{}default {}{}", range.empty() ? "" : range + ", ",
-                      default_text.empty() ? "\"\"" : default_text,
-                      options.fixed ? ", set restarts the module" : "")});
+      const auto default_text = hc::text(parameter.default_value);
+      rows.push_back({hc::format("{}.{} = {}{}", module.name, name, now,
+                                 parameter.unit.empty() ? "" : " " + parameter.unit),
+                      hc::format("{}default {}{}", range.empty() ? "" : range + ", ",
+                                 default_text.empty() ? "\"\"" : default_text,
+                                 options.fixed ? ", set restarts the module" : "")});
     }
   };
   if (!what.empty()) add(find_module(state, what.substr(0, dot)));

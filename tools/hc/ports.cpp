@@ -50,7 +50,7 @@ std::vector<Described> describe_word(const std::string& what) {
                   hc::format("no graph or program \"{}\"{}", what, hc::suggestion(what, known)));
   }
   std::vector<Described> all;
-  for (const auto& module : load_plan("ports", graph).modules)
+  for (const auto& module : look_at_plan("ports", graph).modules)
     all.push_back({module.name, module.description});
   return all;
 }

@@ -20,7 +20,9 @@
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
 #include <hc/base/text.h>
+#include <hc/base/uri.h>
 #include <hc/compress/compress.h>
+#include <hc/compress/convert.h>
 #include <hc/contract/trace.h>
 #include <hc/os/program.h>
 #include <hc/os/wait_readable.h>
@@ -99,23 +101,29 @@ class Settings {
   std::map<std::string, double> values_;
 };
 
-/// The recorded trace of a module; empty if it is missing or incomplete: events or messages were
-/// dropped, or the module was restarted.
-std::vector<hc::TraceEvent> read_events(const GraphRecording& recording,
-                                        const std::string& module) {
+/// The recorded trace of a module.
+struct RecordedTrace {
+  std::vector<hc::TraceEvent> events;  ///< none: missing, or events or messages were dropped
+  bool was_restarted = false;
+};
+
+RecordedTrace read_trace_of(const GraphRecording& recording, const std::string& module) {
   const auto output = module + "." + hc::kTracePort;
   if (!recording.has(output)) return {};
-  std::vector<hc::TraceEvent> events;
+  RecordedTrace trace;
+  bool is_whole = true;
   auto source = recording.open(output);
   hc::Message message;
   for (std::int64_t seq = 0; recording.receive(*source, message, output); ++seq) {
-    if (message.header.seq != seq) return {};
+    trace.was_restarted |= message.header.seq < seq;
+    is_whole = is_whole && message.header.seq == seq;
     for (auto& event : hc::read_trace(message)) {
-      if (event.what == What::Lost) return {};
-      events.push_back(std::move(event));
+      is_whole = is_whole && event.what != What::Lost;
+      trace.events.push_back(std::move(event));
     }
   }
-  return events;
+  if (!is_whole) trace.events.clear();
+  return trace;
 }
 
 /// The module's clock at an event: the time of a message sent then with a new time, since that is
@@ -140,45 +148,59 @@ std::size_t whole_steps(std::span<const hc::TraceEvent> events) {
   return events.size();
 }
 
-/// The steps to replay: the start, as an event with only a moment, then each handler.
+/// The steps to replay: the start, as an event with only a moment, then each handler, and each
+/// change of a parameter.
 std::vector<hc::TraceEvent> steps_of(const std::vector<hc::TraceEvent>& events) {
   std::vector<hc::TraceEvent> steps;
   const auto last = whole_steps(events);
   for (std::size_t i = 0; i < events.size(); ++i) {
     const bool is_focus = events[i].what == What::Took && events[i].port == kFocus;
     if (i == 0) steps.push_back({What::Took, "", 0, 0, {}, clock_at(events, i)});
-    if (!is_focus && events[i].what != What::Began) continue;
+    const bool is_set = events[i].what == What::Set;
+    if (!is_focus && !is_set && events[i].what != What::Began) continue;
     if (i >= last) break;
     auto& step = steps.emplace_back(events[i]);
+    if (is_set) continue;
     step.what = What::Began;
     if (!is_focus) step.moment = clock_at(events, i);
   }
   return steps;
 }
 
-/// Writes the messages of a recorded output whose headers are `is_wanted` to a file.
+/// A link by which recorded messages go to a module again.
+struct Feed {
+  std::string output;         ///< their sender
+  std::string port;           ///< the module's input
+  std::int32_t number = 0;    ///< among the links of the port
+  hc::Conversion conversion;  ///< what the link does to them, which the recording is without
+  bool is_adapted = false;    ///< to a bandwidth: in what form is unknown
+};
+
+/// Writes the messages of a link whose headers are `is_wanted` to a file, as the link sends them.
 template <typename IsWanted>
-void write_messages(const GraphRecording& recording, const std::string& output, const fs::path& to,
+void write_messages(const GraphRecording& recording, const Feed& feed, const fs::path& to,
                     const IsWanted& is_wanted) {
+  const auto& output = feed.output;
   auto source = recording.open(output);
   auto sink = open_file_sink(to);
   hc::Message message;
   while (recording.receive(*source, message, output))
-    if (is_wanted(message.header) && !send(*sink, message, to)) return;
+    if (is_wanted(message.header) &&
+        !send(*sink, value_or_fail(hc::convert(message, feed.conversion), output), to))
+      return;
   if (auto closed = sink->close(); !closed) throw Failure(to.string(), closed.error());
 }
 
 /// Writes the handled messages of a link to a file; drops steps whose message was not recorded.
-void write_handled(const GraphRecording& recording, const std::string& output,
-                   const std::string& port, std::int32_t number, std::vector<hc::TraceEvent>& steps,
-                   const fs::path& to) {
+void write_handled(const GraphRecording& recording, const Feed& feed,
+                   std::vector<hc::TraceEvent>& steps, const fs::path& to) {
   const auto is_of_link = [&](const auto& step) {
-    return step.port == port && step.number == number;
+    return step.what == What::Began && step.port == feed.port && step.number == feed.number;
   };
   std::set<Key> handled, found;
   for (const auto& step : steps)
     if (is_of_link(step)) handled.insert({step.src, step.seq, step.time});
-  write_messages(recording, output, to, [&](const hc::Header& header) {
+  write_messages(recording, feed, to, [&](const hc::Header& header) {
     const Key key{header.src, header.seq, header.time};
     return handled.contains(key) && found.insert(key).second;
   });
@@ -225,12 +247,13 @@ class Replay {
     std::size_t differing = 0, compared = 0;
     for (const auto& module : plan_.modules) {
       if (hc::stop_requested()) throw Failure(0);
-      const auto reason = why_not(module);
+      const auto trace = read_trace_of(recording_, module.name);
+      const auto reason = why_not(module, trace);
       if (!reason.empty()) {
         print(hc::format("{}: not run: {}\n", module.name, reason));
         continue;
       }
-      run_module(module);
+      run_module(module, trace);
       if (!options_.check) continue;
       for (const auto& output : recorded_outputs(module)) {
         const std::string name = module.name + "." + output;
@@ -253,7 +276,8 @@ class Replay {
     if (graph.file.empty())
       throw Failure(hc::Code::Invalid,
                     "give --graph FILE: " + options_.recording + " does not name its graph file");
-    return load_plan("replay", graph);
+    graph.programs_here = true;
+    return load_plan("replay", graph, nullptr);
   }
 
   /// The recorded outputs of a module, except for its trace.
@@ -270,48 +294,77 @@ class Replay {
     return std::ranges::find(options_.except, name) != options_.except.end();
   }
 
-  /// The sender of an input's messages: "MODULE.PORT", or a URI.
-  [[nodiscard]] std::string writer_of(const hc::PlannedModule& module,
-                                      const hc::PlannedEnd& end) const {
-    for (const auto& link : plan_.links)
-      if (link.to == module.name + "." + end.port && link.reader_uri == end.uri) return link.from;
-    return end.uri;
+  /// The link by which an input gets its messages; its sender is "MODULE.PORT", or a URI.
+  [[nodiscard]] Feed feed_of(const hc::PlannedModule& module, const hc::PlannedEnd& end) const {
+    Feed feed{end.uri, end.port, 0, {}, false};
+    for (const auto& other : module.ends) {
+      if (&other == &end) break;
+      if (other.is_input && other.port == end.port) ++feed.number;
+    }
+    for (const auto& link : plan_.links) {
+      if (link.to != module.name + "." + end.port || link.reader_uri != end.uri) continue;
+      feed.output = link.from;
+      if (auto uri = hc::parse_uri(link.sender_uri)) {
+        feed.conversion = value_or_fail(hc::take_conversion(*uri), link.sender_uri);
+        feed.is_adapted = !uri->option("bandwidth", "").empty();
+      }
+      break;
+    }
+    return feed;
+  }
+
+  /// Whether a module's clock is that of its messages; a trace has the machine's moments, which say
+  /// nothing of it.
+  static bool is_in_time_of_messages(const hc::PlannedModule& module) {
+    const std::array by_messages = {std::string("--clock"), std::string("messages")};
+    const auto& words = module.options;
+    return std::search(words.begin(), words.end(), by_messages.begin(), by_messages.end()) !=
+           words.end();
   }
 
   /// Why a module cannot be replayed; empty: it can.
-  [[nodiscard]] std::string why_not(const hc::PlannedModule& module) const {
+  [[nodiscard]] std::string why_not(const hc::PlannedModule& module,
+                                    const RecordedTrace& trace) const {
     if (is_excepted(module.name)) return "excepted";
-    bool has_inputs = false;
+    std::map<std::string, std::int32_t> links;  // of each input
     for (const auto& end : module.ends) {
       if (!end.is_input) continue;
-      has_inputs = true;
-      const auto writer = writer_of(module, end);
+      ++links[end.port];
+      const auto feed = feed_of(module, end);
+      const auto& writer = feed.output;
       if (writer.find(':') != std::string::npos) return writer + " is outside the graph";
       if (!recording_.has(writer)) return writer + " is not in the recording";
+      if (feed.is_adapted)
+        return "images from " + writer +
+               " were adapted to a bandwidth, and recorded as they were "
+               "before";
     }
-    if (!has_inputs) return "a sensor: its outputs come from the recording";
+    if (links.empty()) return "a sensor: its outputs come from the recording";
     if (recorded_outputs(module).empty()) return "none of its outputs was recorded";
     if (module.control_uri.empty()) return "its program has no --clock";
+    if (trace.was_restarted) return "it was restarted while it was recorded";
+    for (const auto& event : trace.events) {
+      if (event.what == What::Set && is_in_time_of_messages(module))
+        return "its parameter " + event.port +
+               " was set while it was recorded, and its clock is that of the messages";
+      if (event.what == What::Took && event.port != kFocus && event.number >= links[event.port])
+        return "it was linked to something else while it was recorded, at " + event.port;
+    }
     return "";
   }
 
-  std::vector<std::string> command_of(const hc::PlannedModule& module) {
+  std::vector<std::string> command_of(const hc::PlannedModule& module, const RecordedTrace& trace) {
     std::vector<std::string> words = {module.program};
     words.insert(words.end(), module.options.begin(), module.options.end());
     for (const auto& [key, value] : module.parameters) words.push_back("--" + key + "=" + value);
-    const auto events = read_events(recording_, module.name);
+    const auto& events = trace.events;
     auto steps = steps_of(events);
-    // A trace has the machine's moments, which say nothing of a module in the messages' time.
-    const std::array by_messages = {std::string("--clock"), std::string("messages")};
-    const auto found =
-        std::search(words.begin(), words.end(), by_messages.begin(), by_messages.end());
-    const bool is_in_their_time = found != words.end();
+    const bool is_in_their_time = is_in_time_of_messages(module);
     const bool is_known = !steps.empty() && !is_in_their_time;
     if (is_known)
       for (const auto& port : recorded_outputs(module)) last_[module.name + "." + port] = -1;
     for (const auto& event : std::span(events).first(whole_steps(events)))
       if (event.what == What::Sent) last_[module.name + "." + event.port] = event.seq;
-    std::map<std::string, std::int32_t> links;  // so far, by port
     const auto add = [&](const char* option, const hc::PlannedEnd& end, const fs::path& file) {
       const std::string link = end.port + "=file:" + file.string();
       words.insert(words.end(), {option, link});
@@ -319,13 +372,12 @@ class Replay {
     };
     for (const auto& end : module.ends) {
       if (!end.is_input) continue;
-      const auto number = links[end.port]++;
-      const auto writer = writer_of(module, end);
-      const auto file = folder_ / hc::format("{}.{}.{}.in", module.name, end.port, number);
+      const auto feed = feed_of(module, end);
+      const auto file = folder_ / hc::format("{}.{}.{}.in", module.name, end.port, feed.number);
       if (is_known)
-        write_handled(recording_, writer, end.port, number, steps, file);
+        write_handled(recording_, feed, steps, file);
       else
-        write_messages(recording_, writer, file, [](const hc::Header&) { return true; });
+        write_messages(recording_, feed, file, [](const hc::Header&) { return true; });
       add("--in", end, file);
     }
     for (const auto& port : recorded_outputs(module)) {
@@ -341,9 +393,9 @@ class Replay {
     return words;
   }
 
-  void run_module(const hc::PlannedModule& module) {
+  void run_module(const hc::PlannedModule& module, const RecordedTrace& trace) {
     using hc::Process;
-    const auto command = command_of(module);
+    const auto command = command_of(module, trace);
     auto process = value_or_fail(Process::start(command, Process::Capture::Errors), module.name);
     const auto end = std::chrono::steady_clock::now() + hc::duration(options_.timeout);
     std::string errors;

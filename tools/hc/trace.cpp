@@ -141,7 +141,7 @@ Collected read_recording(const TraceOptions& options) {
     throw Failure(hc::Code::NotFound, options.recording + " has no MODULE" + std::string(kSuffix) +
                                           "; hc run --record writes them");
   if (!options.graph.file.empty())
-    for (const auto& link : load_plan("trace", options.graph).links)
+    for (const auto& link : look_at_plan("trace", options.graph).links)
       collected.traced.links.emplace_back(link.from, link.to);
   if (!options.port.empty() && !options.graph.file.empty())
     check_port(options.port, collected.traced.links);

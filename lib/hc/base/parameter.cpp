@@ -55,6 +55,7 @@ Status ParameterState::set(std::string_view given) {
   if (auto* flag = std::get_if<bool>(&value)) {
     if (given != "true" && given != "false") return refuse("true or false");
     *flag = given == "true";
+    is_set = true;
     return {};
   }
   if (auto* string = std::get_if<std::string>(&value)) {
@@ -66,6 +67,7 @@ Status ParameterState::set(std::string_view given) {
       return refuse(wanted);
     }
     *string = given;
+    is_set = true;
     return {};
   }
   std::int64_t integer = 0;
@@ -84,6 +86,7 @@ Status ParameterState::set(std::string_view given) {
     value = integer;
   else
     value = number;
+  is_set = true;
   return {};
 }
 

@@ -35,6 +35,7 @@ struct ParameterState {
   ParameterOptions options;
   ParameterValue default_value;
   ParameterValue value;
+  bool is_set = false;  ///< by set(); else it is the default
 
   /// Sets the value from text: true, false, 12, 0.5, any string.
   ///
@@ -58,6 +59,8 @@ class Parameter {
   explicit Parameter(std::shared_ptr<const ParameterState> state) : state_(std::move(state)) {}
   const T& operator*() const { return std::get<T>(state_->value); }
   const T* operator->() const { return &**this; }
+  /// Whether the user, or the graph, has given it.
+  [[nodiscard]] bool is_set() const { return state_->is_set; }
 
  private:
   std::shared_ptr<const ParameterState> state_;

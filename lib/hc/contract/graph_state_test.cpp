@@ -63,7 +63,7 @@ TEST(State, IsOneLineOfJson) {
       R"("waits_for":"","waits":null,"last_line":"no device","last_level":"info",)"
       R"("last_line_age":2.0,)"
       R"("parameters":{"source":"a \"b\"\n"}}],"links":[{"from":"camera.left",)"
-      R"("to":"view.image","transport":"shm","status":"","keep":"latest","rate":5.0,"messages":7,"bytes":0,)"
+      R"("to":"view.image","transport":"shm","status":"","keep":"latest","rate":5.0,"bandwidth":0.0,"images":null,"messages":7,"bytes":0,)"
       R"("per_second":0.0,"bytes_per_second":0.0,"delayed":0,"throttled":4,"dropped_newer":3,)"
       R"("dropped_memory":0,"dropped_disconnect":0,"dropped_timeout":0,"ignored":0,"bad":0,"age":[0.5,1.0,2.0],"gap":null,)"
       R"("in_workspace":false}]})");

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include <hc/base/text.h>
 #include <hc/mtp/rows.h>
@@ -11,7 +12,17 @@
 namespace hc {
 namespace {
 
-constexpr std::array<std::string_view, 5> kWhats = {"took", "began", "ended", "sent", "lost"};
+constexpr std::array<std::string_view, 6> kWhats = {"took", "began", "ended",
+                                                    "sent", "lost",  "set"};
+
+/// The rest of the row of a parameter.
+std::optional<TraceEvent> parse_set(TraceEvent event, std::string_view row) {
+  std::int64_t moment = 0;
+  if (!read_number(take_until(row, ' '), moment) || moment < 0) return std::nullopt;
+  event.moment = unix_time(moment);
+  event.value = row;
+  return event;
+}
 
 std::optional<TraceEvent> parse_event(std::string_view row) {
   TraceEvent event;
@@ -19,6 +30,7 @@ std::optional<TraceEvent> parse_event(std::string_view row) {
   if (!what) return std::nullopt;
   event.what = *what;
   event.port = take_until(row, ' ');
+  if (*what == TraceEvent::What::Set) return parse_set(std::move(event), row);
   if (event.port == "-") event.port.clear();
   auto take = [&](auto& number) { return read_number(take_until(row, ' '), number); };
   std::int64_t time = 0, moment = 0;
@@ -38,6 +50,11 @@ Message make_trace(std::span<const TraceEvent> events) {
   for (const auto& event : events) {
     std::string& row = rows.emplace_back(kWhats[static_cast<std::size_t>(event.what)]);
     row.append(" ").append(event.port.empty() ? "-" : event.port);
+    if (event.what == TraceEvent::What::Set) {
+      row.append(" ").append(std::to_string(unix_nanoseconds(event.moment)));
+      row.append(" ").append(event.value);
+      continue;
+    }
     for (const std::int64_t number : {std::int64_t{event.src}, event.seq,
                                       unix_nanoseconds(event.time), unix_nanoseconds(event.moment)})
       row.append(" ").append(std::to_string(number));

@@ -15,7 +15,7 @@ namespace hc {
 /// The implicit output of every module with `control`.
 inline constexpr const char* kTracePort = "trace";
 
-/// An event in the life of a message.
+/// An event in the life of a message, or a change of a parameter.
 struct TraceEvent {
   enum class What {
     Took,   ///< an input took the message from its link
@@ -23,6 +23,7 @@ struct TraceEvent {
     Ended,  ///< the handler returned
     Sent,   ///< an output passed the message to its links
     Lost,   ///< too many events: `seq` of them were not recorded
+    Set,    ///< the parameter `port` was given another value
   };
   What what = What::Took;
   std::string port;
@@ -34,11 +35,12 @@ struct TraceEvent {
   /// kGenerator.
   std::int32_t number = 0;
   static constexpr std::int32_t kGenerator = -1;
+  std::string value = {};  ///< of a parameter, as text
   bool operator==(const TraceEvent&) const = default;
 };
 
 /// A string with a row "took PORT SRC SEQ TIME MOMENT" per event, followed by the number unless it
-/// is 0; an empty port is "-".
+/// is 0; an empty port is "-". A change of a parameter is "set NAME MOMENT VALUE".
 Message make_trace(std::span<const TraceEvent> events);
 /// Malformed rows are ignored.
 std::vector<TraceEvent> read_trace(const Message& message);

@@ -16,10 +16,13 @@ TEST(Trace, IsReadAsItWasWritten) {
       {What::Began, "", 0, 0, Time(), unix_time(2001), 2},
       {What::Ended, "", 0, 0, Time(), unix_time(2002)},
       {What::Sent, "target", 4, 8, Time::max(), Time::max()},
-      {What::Lost, "", 0, 12, Time(), unix_time(2004)}};
+      {What::Lost, "", 0, 12, Time(), unix_time(2004)},
+      {What::Set, "modes", 0, 0, Time(), unix_time(2005), 0, "read=5, track=4"},
+      {What::Set, "file", 0, 0, Time(), unix_time(2006), 0, ""}};
   const Message message = make_trace(events);
   EXPECT_EQ(rows_of(message)[0], "took image 3 7 1000 2000");
   EXPECT_EQ(rows_of(message)[1], "began - 0 0 0 2001 2");
+  EXPECT_EQ(rows_of(message)[5], "set modes 2005 read=5, track=4");
   EXPECT_EQ(read_trace(message), events);
 }
 
@@ -32,6 +35,8 @@ TEST(Trace, MalformedRowsAreIgnored) {
                                          "took image 3000000000 7 1 2",
                                          "took image 3 7 -1 2000",
                                          "took image 3 7 1000 -9223372036854775808",
+                                         "set rate x 5",
+                                         "set rate -5 5",
                                          "sent a 1 2 3 4",
                                          ""};
   EXPECT_EQ(read_trace(make_rows(rows)),

@@ -10,12 +10,12 @@
 namespace hc::internal {
 namespace {
 
-constexpr double kUsed = 0.95;        // of the bandwidth, so that no image waits for its turn
-constexpr double kLeastPath = 0.01;   // of the bandwidth
-constexpr double kGrowth = 0.8;       // of the path's logarithm, while no image is behind [1/s]
+constexpr double kUsed = 0.95;       // of the bandwidth, so that no image waits for its turn
+constexpr double kLeastPath = 0.01;  // of the bandwidth
+constexpr double kGrowth = 0.8;      // of the path's logarithm, while no image is behind [1/s]
 constexpr double kLower = 0.3, kRaise = 0.1;  // dial for each factor of 2 in size
-constexpr double kNewPeriod = 0.1;    // weight of the last period in their mean
-constexpr double kPause = 1;           // counts as a period of this length at most [s]
+constexpr double kNewPeriod = 0.1;            // weight of the last period in their mean
+constexpr double kPause = 1;                  // counts as a period of this length at most [s]
 
 constexpr std::array<double, 5> kScales = {1, 0.75, 0.5, 0.375, 0.25};  // by stage
 constexpr double kWorstQuality = 30, kStageQuality = 75;
@@ -36,8 +36,8 @@ void Adaptation::learn_size() {
   if (largest_ == 0 || share <= 0) return;
   size_ = static_cast<double>(std::exchange(largest_, 0));
   const double excess = std::log2(size_ / share);
-  dial_ = std::clamp(dial_ + (excess > 0 ? kLower : kRaise) * excess, 0.0,
-                     stages() + kMostThinning);
+  dial_ =
+      std::clamp(dial_ + (excess > 0 ? kLower : kRaise) * excess, 0.0, stages() + kMostThinning);
 }
 
 /// Learns what the network takes: the size of an image by the time that it took, which is known to
@@ -112,9 +112,9 @@ bool IdleRate::changes(const Message& message) {
   constexpr int kNoise = 12;
   const auto& header = message.header;
   const auto elements = message.elements;
-  const bool is_image = header.info.scalar == Scalar::U8 && message.plain() &&
-                        (header.info.type == MatrixType::RgbImage ||
-                         header.info.type == MatrixType::IntensityImage);
+  const bool is_image =
+      header.info.scalar == Scalar::U8 && message.plain() &&
+      (header.info.type == MatrixType::RgbImage || header.info.type == MatrixType::IntensityImage);
   const std::size_t pixel = is_image ? header.info.components : 1;
   // An odd stride, so that the pixels are not all of one column.
   const std::size_t stride = is_image ? (elements.size() / pixel / kMostPixels | 1) * pixel : 1;

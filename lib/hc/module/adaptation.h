@@ -36,6 +36,7 @@ class Adaptation {
     Form best;                    ///< where the bandwidth allows it
     bool may_scale = true;        ///< images may be smaller
     bool may_skip = true;         ///< images may be dropped: the link does not keep all
+    bool operator==(const Limits&) const = default;
   };
   explicit Adaptation(const Limits& limits)
       : limits_(limits), path_(static_cast<double>(limits.bandwidth)) {}
@@ -46,6 +47,7 @@ class Adaptation {
   /// Says how large an image was in the form that was chosen. [byte]
   void note_size(std::uint64_t bytes) { largest_ = std::max(largest_, bytes); }
 
+  [[nodiscard]] const Limits& limits() const { return limits_; }
   /// The form of the last image that was sent.
   [[nodiscard]] Form form() const { return form_; }
 
@@ -57,12 +59,12 @@ class Adaptation {
   [[nodiscard]] Form form_now();
 
   Limits limits_;
-  double path_;          // what the network takes, as far as known [byte/s]
-  double dial_ = 0.5;    // 0: the best form; see form_now() and wanted_period()
-  int stage_ = 0;        // of the scale
-  double period_ = 0;    // of the images; 0: unknown [s]
-  int behind_ = 0;       // images skipped since the last was not handed over completely
-  double size_ = 0;      // of the last images of one time [byte]
+  double path_;                // what the network takes, as far as known [byte/s]
+  double dial_ = 0.5;          // 0: the best form; see form_now() and wanted_period()
+  int stage_ = 0;              // of the scale
+  double period_ = 0;          // of the images; 0: unknown [s]
+  int behind_ = 0;             // images skipped since the last was not handed over completely
+  double size_ = 0;            // of the last images of one time [byte]
   std::uint64_t largest_ = 0;  // of the images of one time; 0: none was sent [byte]
   Time time_;                  // of the last image
   std::optional<TimePoint> last_, due_;
@@ -77,8 +79,8 @@ class Adaptation {
 class IdleRate {
  public:
   /// @param rate  [message/s], above 0.
-  explicit IdleRate(double rate) : period_(std::chrono::nanoseconds(
-                                       static_cast<std::int64_t>(1e9 / rate))) {}
+  explicit IdleRate(double rate)
+      : period_(std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / rate))) {}
   /// Whether to send a message. Cost: one pass over 4096 pixels, or over the elements.
   bool lets_pass(const Message& message, TimePoint now);
 

@@ -32,7 +32,7 @@ struct Camera {
   Adaptation adaptation;
   std::int64_t number = 0;
   Time begin{seconds(1)};  // of its images
-  double waiting = 0;  // in the network [byte]
+  double waiting = 0;      // in the network [byte]
 
   /// Bytes of a JPEG: from 90 to 30 they fall to a quarter.
   [[nodiscard]] double size_of(const Form& form) const {
@@ -164,7 +164,8 @@ TEST(Adaptation, AWishForLessIsTheBest) {
 
 TEST(Adaptation, AScaleThatIsGivenStays) {
   Camera camera{120'000, 1e9, Adaptation({300'000, {90, 0.5}, false})};
-  for (const auto& each : camera.run(100)) EXPECT_EQ(each.form.scale, 0.5 * each.is_sent + !each.is_sent);
+  for (const auto& each : camera.run(100))
+    EXPECT_EQ(each.form.scale, 0.5 * each.is_sent + !each.is_sent);
   camera.full = 1e6;
   camera.run(200);
   const auto all = camera.run(200);
@@ -202,8 +203,8 @@ TEST(IdleRate, ImagesThatDifferByNoiseComeSlowly) {
   IdleRate idle(2);
   int passed = 0;
   for (int i = 0; i < 200; ++i)
-    passed += idle.lets_pass(image_of(100, static_cast<std::uint8_t>(7 + i % 2)),
-                             kBegin + i * kPeriod);
+    passed +=
+        idle.lets_pass(image_of(100, static_cast<std::uint8_t>(7 + i % 2)), kBegin + i * kPeriod);
   EXPECT_EQ(passed, 20 + 18) << "all in the first second, then two a second";
 }
 

@@ -192,6 +192,21 @@ TEST_F(ByMessages, ATraceSaysWhenEachMessageAndTimerComes) {
                         "timer at 14"}));
 }
 
+TEST_F(ByMessages, ATraceSaysWhenAParameterIsSet) {
+  using enum TraceEvent::What;
+  const auto factor = module.parameter("factor", 2.0, "", "", {.max = 9});
+  module.on(a, [&](const auto& message) { note(std::to_string(std::llround(*factor)), message); });
+  feed("a", {at(1), at(2), at(3)});
+  auto event = [](TraceEvent::What what, std::string port, std::int64_t milliseconds,
+                  std::string value = {}) {
+    return TraceEvent{what, std::move(port), 0, 0, Time(), at(milliseconds).header.time,
+                      0,    std::move(value)};
+  };
+  follow({event(Began, "a", 1), event(Set, "factor", 2, "5"), event(Began, "a", 2),
+          event(Set, "factor", 3, "10"), event(Set, "nosuch", 3, "1"), event(Began, "a", 4)});
+  EXPECT_EQ(run(), Log({"2 1 at 1", "5 2 at 2", "5 3 at 4"}));
+}
+
 TEST_F(ByMessages, ATraceSaysWhenAGeneratorIsCalledAndHasTheFocus) {
   feed("focus", {table<std::int32_t>().message({4})});
   const std::vector<TraceEvent> events = {

@@ -55,6 +55,10 @@ struct Inlet {
   /// The synchronised inputs that its input is one of; null: none.
   [[nodiscard]] TogetherState* together() const { return inputs.front()->together; }
 
+  /// Adds to the open links of its input, if it has but one.
+  void count(std::int32_t added) const {
+    if (inputs.size() == 1) inputs.front()->links += added;
+  }
   /// Adds the age of a message, and the gap before it. @param sensed  time in its header.
   void measure(Time sensed, MonotonicTime taken, std::chrono::nanoseconds wall_offset);
   /// A row of a report; ages and gaps start again.

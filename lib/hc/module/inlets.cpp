@@ -62,6 +62,7 @@ void Module::Inlets::open(const Uri& uri, std::vector<internal::InputState*> inp
     if (each.is_same(inlet)) inlet.route = each.route;
     if (each.inputs == inlet.inputs) ++inlet.number;
   }
+  inlet.count(1);
   inlets_.push_back(std::move(inlet));
   sets_.begin(inlets_.back());
   join_renewed();
@@ -69,8 +70,11 @@ void Module::Inlets::open(const Uri& uri, std::vector<internal::InputState*> inp
 
 bool Module::Inlets::remove(const internal::PortLink& link) {
   return std::erase_if(link.is_focus ? focus_ : inlets_, [&](const Inlet& each) {
-           return each.uri == link.uri.text() &&
-                  (link.is_focus || each.inputs.front() == module_.inputs_[link.port].get());
+           const bool is_it =
+               each.uri == link.uri.text() &&
+               (link.is_focus || each.inputs.front() == module_.inputs_[link.port].get());
+           if (is_it && each.source != nullptr) each.count(-1);
+           return is_it;
          }) > 0;
 }
 
@@ -116,6 +120,7 @@ void Module::Inlets::end(Inlet& inlet) {
   inlet.past += inlet.source->traffic();
   inlet.source.reset();
   inlet.head.reset();
+  inlet.count(-1);
   sets_.end(inlet);
 }
 

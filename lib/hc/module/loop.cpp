@@ -63,6 +63,7 @@ void Module::Loop::begin() {
   schedule_->begin();
   timers.start();
   if (module.start_) module.start_();
+  has_begun_ = true;
 }
 
 bool Module::Loop::turn() {
@@ -103,7 +104,7 @@ void Module::Loop::finish() {
 
 void Module::Loop::end() {
   end_pulled();
-  if (module.end_) module.end_();
+  if (module.end_ && has_begun_) module.end_();
 }
 
 void Module::Loop::take_rest() {

@@ -36,6 +36,8 @@ struct Module::Loop {
   void take_rest();
   /// All inputs have ended.
   void finish();
+  /// Calls on_end(), unless on_start() has not been called.
+  void end();
   /// See Schedule::pause().
   void pause(const std::function<MonotonicTime()>& due) { schedule_->pause(due); }
   void close();
@@ -43,6 +45,9 @@ struct Module::Loop {
   void report_state() { remote.report_state(); }
   void note(TraceEvent::What what, const std::string& port, const Header& header) {
     trace.note(what, port, header);
+  }
+  void note_set(const std::string& parameter, const std::string& value) {
+    trace.note_set(parameter, value);
   }
 
   // For its schedule.
@@ -73,13 +78,13 @@ struct Module::Loop {
   }
   void end_pulled();
   void read_watched();
-  void end();
 
   std::unique_ptr<Schedule> schedule_;
   WaitSet waits_, pauses_;  // for messages; between two calls of a generator
   std::vector<Source*> waited_for_;
   std::vector<int> watched_;
   MonotonicTime served_{0}, looked_{0};          // when commands were, and own descriptors
+  bool has_begun_ = false;                       // on_start() has been called
   bool has_waited_ = false;                      // for messages, in this turn
   const internal::InputState* asked_ = nullptr;  // for its next message
   std::function<void()> note_end_;  // of the message that was pulled last; its handling ends then

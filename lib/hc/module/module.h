@@ -202,7 +202,9 @@ class Module {
 
   /// Called once, when parameters are set and links are open.
   void on_start(std::function<void()> handler) { start_ = std::move(handler); }
-  /// Called once, when all inputs have ended, before the outputs do. Not after an error.
+  /// Called once, before the outputs end: when all inputs have ended, after stop(), when no reader
+  /// is left, or when the module is asked to stop (stop_requested() says so; then it is to be
+  /// quick). Not after an error.
   void on_end(std::function<void()> handler) { end_ = std::move(handler); }
   /// For a module that makes messages unasked: called again and again while no message waits, until
   /// stop().

@@ -91,17 +91,17 @@ void Module::Outlets::adapt(const std::shared_ptr<Outlet>& outlet,
   if (conversion.idle_rate > 0)
     outlet->idle = std::make_shared<internal::IdleRate>(conversion.idle_rate);
   if (policy.bandwidth == 0) return;
+  const internal::Form best{conversion.quality.value_or(kJpegQuality), conversion.scale};
+  const bool may_scale = (*parse_uri(outlet->uri)).option("scale", "").empty();
+  const internal::Adaptation::Limits limits{policy.bandwidth, best, may_scale,
+                                            !policy.writer_waits()};
   for (const auto& other : outlets_)
-    if (!conversion.pair.empty() && other->conversion.pair == conversion.pair)
+    if (!conversion.pair.empty() && other->conversion.pair == conversion.pair && other->adapted &&
+        other->adapted->adaptation.limits() == limits)
       outlet->adapted = other->adapted;
-  if (!outlet->adapted) {
-    const internal::Form best{conversion.quality.value_or(kJpegQuality), conversion.scale};
-    const bool may_scale = (*parse_uri(outlet->uri)).option("scale", "").empty();
-    const internal::Adaptation::Limits limits{policy.bandwidth, best, may_scale,
-                                              !policy.writer_waits()};
+  if (!outlet->adapted)
     outlet->adapted = std::make_shared<internal::AdaptedLinks>(
         internal::AdaptedLinks{internal::Adaptation(limits), {}});
-  }
   outlet->adapted->outlets.push_back(outlet);
 }
 

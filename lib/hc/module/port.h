@@ -93,6 +93,7 @@ struct InputState {
   bool is_exclusive = false;  ///< takes messages of the mode in focus alone
   bool is_finite = false;     ///< drops messages with NaN or infinity
   bool is_pulled = false;     ///< messages wait until they are asked for: Run::next()
+  std::int32_t links = 0;     ///< of its own that are open
   std::deque<Waiting> waiting;
   InputOptions options;
 };
@@ -167,6 +168,11 @@ std::size_t forward(OutputState& output, const Message& message);
 /// An input port of kind K.
 template <typename K>
 class Input {
+ public:
+  /// Whether it has a link of its own that has not ended, so that a message can still come by it.
+  /// Standard input is not one, as inputs share it.
+  [[nodiscard]] bool linked() const { return state_->links > 0; }
+
  private:
   friend class Module;
   template <typename... Kinds>

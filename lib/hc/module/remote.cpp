@@ -7,6 +7,7 @@
 
 #include <hc/base/text.h>
 #include <hc/module/ending.h>
+#include <hc/module/loop.h>
 
 namespace hc {
 namespace {
@@ -109,6 +110,7 @@ Status Module::Remote::set_parameter(const std::string& name, const std::string&
     if (parameter->options.fixed)
       return Error{Code::Invalid, "parameter " + name + " is fixed while the module runs"};
     HC_TRY(parameter->set(value));
+    module_.loop_->note_set(name, value);
     report_parameters();
     return {};
   }

@@ -29,6 +29,9 @@ class Module::Remote {
   /// obeys the others. False if there are no more.
   bool obey_while_sending();
 
+  /// Errors: Invalid.
+  Status set_parameter(const std::string& name, const std::string& value);
+
   void report_links();
   /// Also without links, to show that the module responds.
   void report_counters();
@@ -38,7 +41,6 @@ class Module::Remote {
  private:
   void obey(const std::string& row);
   Status carry_out(const ModuleCommand& command);
-  Status set_parameter(const std::string& name, const std::string& value);
   Status link(bool is_input, const std::string& text);
   Status unlink(bool is_input, const std::string& text);
   void report_parameters();

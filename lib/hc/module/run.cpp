@@ -83,8 +83,8 @@ std::optional<Message> Module::Run::next(internal::InputState& input) {
 
 int Module::Run::end() {
   if (is_working()) attempt([&] { loop_->finish(); });
-  if (!status_ && is_stopped_ && module_.options_.finish_when_stopped)
-    attempt([&] { loop_->take_rest(); });
+  if (!status_ && is_stopped_)
+    attempt([&] { module_.options_.finish_when_stopped ? loop_->take_rest() : loop_->end(); });
   if (!status_) attempt([&] { loop_->close(); });
   // As has been logged. By the messages' clock a recording is repeated, with what was dropped then.
   if (!status_ && loop_->has_failed_input() && !arguments_->by_messages) status_ = kFailure;

@@ -213,8 +213,11 @@ class Module::Schedule::Replay final : public ByMessages {
     }
     const TraceEvent event = std::move(events_.front());
     events_.pop_front();
-    if (event.what != TraceEvent::What::Began) return;
+    const bool is_set = event.what == TraceEvent::What::Set;
+    if (event.what != TraceEvent::What::Began && !is_set) return;
     loop_.now.pass_to(std::max(loop_.now.time(), event.moment.time_since_epoch()));
+    // A parameter that the module does not have any more has no effect.
+    if (is_set) return static_cast<void>(loop_.remote.set_parameter(event.port, event.value));
     loop_.delivery.expire_focus();
     if (!event.port.empty())
       handle_head_of(event);

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include <hc/compress/compress.h>
-#include <hc/compress/scale.h>
+#include <hc/compress/convert.h>
 #include <hc/module/loop.h>
 #include <hc/module/outlets.h>
 
@@ -16,26 +16,12 @@ using internal::Outlet;
 
 constexpr std::size_t kHeaderBytes = 80;  // about
 
-/// A message in the form that a link asks for; one that cannot be converted is left as it is.
-Message converted(const Message& message, const Conversion& conversion) {
-  Message made = message;
-  const auto& header = message.header;
-  if (conversion.scale != 1 && can_scale(header.info) && !header.empty())
-    made = value_or_end(shrink(message, scaled(header.width, conversion.scale),
-                               scaled(header.height, conversion.scale)));
-  if (!conversion.as) return made;
-  Header wanted = made.header;
-  wanted.info.encoding = *conversion.as;
-  if (!check(wanted, {~std::uint64_t{0}})) return made;
-  return value_or_end(compress(made, *conversion.as, conversion.quality.value_or(kJpegQuality)));
-}
-
 /// The message as a link is to send it; nullopt: the link is spared this one.
 std::optional<Message> made_for(Outlet& outlet, const Message& message) {
   const auto now = std::chrono::steady_clock::now();
   if (outlet.idle && !outlet.idle->lets_pass(message, now)) return {};
   if (!outlet.adapted || !can_scale(message.header.info))
-    return converted(message, outlet.conversion);
+    return value_or_end(convert(message, outlet.conversion));
   auto& adaptation = outlet.adapted->adaptation;
   const auto form = adaptation.choose(message.header.time, now, outlet.adapted->is_behind());
   if (!form) return {};
@@ -43,7 +29,7 @@ std::optional<Message> made_for(Outlet& outlet, const Message& message) {
   conversion.as = conversion.as.value_or(Encoding::Jpeg);
   conversion.quality = form->quality;
   conversion.scale = form->scale;
-  auto made = converted(message, conversion);
+  auto made = value_or_end(convert(message, conversion));
   adaptation.note_size(made.elements.size() + kHeaderBytes);
   return made;
 }

@@ -30,6 +30,13 @@ class Trace {
       add(what, {}, {}, number);
   }
 
+  /// Notes that a parameter was given another value.
+  void note_set(const std::string& parameter, const std::string& value) {
+    if (!is_linked()) return;
+    add(TraceEvent::What::Set, parameter, {}, 0);
+    if (lost_ == 0) events_.back().value = value;
+  }
+
   /// Sends the events when there are many, or twice a second.
   void flush_if_due(MonotonicTime now) {
     if (!events_.empty() && (events_.size() >= kMany || now - flushed_ >= kPeriod)) flush();

@@ -106,6 +106,25 @@ TEST_F(RunningModule, IsTracedFromACommandOn) {
   EXPECT_EQ(join(), 0);
 }
 
+TEST_F(RunningModule, ReportsWhenAParameterWasSet) {
+  Taker module{"sink"};
+  module.parameter("title", "a", "", "");
+  auto sink = sink_of(uri("in"));
+  auto trace = source_of(uri("trace"));
+  start_managed(module, {"--in=" + uri("in"), "--out=trace=" + uri("trace")});
+  next(*reports_, Report::Parameters);
+  command("set title=b and c");
+  next(*reports_, Report::Parameters);
+  ASSERT_TRUE(sink->close());
+  const auto events = events_of(*trace);
+  EXPECT_EQ(join(), 0);
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].what, What::Set);
+  EXPECT_EQ(events[0].port, "title");
+  EXPECT_EQ(events[0].value, "b and c");
+  EXPECT_GT(events[0].moment, Time());
+}
+
 TEST_F(RunningModule, GoesOnWhenNobodyReadsItsTrace) {
   Module module{"sink", "Takes."};
   auto in = module.input("in", table(), "");
