@@ -9,7 +9,6 @@
 #include <hc/base/suggestion.h>
 #include <hc/contract/conversion.h>
 #include <hc/contract/description.h>
-#include <hc/contract/trace.h>
 #include <hc/link/policy.h>
 
 namespace hc {
@@ -217,7 +216,7 @@ namespace {
 
 /// The outputs to record, with the place where each is first named.
 std::map<std::pair<std::string, std::string>, Place> recorded_outputs(
-    const Graph& graph, const std::vector<std::string>& traced) {
+    const Graph& graph, const std::vector<GraphPort>& unlinked) {
   std::map<std::pair<std::string, std::string>, Place> outputs;
   for (const auto& link : graph.links)
     if (link.from.uri.empty())
@@ -228,15 +227,15 @@ std::map<std::pair<std::string, std::string>, Place> recorded_outputs(
     if (frame.moved_by)
       outputs.emplace(std::pair(frame.moved_by->value.module, frame.moved_by->value.port),
                       frame.moved_by->place);
-  for (const auto& module : graph.modules)
-    if (std::ranges::find(traced, module.name) != traced.end())
-      outputs.emplace(std::pair(module.name, kTracePort), module.place);
+  for (const auto& output : unlinked)
+    outputs.emplace(std::pair(output.module, output.port),
+                    find_named(graph.modules, output.module)->place);
   return outputs;
 }
 
 }  // namespace
 
-std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::string>& traced,
+std::vector<std::string> add_recorder(Graph& graph, const std::vector<GraphPort>& unlinked,
                                       const std::string& program,
                                       const std::map<std::string, std::string>& parameters) {
   // A folder gets all messages; but modules on other hosts never wait for the network.
@@ -250,7 +249,7 @@ std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::strin
   for (const auto& [name, value] : parameters) recorder.parameters[name] = {value, {}};
   std::vector<std::string> inputs;
   std::string streams;
-  for (const auto& [output, place] : recorded_outputs(graph, traced)) {
+  for (const auto& [output, place] : recorded_outputs(graph, unlinked)) {
     GraphLink link;
     link.from = {output.first, output.second, ""};
     link.to = {recorder.name, "stream_" + std::to_string(inputs.size()), ""};

@@ -164,10 +164,10 @@ Status check_policy(Uri policy);
 /// Adds a module `recorder` on the host of `hc run` that records every linked output and the focus:
 /// either to one MCAP file, without making modules wait, or to a folder, without losing messages
 /// while the recorder runs.
-/// @param traced  modules whose output `trace` is recorded too.
+/// @param unlinked  outputs of its modules that are recorded too.
 /// @param parameters  of the recorder: `file` or `folder`, and others.
 /// @returns  its inputs, one for each output; its program's `--describe` does not list them.
-std::vector<std::string> add_recorder(Graph& graph, const std::vector<std::string>& traced,
+std::vector<std::string> add_recorder(Graph& graph, const std::vector<GraphPort>& unlinked,
                                       const std::string& program,
                                       const std::map<std::string, std::string>& parameters);
 

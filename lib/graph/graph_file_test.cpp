@@ -227,6 +227,14 @@ TEST(GraphFile, ParametersAreSetFromOutside) {
       (std::vector<std::string>{"--set: no module \"camra\" in g.toml, did you mean \"camera\"?"}));
 }
 
+TEST(GraphFile, NumbersAreAsShortAsTheyCanBe) {
+  const auto graph = must(parse("[modules.a]\nparameters = { a = 0.05, b = 1e-7, c = 2.0 }\n"));
+  const auto& parameters = graph.modules[0].parameters;
+  EXPECT_EQ(parameters.at("a").value, "0.05");
+  EXPECT_EQ(parameters.at("b").value, "1e-07");
+  EXPECT_EQ(parameters.at("c").value, "2");
+}
+
 TEST(GraphFile, EveryLinkedOutputIsRecordedOnce) {
   auto graph = must(parse(R"([modules.a]
 [modules.b]
@@ -240,7 +248,8 @@ from = "a.out"
 [[modules.b.inputs.in]]
 from = "tcp:7000"
 )"));
-  const auto inputs = add_recorder(graph, {"b"}, "/bin/recorder", {{"file", "x.mcap"}});
+  const auto inputs =
+      add_recorder(graph, {{"b", "trace", ""}}, "/bin/recorder", {{"file", "x.mcap"}});
   EXPECT_EQ(inputs.size(), 3U);
   ASSERT_EQ(graph.links.size(), 6U);
   const char* outputs[] = {"a.out", "b.trace", "w.focus"};
@@ -256,7 +265,7 @@ TEST(GraphFile, AFolderIsRecordedWhole) {
 [modules.recorder]
 inputs.in = "a.out"
 )"));
-  add_recorder(graph, {"a"}, "/bin/recorder", {{"folder", "kept"}});
+  add_recorder(graph, {{"a", "trace", ""}}, "/bin/recorder", {{"folder", "kept"}});
   const auto& recorder = graph.modules.back();
   EXPECT_EQ(recorder.name, "recorder_added");  // "recorder" is taken
   EXPECT_EQ(recorder.parameters.at("folder").value, "kept");

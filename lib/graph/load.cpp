@@ -101,17 +101,35 @@ void add_page(Graph& graph, const std::string& listen, Problems& problems) {
   if (!listen.empty()) obey("set " + page + ".listen=" + listen);
 }
 
-/// The modules with an output `trace`.
-std::vector<std::string> traced_modules(const Graph& graph, const Describe& describe) {
-  std::vector<std::string> traced;
+/// Whether a module is the last of a chain: links lead to it, and none from it.
+bool is_last(const Graph& graph, const std::string& module) {
+  bool is_fed = false, feeds = false;
+  for (const auto& link : graph.links) {
+    is_fed |= link.to.module == module;
+    feeds |= link.from.module == module;
+  }
+  for (const auto& workspace : graph.workspaces) feeds |= workspace.value == module;
+  for (const auto& frame : graph.frames)
+    feeds |= frame.moved_by && frame.moved_by->value.module == module;
+  return is_fed && !feeds;
+}
+
+/// The outputs without a link that are recorded: `trace` of each module that has it, and the
+/// outputs of modules at the ends of chains, which are the results of the graph.
+std::vector<GraphPort> recorded_unlinked(const Graph& graph, const Describe& describe) {
+  std::vector<GraphPort> outputs;
   for (const auto& module : graph.modules) {
     if (module.program.value.empty()) continue;
     const auto text = describe(module.program.value, module.host.value);
     const auto description = text ? parse_description(*text) : std::nullopt;
-    if (description && find_output(*description, kTracePort) == &trace_output())
-      traced.push_back(module.name);
+    if (!description) continue;
+    if (find_output(*description, kTracePort) == &trace_output())
+      outputs.push_back({module.name, kTracePort, ""});
+    if (is_last(graph, module.name))
+      for (const auto& output : description->outputs)
+        outputs.push_back({module.name, output.name, ""});
   }
-  return traced;
+  return outputs;
 }
 
 /// Adds inputs of any type to a description.
@@ -127,7 +145,8 @@ class FileLoader : public GraphLoader {
   explicit FileLoader(LoadOptions options) : options_(std::move(options)) {}
 
   Result<LoadedGraph> load(const Plan* running, int stop) override {
-    if (running != nullptr || options_.hosts == nullptr) return read_and_plan(running, stop);
+    if (running != nullptr || options_.hosts == nullptr || options_.programs_here)
+      return read_and_plan(running, stop);
     Result<LoadedGraph> loaded = Error{};
     auto served = options_.hosts->serve([&] { loaded = read_and_plan(nullptr, stop); });
     return served ? std::move(loaded) : served.error();
@@ -172,10 +191,13 @@ class FileLoader : public GraphLoader {
 
   LoadedGraph planned(Graph graph, Problems& problems, const Plan* running, int stop) {
     HostAnswers remote;
-    if (auto asked = ask_hosts(graph, problems, stop, remote); !asked)
+    out_of_reach_ = 0;
+    if (auto asked = options_.programs_here ? Status() : ask_hosts(graph, problems, stop, remote);
+        !asked)
       problems.add({}, asked.error().text());
     HostPlaces places;
-    if (options_.hosts != nullptr) places[""].fingerprint = options_.hosts->fingerprint();
+    if (options_.hosts != nullptr && !options_.programs_here)
+      places[""].fingerprint = options_.hosts->fingerprint();
     for (const auto& [name, there] : remote) places[name] = there.connected->place;
     find_programs(graph, remote, problems, stop);
     Answers described;  // on this host; failures are not retried
@@ -189,7 +211,7 @@ class FileLoader : public GraphLoader {
     std::vector<std::string> recorded;
     auto describe = [&](const std::string& program,
                         const std::string& host) -> Result<std::string> {
-      if (!host.empty()) return remote.at(host).described.at(program);
+      if (!host.empty() && !options_.programs_here) return remote.at(host).described.at(program);
       auto known = described.find(program);
       if (known == described.end())
         known = described.emplace(program, describe_once(program, stop)).first;
@@ -197,7 +219,8 @@ class FileLoader : public GraphLoader {
       return known->second;
     };
     if (!recorder.empty()) {
-      recorded = add_recorder(graph, traced_modules(graph, describe), recorder, options_.recorder);
+      recorded =
+          add_recorder(graph, recorded_unlinked(graph, describe), recorder, options_.recorder);
       loaded.recorder = graph.modules.back().name;
     }
     auto hold_port = [&](const std::string& host, bool is_for_others) {
@@ -207,13 +230,14 @@ class FileLoader : public GraphLoader {
     Plan plan = make_plan(std::move(graph), describe, options_.token, problems, running,
                           options_.holds_ports ? hold_port : HoldPort(), places);
     loaded.problems = problems.lines();
+    loaded.awaits_hosts = out_of_reach_ > 0 && problems.size() == out_of_reach_;
     if (problems.empty()) loaded.plan = std::move(plan);
     return loaded;
   }
 
   /// Replaces names of programs by paths; a name with a slash is relative to its graph file.
   /// Modules on an unreachable host cause no further problems.
-  static void find_programs(Graph& graph, const HostAnswers& remote, Problems& problems, int stop) {
+  void find_programs(Graph& graph, const HostAnswers& remote, Problems& problems, int stop) const {
     for (auto& module : graph.modules) {
       auto& [program, place] = module.program;
       const std::string given = std::exchange(program, {}), &host = module.host.value;
@@ -222,7 +246,7 @@ class FileLoader : public GraphLoader {
         const auto& path = there->second.found.at(given);
         if (!path) problems.add(place, "host {}: {}", host, path.error().detail);
         program = path.value_or("");
-      } else if (host.empty()) {
+      } else if (host.empty() || options_.programs_here) {
         std::string name = given;
         if (name.find('/') != std::string::npos && !name.starts_with('/'))
           name = (fs::path(problems.file(place.file)).parent_path() / name).string();
@@ -276,6 +300,7 @@ class FileLoader : public GraphLoader {
           return;
         }
         problems.add(declared.place, "host {}: {}", declared.name, there.connected.error().detail);
+        if (there.connected.error().code == Code::NotFound) ++out_of_reach_;
         if (patience) return;
         patience = loop->call_at(std::chrono::steady_clock::now() + kMorePatience, give_up);
       };
@@ -315,6 +340,7 @@ class FileLoader : public GraphLoader {
   };
 
   LoadOptions options_;
+  std::size_t out_of_reach_ = 0;                // hosts, of the last graph
   std::map<std::string, Described> described_;  // by program
 };
 

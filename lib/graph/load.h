@@ -20,10 +20,13 @@ struct LoadOptions {
   std::vector<std::string> settings;  ///< MODULE.PARAMETER=VALUE
   bool page = false;                  ///< adds a module `web`, which opens a browser
   std::string listen;                 ///< address on which `web` listens; empty: its default
-  /// Parameters of an added module `recorder` that records all outputs; empty: none.
+  /// Parameters of an added module `recorder` that records outputs; empty: none.
   std::map<std::string, std::string> recorder = {};
   std::string token;         ///< for make_plan()
   bool holds_ports = false;  ///< reserves ports for links over TCP; needed to run the plan
+  /// Takes programs of other hosts from this one, which needs none of them: for a plan that is only
+  /// looked at, or run here.
+  bool programs_here = false;
   /// Connects to other hosts; null: graphs with hosts are refused. Must outlive the loader.
   Hosts* hosts = nullptr;
 };
@@ -34,6 +37,7 @@ struct LoadedGraph {
   std::optional<Plan> plan;           ///< nullopt: see `problems`
   std::vector<std::string> problems;  ///< one line each
   std::string recorder;               ///< the module added for LoadOptions::recorder; empty: none
+  bool awaits_hosts = false;          ///< the only problems are hosts that are out of reach
 };
 
 /// Loads one graph, repeatedly while it runs. Not thread-safe.

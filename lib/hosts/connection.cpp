@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include <graph/held_port.h>
 #include <graph/module_process.h>
@@ -434,6 +436,16 @@ std::string Connection::reason_of(const std::string& observed) const {
                               : "");
 }
 
+/// Whether the host is not there, for now at least.
+bool Connection::is_out_of_reach() const {
+  constexpr std::array<std::string_view, 6> kWords = {
+      "No route to host",       "Connection refused", "timed out",
+      "Network is unreachable", "Host is down",       "Could not resolve hostname"};
+  const auto line = last_line(error_text_);
+  return !is_greeted_ && line.starts_with("ssh: ") &&
+         std::ranges::any_of(kWords, [&](auto words) { return line.find(words) != line.npos; });
+}
+
 /// Ends all modules and questions after the connection was lost or could not be made. Reconnects,
 /// unless it was the first attempt.
 void Connection::lose(const std::string& why) {
@@ -457,7 +469,7 @@ void Connection::lose(const std::string& why) {
   });
   if (const auto opened = std::exchange(opened_, {})) {
     is_closed_ = true;
-    return opened(Error{Code::Closed, reason});
+    return opened(Error{is_out_of_reach() ? Code::NotFound : Code::Closed, reason});
   }
   if (is_closed_) return;
   if (was_connected && Clock::now() - connected_ > kLasting) pause_.reset();

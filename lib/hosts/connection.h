@@ -90,6 +90,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   void ask_time();
   void send_heartbeat();
   void lose(const std::string& why);
+  [[nodiscard]] bool is_out_of_reach() const;
   [[nodiscard]] std::string reason_of(const std::string& observed) const;
   void disconnect();
 

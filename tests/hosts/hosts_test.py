@@ -80,6 +80,24 @@ class Hosts(HostsTest):
         self.stop(process)
         self.assert_empty(host)
 
+    def test_a_host_that_is_off_at_the_start_is_waited_for(self):
+        (host,) = self.network.add()
+        self.write_graph(self.tables(host) + CAMERA % "h1" + BRIGHTNESS % "")
+        host.cut()
+        process = self.start("exec hc run g.toml")
+        self.await_lines(process, "g.toml:2: host h1: ssh: .*; trying again until it answers")
+        host.cut(False)
+        self.await_lines(process, "brightness: started")
+        self.flows(self.observe(process))
+        self.stop(process)
+        self.assert_empty(host)
+        # Meanwhile it can be stopped.
+        host.cut()
+        process = self.start("exec hc run g.toml")
+        self.await_lines(process, "; trying again until it answers")
+        self.stop(process)
+        host.cut(False)
+
     def test_the_first_link_to_a_host_may_come_later(self):
         (host,) = self.network.add()
         self.write_graph(self.tables(host) + CAMERA.replace('host = "%s"', "") + BRIGHTNESS % "")
@@ -190,8 +208,8 @@ class Hosts(HostsTest):
         self.shell("mkdir kept; echo other >kept/other")
         self.shell("timeout %d hc run g.toml --quiet --record kept" % WATCHDOG)
         self.assert_empty(first, second)
-        # What is linked, and the traces, of all modules, and nothing else.
-        outputs = ["source.command", "one.out", "two.out", "three.out"]
+        # What is linked, the result at the end, and the traces of all modules, and nothing else.
+        outputs = ["source.command", "one.out", "two.out", "three.out", "four.out"]
         traces = [name + ".trace" for name in ("source", "one", "two", "three", "four")]
         files = sorted(["other", *(name + ".mtp" for name in [*outputs, *traces])])
         self.assertEqual(sorted(os.listdir(self.path("kept"))), files)

@@ -233,6 +233,19 @@ class Recordings(Graphs):
         for words in (b"hypercolumn.graph", b"hypercolumn.module.camera", b"parameter.rate"):
             self.assertIn(words, data)
 
+    def test_the_last_output_of_a_chain_is_recorded_and_seen_without_a_link(self):
+        text = (GRAPH % (self.environment["HC_DATA"], 0)).replace(
+            'outputs.mean = "file:mean.mtp"', ""
+        )
+        self.write("g.toml", text.replace('save = "last.png", ', ""))
+        name = "chain_%d" % os.getpid()
+        process = self.start("exec hc run g.toml --as %s --record kept" % name)
+        lines = self.await_lines(process, "view: started")
+        self.assertIn("not recorded: camera.right;", "\n".join(lines))
+        self.shell("hc cat brightness.mean --of %s --count 1" % name)
+        self.stop(process)
+        self.assertTrue(self.seqs("kept/brightness.mean.mtp"))
+
     def test_a_killed_recorder_loses_its_last_chunk_at_most(self):
         chance = random.Random(1)
         self.noise(1600)  # 26 MB

@@ -12,8 +12,10 @@
 
 #include <graph/run.h>
 #include <hc/base/format.h>
+#include <hc/os/first_process.h>
 #include <hc/os/program.h>
 #include <hc/os/secret.h>
+#include <hc/os/wait_readable.h>
 #include <record/place.h>
 
 #include "common.h"
@@ -136,6 +138,24 @@ void take_record(const RunOptions& options, hc::LoadOptions& load) {
     say(hc::format("hc run: {} stays as it is; recording to {}", given.path, place.path));
 }
 
+/// Loads the graph, as soon as its hosts are there: they may start later than this one.
+hc::LoadedGraph load_when_hosts_answer(hc::GraphLoader& loader, const std::string& file) {
+  constexpr std::chrono::seconds kPause{1};
+  std::error_code unknown;
+  const bool is_read_again = std::filesystem::is_regular_file(file, unknown);  // not a pipe
+  std::vector<std::string> said;
+  while (true) {
+    auto loaded = loader.load(nullptr, said.empty() ? -1 : hc::stop_descriptor());
+    if (!loaded || !loaded->awaits_hosts || !is_read_again)
+      return without_problems("run", std::move(loaded));
+    if (std::exchange(said, loaded->problems) != loaded->problems)
+      for (const auto& line : loaded->problems)
+        say(hc::format("hc run: {}; trying again until it answers", line));
+    if (auto waited = hc::wait_readable({}, hc::stop_descriptor(), kPause); !waited)
+      throw Failure(waited.error());
+  }
+}
+
 /// Logs the error through the outbox, as its reader may have stopped reading.
 [[noreturn]] void fail(Outbox& lines, const hc::Error& error) {
   lines.say("hc run: " + error.text());
@@ -143,6 +163,7 @@ void take_record(const RunOptions& options, hc::LoadOptions& load) {
 }
 
 void run(RunOptions options) {
+  hc::leave_first_process();
   allow_descriptors();
   check_name(options);
   hc::LoadOptions load_options = options.graph;
@@ -154,7 +175,7 @@ void run(RunOptions options) {
   const auto hosts = make_hosts();
   load_options.hosts = hosts.get();
   auto loader = hc::make_loader(load_options);
-  auto graph = load_graph("run", *loader);
+  auto graph = load_when_hosts_answer(*loader, options.graph.file);
   Outbox lines(STDERR_FILENO);
   const bool has_status = !options.quiet && ::isatty(STDERR_FILENO) == 1;
   if (const auto& unlinked = graph.plan->unlinked; !options.record.empty() && !unlinked.empty()) {
@@ -198,7 +219,8 @@ void add_run(CLI::App& app) {
   verb->add_option("--as", options->name, "name of the running graph (default: the file's)");
   auto* record = verb->add_option(
       "--record", options->record,
-      "record every linked output into this folder, as MODULE.PORT.mtp, or into one FILE.mcap");
+      "record linked outputs, and those of modules at the end of the graph, into this folder, as "
+      "MODULE.PORT.mtp, or into one FILE.mcap");
   for (const auto& [name, text] :
        {std::pair("split", "begin a new .mcap file after this many bytes (1G)"),
         {"keep", "remove the oldest of these files above this many bytes (10G)"},

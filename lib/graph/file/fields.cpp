@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
+#include <hc/base/parameter.h>
 #include <hc/base/suggestion.h>
 #include <hc/base/uri.h>
 #include <hc/contract/description.h>
@@ -152,12 +152,7 @@ std::optional<std::string> Fields::scalar(const Node& node) {
   if (const auto* text = node.as<std::string>()) return *text;
   if (const auto* flag = node.as<bool>()) return std::string(*flag ? "true" : "false");
   if (const auto* number = node.as<std::int64_t>()) return std::to_string(*number);
-  if (const auto* number = node.as<double>()) {
-    std::ostringstream text;
-    text.precision(17);
-    text << *number;
-    return text.str();
-  }
+  if (const auto* number = node.as<double>()) return hc::text(*number);
   return std::nullopt;
 }
 

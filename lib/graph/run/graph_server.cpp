@@ -31,8 +31,13 @@ Result<std::unique_ptr<GraphServer>> GraphServer::make(Loop& loop, const Running
                                                        Callbacks callbacks) {
   std::unique_ptr<GraphServer> server(new GraphServer(loop, std::move(callbacks)));
   auto& self = *server;
-  self.states_ = HC_TRY(Announcer::make(loop, listening(graph.state_uri()),
-                                        [&self] { return std::vector{self.state_message()}; }));
+  auto states = Announcer::make(loop, listening(graph.state_uri()),
+                                [&self] { return std::vector{self.state_message()}; });
+  if (!states)
+    return Error{states.error().code, states.error().detail +
+                                          "; another container on this network may run a "
+                                          "graph of this name: give this one another with --as"};
+  self.states_ = std::move(*states);
   LinkOptions options;
   options.limits.element_bytes = kMaxCommandBytes;
   self.commands_ = HC_TRY(Intake::make(
