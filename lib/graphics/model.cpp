@@ -10,9 +10,14 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include <hc/compress/compress.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -83,19 +88,36 @@ fs::path file_named(std::string name, const fs::path& folder) {
   return folder / (fs::exists(folder / plain, none) ? plain : name);
 }
 
-/// A texture of a model, embedded or in the model's folder; empty if it cannot be read.
-cv::Mat read_texture(const aiScene& scene, const char* name, const fs::path& folder) {
+/// The file of a texture, embedded or in the model's folder; empty if there is none.
+std::vector<std::uint8_t> texture_file(const aiScene& scene, const char* name,
+                                       const fs::path& folder) {
   const aiTexture* inside = scene.GetEmbeddedTexture(name);
   if (inside == nullptr) {
-    const auto file = file_named(name, folder);
+    const auto path = file_named(name, folder);
     std::error_code none;
-    return fs::is_regular_file(file, none) ? cv::imread(file.string(), cv::IMREAD_COLOR)
-                                           : cv::Mat();
+    if (!fs::is_regular_file(path, none)) return {};
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator(file), {}};
   }
   const bool is_packed = inside->mHeight == 0;  // PNG or JPEG; these model formats have no others
-  if (!is_packed || inside->mWidth == 0) return {};
+  if (!is_packed) return {};
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(inside->pcData);
-  return cv::imdecode(std::vector<std::uint8_t>(bytes, bytes + inside->mWidth), cv::IMREAD_COLOR);
+  return {bytes, bytes + inside->mWidth};
+}
+
+/// A texture of a model. Errors: Malformed (not an image, or a damaged one).
+Result<cv::Mat> read_texture(const aiScene& scene, const char* name, const fs::path& folder) {
+  const auto file = texture_file(scene, name, folder);
+  constexpr std::array<std::uint8_t, 2> kJpeg{0xff, 0xd8};
+  auto refuse = [&](const std::string& why) {
+    return Error{Code::Malformed, (folder / name).string() + ": " + why};
+  };
+  if (file.size() > 2 && std::equal(kJpeg.begin(), kJpeg.end(), file.begin()))
+    if (const auto whole = check_jpeg(std::as_bytes(std::span(file))); !whole)
+      return refuse(whole.error().detail);
+  cv::Mat image = file.empty() ? cv::Mat() : cv::imdecode(file, cv::IMREAD_COLOR);
+  if (image.empty()) return refuse("not an image");
+  return image;
 }
 
 /// @param is_linear  its plain colour is linear, as those of glTF.
@@ -103,9 +125,7 @@ Result<cv::Mat> texture_of(const aiScene& scene, const aiMaterial& material, con
                            bool is_linear) {
   aiString name;
   if (material.GetTexture(aiTextureType_DIFFUSE, 0, &name) == AI_SUCCESS) {
-    cv::Mat image = read_texture(scene, name.C_Str(), folder);
-    if (image.empty())
-      return Error{Code::Malformed, (folder / name.C_Str()).string() + ": not an image"};
+    cv::Mat image = HC_TRY(read_texture(scene, name.C_Str(), folder));
     cv::cvtColor(image, image, cv::COLOR_BGR2RGB);
     return image;
   }

@@ -105,6 +105,29 @@ TEST_F(Models, colours_of_gltf_are_linear) {
   EXPECT_EQ(parts->front().texture.at<cv::Vec3b>(0, 0), cv::Vec3b(124, 255, 0));
 }
 
+TEST_F(Models, a_damaged_texture_is_refused) {
+  cv::Mat noise(64, 64, CV_8UC3);
+  cv::randu(noise, 0, 255);
+  write("m.mtl", "newmtl skin\nmap_Kd skin.image\n");
+  const auto model = write("m.obj",
+                           "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\n"
+                           "vt 0 1\nusemtl skin\nf 1/1 2/2 3/3\n");
+  for (const char* ending : {".jpg", ".png"}) {
+    std::vector<std::uint8_t> file;
+    ASSERT_TRUE(cv::imencode(ending, noise, file));
+    const std::string whole(file.begin(), file.end());
+    write("skin.image", whole);
+    EXPECT_TRUE(read_model(model)) << ending;
+    for (const auto size : {whole.size() / 2, whole.size() - 40, std::size_t{1}, std::size_t{0}}) {
+      write("skin.image", whole.substr(0, size));
+      const auto cut = read_model(model);
+      ASSERT_FALSE(cut) << ending << " " << size;
+      EXPECT_EQ(cut.error().code, Code::Malformed);
+      EXPECT_NE(cut.error().detail.find("skin.image: "), std::string::npos);
+    }
+  }
+}
+
 TEST_F(Models, what_is_no_model_is_refused) {
   EXPECT_EQ(read_model(folder / "none.obj").error().code, Code::NotFound);
   EXPECT_EQ(read_model(folder.path()).error().code, Code::NotFound);

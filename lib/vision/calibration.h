@@ -3,6 +3,7 @@
 // The calibration of two cameras, and its file. No messages. Different objects may be used from
 // different threads.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,5 +77,9 @@ Result<StereoCalibration> calibration_of(const std::string& text);
 /// written), and as above.
 Result<StereoCalibration> read_calibration(const std::string& path);
 Status write_calibration(const std::string& path, const StereoCalibration& calibration);
+
+/// Whether another program has written a file since it was read.
+/// @param before  what was read; nothing: there was no file.
+bool has_changed(const std::string& path, const std::optional<StereoCalibration>& before);
 
 }  // namespace hc::vision

@@ -208,4 +208,12 @@ Status write_calibration(const std::string& path, const StereoCalibration& calib
   return replace_file(path, text_of(calibration));
 }
 
+bool has_changed(const std::string& path, const std::optional<StereoCalibration>& before) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::is_empty(path, error))
+    return false;
+  const auto now = read_calibration(path);
+  return !now || !before || text_of(*now) != text_of(*before);
+}
+
 }  // namespace hc::vision

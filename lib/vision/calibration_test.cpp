@@ -76,6 +76,25 @@ TEST(CalibrationFile, ComesBackAsItWas) {
   EXPECT_EQ(write_calibration("/no/such/folder/c.yml", truth).error().code, Code::NotFound);
 }
 
+TEST(CalibrationFile, IsKnownToBeOfAnotherProgram) {
+  const Folder folder;
+  const auto path = folder / "calibration.yml";
+  const auto first = squinting();
+  auto other = first;
+  other.T[0] *= 1.01;
+  EXPECT_FALSE(has_changed(path, std::nullopt)) << "there is none";
+  EXPECT_FALSE(has_changed(path, first)) << "removed, so nothing is lost";
+  ASSERT_TRUE(write_calibration(path, first));
+  EXPECT_TRUE(has_changed(path, std::nullopt));
+  const auto read = must(read_calibration(path));
+  EXPECT_FALSE(has_changed(path, read));
+  ASSERT_TRUE(write_calibration(path, other));
+  EXPECT_TRUE(has_changed(path, read));
+  std::ofstream(path) << "not a calibration";
+  EXPECT_TRUE(has_changed(path, read));
+  EXPECT_FALSE(has_changed("/dev/null", std::nullopt));
+}
+
 // In the format of OpenCV's sample: two files, without size and rms, T in squares.
 TEST(CalibrationFile, OpenCvsOwnFilesAreRead) {
   const auto truth = squinting();

@@ -181,6 +181,22 @@ bool refine_corners(const cv::Mat& grey, std::array<cv::Point2d, 4>& corners, do
   return true;
 }
 
+namespace {
+
+/// Sets the ambiguity of the best of several poses of a marker.
+void set_ambiguity(MarkerPose& best, const std::vector<MarkerPose>& found) {
+  constexpr double kNoise = 0.15;            // RMS of corners [px]
+  constexpr double kSame = 3 * CV_PI / 180;  // rotations of one solution [rad]
+  for (const auto& other : found) {
+    const double angle =
+        std::acos(std::clamp((cv::trace(best.R.t() * other.R) - 1) / 2, -1.0, 1.0));
+    if (other.error < best.error + kNoise && angle > kSame)
+      best.ambiguity = std::max(best.ambiguity, angle);
+  }
+}
+
+}  // namespace
+
 std::optional<MarkerPose> pose_of(const Marker& marker, double side, const Camera& camera) {
   const auto& p = camera.pinhole;
   const cv::Matx33d M(p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1);
@@ -203,7 +219,7 @@ std::optional<MarkerPose> pose_of(const Marker& marker, double side, const Camer
   } catch (const cv::Exception&) {
     return std::nullopt;
   }
-  std::optional<MarkerPose> best;
+  std::vector<MarkerPose> found;
   for (std::size_t i = 0; i < turns.size(); ++i) {
     cv::Mat turn = turns[i], shift = shifts[i];
     if (!cv::checkRange(turn) || !cv::checkRange(shift) || shift.at<double>(2) <= 0) continue;
@@ -216,14 +232,16 @@ std::optional<MarkerPose> pose_of(const Marker& marker, double side, const Camer
       squares += off.dot(off);
     }
     const double error = std::sqrt(squares / 4);
-    if (!std::isfinite(error) || shift.at<double>(2) <= 0 || (best && best->error <= error))
-      continue;
+    if (!std::isfinite(error) || shift.at<double>(2) <= 0) continue;
     cv::Matx33d R;
     cv::Rodrigues(turn, R);
-    best = MarkerPose{R * cv::Matx33d(1, 0, 0, 0, -1, 0, 0, 0, -1),
-                      {shift.at<double>(0), shift.at<double>(1), shift.at<double>(2)},
-                      error};
+    found.push_back({R * cv::Matx33d(1, 0, 0, 0, -1, 0, 0, 0, -1),
+                     {shift.at<double>(0), shift.at<double>(1), shift.at<double>(2)},
+                     error});
   }
+  if (found.empty()) return std::nullopt;
+  auto best = *std::ranges::min_element(found, {}, &MarkerPose::error);
+  set_ambiguity(best, found);
   return best;
 }
 

@@ -12,7 +12,7 @@
 namespace hc::vision {
 
 /// Columns of the table of markers in a message; see the module `marker`.
-inline constexpr int kMarkerColumns = 12;
+inline constexpr int kMarkerColumns = 13;
 
 enum class MarkerKind { Aruco = 0, AprilTag = 1, Colour = 2 };
 
@@ -49,6 +49,9 @@ struct MarkerPose {
   cv::Matx33d R = cv::Matx33d::eye();  ///< of T_eye_marker
   cv::Vec3d t;                         ///< [m]
   double error = 0;                    ///< reprojection error, RMS [px]
+  /// Four corners may fit two rotations: the angle to the other one, if it fits about as well; else
+  /// 0. [rad]
+  double ambiguity = 0;
 };
 
 /// The pose with the least reprojection error of a marker's corners.

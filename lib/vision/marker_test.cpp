@@ -285,5 +285,32 @@ TEST(Finders, ImagesWithoutMarkersAndUnknownDictionaries) {
   EXPECT_EQ(ArucoFinder::make("9X9_1").error().code, Code::NotFound);
 }
 
+/// Corners of a marker that is tilted by an angle, straight ahead.
+Marker tilted(double distance, double tilt) {
+  const double half = kSide / 2;
+  const std::vector<cv::Point3d> square = {
+      {-half, half, 0}, {half, half, 0}, {half, -half, 0}, {-half, -half, 0}};
+  const auto& p = kCamera.pinhole;
+  std::vector<cv::Point2d> seen;
+  cv::projectPoints(square, cv::Vec3d(CV_PI - tilt, 0, 0), cv::Vec3d(0, 0, distance),
+                    cv::Matx33d(p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1), cv::noArray(), seen);
+  Marker marker;
+  std::copy(seen.begin(), seen.end(), marker.corners.begin());
+  return marker;
+}
+
+TEST(Marker, TwoRotationsThatFitAreSaid) {
+  constexpr double kTilt = 25 * CV_PI / 180;
+  const auto far = pose_of(tilted(8, kTilt), kSide, kCamera);
+  ASSERT_TRUE(far);
+  EXPECT_NEAR(far->ambiguity, 2 * kTilt, 0.1);
+  EXPECT_NEAR(far->t[2], 8, 0.02);
+  for (const auto& [distance, tilt] : {std::pair{0.5, kTilt}, {0.5, 0.7}, {1.0, 0.9}, {0.5, 0.0}}) {
+    const auto sure = pose_of(tilted(distance, tilt), kSide, kCamera);
+    ASSERT_TRUE(sure);
+    EXPECT_EQ(sure->ambiguity, 0) << distance << " " << tilt;
+  }
+}
+
 }  // namespace
 }  // namespace hc::vision

@@ -22,10 +22,6 @@ hc::DraftOf<K> like(const hc::Message& image, const hc::Output<K>& output) {
 
 Augment::Augment(hc::Module& module) : module_(module) {
   module.on_start([this] { read_parameters(); });
-  module.on(inputs_.intrinsics, [this](const auto& message) {
-    if (!pair_.set_intrinsics(message.numbers()))
-      module_.log_once("invalid intrinsics", "intrinsics: not fx, fy, cx, cy, baseline of a pair");
-  });
   module.on(inputs_.cameras, [this](const auto& message) { set_camera(message); });
   module.on(inputs_.poses, [this](const auto& message) { see_marker(message); });
   module.on(inputs_.target, [this](const auto& message) { see_target(message); });
@@ -35,7 +31,10 @@ Augment::Augment(hc::Module& module) : module_(module) {
             [this](const hc::Message& left, const hc::Message& right, const hc::Message& metres) {
               look(left, right, metres);
             });
-  module.on_end([this] { frames_.answer_all(); });
+  module.on_end([this] {
+    intrinsics_.answer_all();
+    frames_.answer_all();
+  });
 }
 
 void Augment::read_parameters() {
@@ -71,7 +70,8 @@ void Augment::see_marker(const hc::Message& message) {
 void Augment::see_target(const hc::MessageOf<hc::PositionKind<double>>& message) {
   const auto p = message.numbers();
   if (p.size() < 3) return;
-  panel_.target = Panel::Target{message.header.time, message.header.coord, {p[0], p[1], p[2]}};
+  const auto time = message.header.time != hc::Time() ? message.header.time : module_.now();
+  panel_.target = Panel::Target{time, message.header.coord, {p[0], p[1], p[2]}};
 }
 
 void Augment::look(const hc::Message& left, const hc::Message& right, const hc::Message& metres) {
@@ -79,15 +79,20 @@ void Augment::look(const hc::Message& left, const hc::Message& right, const hc::
   if (l.width != r.width || l.height != r.height || l.width != d.width || l.height != d.height)
     throw hc::BadMessage("the images and the depth have different sizes");
   if (l.empty()) return;
-  frames_.when_known("world", "left_eye", l.time,
-                     [this, l_image = left.keep(), r_image = right.keep(),
-                      far = metres.keep()](const auto&) { draw(l_image, r_image, far); });
+  intrinsics_.when_known(
+      [this, l_image = left.keep(), r_image = right.keep(), far = metres.keep()]() mutable {
+        const auto time = l_image.header.time;
+        frames_.when_known("world", "left_eye", time,
+                           [this, l_image = std::move(l_image), r_image = std::move(r_image),
+                            far = std::move(far)](const auto&) { draw(l_image, r_image, far); });
+      });
 }
 
 void Augment::draw(const hc::Message& left, const hc::Message& right, const hc::Message& metres) {
   read_parameters();
   panel_.focus = module_.focus();
-  const Sight sight = pair_.at(left.header, *parameters_.focal, frames_);
+  const auto intrinsics = intrinsics_.of(left.header.width, left.header.height);
+  const Sight sight = pair_.at(left.header, intrinsics, frames_);
   scene_->place(frames_, markers_, sight.time);
   if (outputs_.corners.linked()) send_corners(sight);
   send(sight, 0, left, metres, outputs_.left);

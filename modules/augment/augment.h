@@ -9,6 +9,7 @@
 #include <frames/module_frames.h>
 #include <hc/contract/mode_names.h>
 #include <hc/module/module.h>
+#include <vision/module_cameras.h>
 
 #include "instruments.h"
 #include "objects.h"
@@ -27,10 +28,6 @@ struct AugmentInputs {
   hc::Input<hc::IntensityImageKind<float>> depth =
       module.input("depth", hc::intensity_image<float>().in(hc::Coord::kDepth),
                    "depth of the left image [m], 0 unknown");
-  hc::Input<hc::TableKind<double>> intrinsics =
-      module.input("intrinsics", hc::table(),
-                   "fx, fy, cx, cy [px], baseline [m] of the pair, from rectify; "
-                   "until then focal and the frames apply");
   hc::Input<hc::TransformationKind<double>> cameras =
       module.input("cameras", hc::transformation(),
                    "mounting of the eyes on the head, from rectify; until then from the "
@@ -89,8 +86,6 @@ struct AugmentParameters {
                        {.min = -1, .max = 65535});
   hc::Parameter<double> cursor_y =
       module.parameter("cursor_y", -1.0, "px", "the same, from the top", {.min = -1, .max = 65535});
-  hc::Parameter<double> focal =
-      module.parameter("focal", 800.0, "px", "focal length", {.min = 1e-3, .max = 1e6});
 };
 
 class Augment {
@@ -117,6 +112,7 @@ class Augment {
   AugmentOutputs outputs_{module_};
   const AugmentParameters parameters_{module_};
   hc::ModuleFrames frames_{module_};
+  hc::vision::ModulePair intrinsics_{module_, frames_, "objects are drawn in the wrong places"};
 
   std::unique_ptr<Scene> scene_;
   std::optional<std::string> objects_read_, shown_read_, modes_read_;  // parameters

@@ -4,11 +4,11 @@
 
 #include <array>
 #include <optional>
-#include <span>
 
 #include <frames/messages.h>
 #include <frames/module_frames.h>
 #include <graphics/camera.h>
+#include <vision/module_cameras.h>
 
 /// The eyes at the time of an image.
 struct Sight {
@@ -25,19 +25,14 @@ struct Sight {
 
 class Pair {
  public:
-  /// Takes fx, fy, cx, cy [px], baseline [m]; false if they are invalid.
-  bool set_intrinsics(std::span<const double> numbers);
   /// Takes T_head_left_eye or T_left_eye_left_rectified; ignores other poses.
   void set_camera(const hc::TimedPose& pose);
 
   /// The eyes at the time of an image.
-  ///
-  /// @param focal  until intrinsics are known [px]; the baseline is then that of the frames, and
-  /// the principal point the centre of the image.
-  [[nodiscard]] Sight at(const hc::Header& image, double focal, hc::ModuleFrames& frames) const;
+  [[nodiscard]] Sight at(const hc::Header& image, const hc::vision::PairIntrinsics& intrinsics,
+                         hc::ModuleFrames& frames) const;
 
  private:
-  double fx_ = 0, fy_ = 0, cx_ = 0, cy_ = 0, baseline_ = 0;  // fx 0: unknown
   std::optional<Eigen::Isometry3d> T_head_left_;
   Eigen::Isometry3d T_left_rectified_ = Eigen::Isometry3d::Identity();
 };

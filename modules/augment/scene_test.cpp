@@ -81,7 +81,7 @@ TEST_F(Scenes, say_whether_an_eye_sees_anything) {
   hc::Header header;
   header.width = 80;
   header.height = 60;
-  const Sight sight = Pair().at(header, 100, frames);
+  const Sight sight = Pair().at(header, {100, 100, 39.5, 29.5, 0.1}, frames);
   for (const auto& [objects, is_seen] : {std::pair{"cube at left_eye 0 0 2 size 0.2", true},
                                          {"cube at left_eye 0 0 -2 size 0.2", false},
                                          {"", false}}) {

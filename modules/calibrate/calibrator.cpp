@@ -7,6 +7,7 @@
 
 #include <frames/messages.h>
 #include <hc/base/format.h>
+#include <hc/os/program.h>
 #include <vision/messages.h>
 #include <opencv2/imgproc.hpp>
 
@@ -15,9 +16,11 @@ using hc::gaze::Angles, hc::gaze::HeadCalibration;
 Calibrator::Calibrator(hc::Module& module) : module_(module) {
   module.on_start([this] { start(); });
   module.on(hc::together(left_, right_), [this](const auto& one, const auto& other) {
-    const hc::Time time = one.header.time;
+    const hc::Time time = one.header.time != hc::Time() ? one.header.time : module_.now();
     frames_.when_known("robot", "head", time, [this, time, one, other](const auto& T_robot_head) {
-      if (!T_robot_head) return;
+      if (!T_robot_head)
+        return module_.log_once("without a pose of the head",
+                                "images dropped: " + T_robot_head.error().detail);
       look(time, hc::gaze::angles_of(Eigen::Quaterniond(T_robot_head->linear())), one, other);
     });
   });
@@ -27,7 +30,7 @@ Calibrator::Calibrator(hc::Module& module) : module_(module) {
   });
   // When the images end, the result is still published; when asked to stop, it is discarded.
   module.on_end([this] {
-    if (computes()) take();
+    if (computes() && !hc::stop_requested()) take();
   });
 }
 
@@ -36,7 +39,8 @@ void Calibrator::start() {
   tour_.emplace(*parameters_.turn);
   const auto& file = *parameters_.calibration_file;
   if (file.empty() || !std::filesystem::exists(file)) return;
-  cameras_ = hc::value_or_end(hc::vision::read_calibration(file));
+  read_ = hc::value_or_end(hc::vision::read_calibration(file));
+  cameras_ = *read_;
   if (!cameras_.head.empty())
     finish(hc::value_or_end(HeadCalibration::of(cameras_.head)), "from " + file + ": ");
 }
@@ -52,7 +56,8 @@ void Calibrator::look(hc::Time time, const Angles& measured, const hc::Message& 
   const cv::Size size = view.first.size();
   hc::succeed_or_drop(tour_->add(std::move(view)));
   if (cameras_.M1(0, 0) == 0)
-    cameras_ = hc::vision::ideal_pair(size, *parameters_.focal, mounted_->baseline());
+    cameras_ = hc::vision::ideal_pair(size, assumed_.focal(*parameters_.focal, size.width),
+                                      mounted_->baseline());
   if (cameras_.size.area() == 0) cameras_.size = size;
   attempts_.sent = {};
   if (tour_->is_complete()) compute();
@@ -70,11 +75,14 @@ void Calibrator::take() {
   finish(*calibration, "");
   const auto& file = *parameters_.calibration_file;
   if (file.empty()) return;
+  if (hc::vision::has_changed(file, read_))
+    return module_.log(file +
+                       " is kept: another program has written it since the start; start again");
   hc::vision::turn(cameras_, calibration->R_left_right());
   const auto numbers = calibration->numbers();
   cameras_.head.assign(numbers.begin(), numbers.end());
   if (auto written = hc::vision::write_calibration(file, cameras_); !written)
-    module_.log(written.error().detail);
+    module_.log(file + " stays as it was: " + written.error().detail, hc::Level::Error);
 }
 
 void Calibrator::steer() {

@@ -10,6 +10,7 @@
 
 #include <frames/module_frames.h>
 #include <hc/module/module.h>
+#include <vision/module_cameras.h>
 
 #include "calibrate.h"
 #include "tour.h"
@@ -26,8 +27,11 @@ struct CalibratorParameters {
                        {.min = 0.05, .max = 0.6, .fixed = true});
   hc::Parameter<double> salience =
       module.parameter("salience", 0.9, "", "of the bid", {.min = 0, .max = 1});
-  hc::Parameter<double> focal = module.parameter(
-      "focal", 600.0, "px", "focal length of the eyes, without a file", {.min = 1, .fixed = true});
+  hc::Parameter<double> focal =
+      module.parameter("focal", hc::vision::kUnknownFocal, "px",
+                       "focal length of the eyes, without a file; 0: unknown, the images' width "
+                       "is assumed",
+                       {.min = 0, .max = 1e6, .fixed = true});
   hc::Parameter<double> timeout =
       module.parameter("timeout", 5.0, "s", "to wait for the head to rest where it is sent",
                        {.min = 0.5, .max = 600});
@@ -98,9 +102,12 @@ class Calibrator {
   const CalibratorParameters parameters_{module_};
   hc::ModuleFrames frames_{module_};
 
+  hc::vision::AssumedCameras assumed_{module_, "the mounting found may be wrong",
+                                      "set calibration_file or focal"};
   std::optional<Tour> tour_;  // this and `mounted_` from the start
   std::optional<hc::gaze::Eyes> mounted_;
-  hc::vision::StereoCalibration cameras_;  // set once the images' size is known
+  hc::vision::StereoCalibration cameras_;              // set once the images' size is known
+  std::optional<hc::vision::StereoCalibration> read_;  // the file at the start, if any
   Computation computation_;
   std::optional<Found> found_;
   Attempts attempts_;

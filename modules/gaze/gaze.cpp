@@ -62,11 +62,21 @@ void Gaze::see(const hc::Message& message) {
   // The eyes share one target, but two sources with the same eye see different ones.
   auto& turn = sights_.try_emplace(seen->coord, hc::duration(*parameters_.timeout)).first->second;
   if (!has_turn("target", turn, message.header.src)) return;
+  if (seen->coord == kLeftImage || seen->coord == kRightImage) check_camera();
   frames_.when_known(kRobot, frame, time, [this, time, frame, seen](const auto& T_robot_frame) {
     controller_->targets.see(time, seen->coord, seen->p,
                              T_robot_frame ? *T_robot_frame : frames_.nearest(kRobot, frame, time));
     follow();
   });
+}
+
+void Gaze::check_camera() {
+  if (parameters_.has_camera()) return;
+  const auto& eyes = controller_->targets.eyes();
+  assumed_.say(
+      hc::format("focal = {}, cx = {}, cy = {} px; of these, those that are not set are the "
+                 "default head's",
+                 eyes.focal, eyes.cx, eyes.cy));
 }
 
 void Gaze::set(const hc::MessageOf<hc::RotationKind<double>>& message) {

@@ -31,6 +31,8 @@ class Gaze {
   void set(const hc::MessageOf<hc::RotationKind<double>>& message);
   void push(const hc::MessageOf<hc::TableKind<double>>& message);
 
+  /// Says what is assumed of the eyes in whose images a target is.
+  void check_camera();
   void follow() { send(controller_->follow(module_.now(), measured())); }
   void steer() { send(controller_->steer(module_.now(), measured())); }
   void send(const std::optional<hc::gaze::Angles>& to);
@@ -72,6 +74,8 @@ class Gaze {
   hc::ModuleFrames frames_{module_};
   const GazeParameters parameters_{module_};
 
+  hc::vision::AssumedCameras assumed_{module_, "directions of targets in images may be wrong",
+                                      "set calibration_file, or focal, cx and cy"};
   std::optional<Controller> controller_;  // from the start
   bool was_wanted_ = false;               // in the last bid
   Sources pushes_{kLetGo};

@@ -8,6 +8,7 @@
 #include <gaze/eyes.h>
 #include <gaze/follower.h>
 #include <hc/module/module.h>
+#include <vision/module_cameras.h>
 
 struct GazeParameters {
   hc::Module& module;
@@ -55,23 +56,30 @@ struct GazeParameters {
   hc::Parameter<std::string> calibration_file = module.parameter(
       "calibration_file", "", "",
       "file of stereo_calibration and calibrate, instead of focal, cx, cy", {.fixed = true});
-  hc::Parameter<double> focal =
-      module.parameter("focal", 600.0, "px", "focal length of the eyes", {.min = 1, .fixed = true});
-  hc::Parameter<double> cx =
-      module.parameter("cx", 399.5, "px", "principal point", {.fixed = true});
-  hc::Parameter<double> cy =
-      module.parameter("cy", 299.5, "px", "principal point", {.fixed = true});
+  hc::Parameter<double> focal = module.parameter(
+      "focal", hc::vision::kUnknownFocal, "px",
+      "focal length of the eyes; 0: unknown, as cx and cy: those of the default head are assumed",
+      {.min = 0, .max = 1e6, .fixed = true});
+  hc::Parameter<double> cx = module.parameter("cx", -1.0, "px", "principal point, -1: unknown",
+                                              {.min = -1, .max = 65535, .fixed = true});
+  hc::Parameter<double> cy = module.parameter("cy", -1.0, "px", "the same, from the top",
+                                              {.min = -1, .max = 65535, .fixed = true});
   hc::Parameter<double> distance =
       module.parameter("distance", 2.5, "m", "assumed of a target seen by one eye alone",
                        {.min = 0.2, .fixed = true});
 
-  /// Eyes with these intrinsics and mountings.
+  /// Whether pixels are known to be of these eyes.
+  [[nodiscard]] bool has_camera() const {
+    return !calibration_file->empty() ||
+           (*focal != hc::vision::kUnknownFocal && *cx >= 0 && *cy >= 0);
+  }
+  /// Eyes with these intrinsics, or the default head's, and mountings.
   [[nodiscard]] hc::gaze::Eyes eyes(const Eigen::Isometry3d& T_head_left,
                                     const Eigen::Isometry3d& T_head_right) const {
     hc::gaze::Eyes eyes(T_head_left, T_head_right);
-    eyes.focal = *focal;
-    eyes.cx = *cx;
-    eyes.cy = *cy;
+    if (*focal != hc::vision::kUnknownFocal) eyes.focal = *focal;
+    if (*cx >= 0) eyes.cx = *cx;
+    if (*cy >= 0) eyes.cy = *cy;
     return eyes;
   }
   [[nodiscard]] hc::gaze::FollowerOptions follower() const {

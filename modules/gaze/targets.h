@@ -38,6 +38,7 @@ class Targets {
     follower_.see(hc::seconds(time.time_since_epoch()), setpoint);
   }
 
+  [[nodiscard]] const hc::gaze::Eyes& eyes() const { return eyes_; }
   /// The filtered target; times in seconds.
   [[nodiscard]] const hc::gaze::Follower& follower() const { return follower_; }
 

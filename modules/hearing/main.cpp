@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures the level and direction of sound.
+#include <utility>
+
+#include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <sound/direction.h>
 #include <sound/format.h>
@@ -19,9 +22,16 @@ int main(int argc, char** argv) {
   auto min_level = module.parameter("min_level", 0.005, "", "minimum level for a direction",
                                     {.min = 0, .max = 1});
 
+  bool has_assumed = false;
   module.on(sound, [&](const auto& message) {
     const auto rate = hc::audio::rate_of(message.header.coord);
-    if (!rate) return;
+    if (!rate)
+      return module.log_once("without a rate", "sound dropped: its coord is no sample rate");
+    if (!base.is_set() && !std::exchange(has_assumed, true))
+      module.log(
+          hc::format("assumed: ears {} m apart, as on the default head; directions may be "
+                     "wrong: set base",
+                     *base));
     const auto heard = hc::audio::hear(message.numbers(), *rate, *base);
     level.send(heard.level);
     if (heard.pan && heard.level >= *min_level)

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include <frames/messages.h>
+#include <hc/base/format.h>
 #include <vision/image.h>
 #include <vision/messages.h>
 
@@ -66,8 +68,9 @@ void MarkerSearch::look(const hc::Message& message) {
   if (markers_.linked()) send_table(all, frame);
 }
 
-hc::vision::EyeCamera MarkerSearch::camera_of(std::int32_t coord, const cv::Size& image) const {
-  if (!calibration_) return parameters_.camera(image);
+hc::vision::EyeCamera MarkerSearch::camera_of(std::int32_t coord, const cv::Size& image) {
+  if (!calibration_)
+    return parameters_.camera(assumed_.focal(*parameters_.focal, image.width), image);
   if (calibration_->size.area() > 0 && calibration_->size != image)
     throw hc::BadMessage("the calibration is for images of another size");
   const auto eye = is_right(coord) ? hc::vision::Eye::Right : hc::vision::Eye::Left;
@@ -99,6 +102,10 @@ std::optional<MarkerSearch::Found> MarkerSearch::place(const Marker& marker,
   auto pose = hc::vision::pose_of(marker, found.side, view.camera);
   if (!pose) return std::nullopt;
   found.pose = *pose;
+  if (pose->ambiguity > 0)
+    module_.log_once("ambiguous rotations",
+                     hc::format("the rotation of a marker is one of two that fit, {:.0f}° apart",
+                                pose->ambiguity * 180 / M_PI));
   found.pose.R = view.R_eye_camera * pose->R;
   found.pose.t = view.R_eye_camera * pose->t;
   return found;
@@ -118,8 +125,9 @@ void MarkerSearch::send_table(const std::vector<Found>& all, std::int32_t eye) {
     if (q.w() < 0) q.coeffs() *= -1;
     const auto& t = pose.t;
     const double kind = static_cast<double>(marker.kind), id = marker.id;
-    const std::array row = {kind,  id,    metres, t[0],  t[1],       t[2],
-                            q.x(), q.y(), q.z(),  q.w(), pose.error, marker.mean_side()};
+    const std::array row = {kind,          id,    metres, t[0],  t[1],       t[2],
+                            q.x(),         q.y(), q.z(),  q.w(), pose.error, marker.mean_side(),
+                            pose.ambiguity};
     std::ranges::copy(row, draft.matrix().row(i).begin());
   }
   markers_.send(std::move(draft));

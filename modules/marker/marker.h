@@ -11,6 +11,7 @@
 #include <vision/calibration.h>
 #include <vision/marker.h>
 #include <vision/marker_finder.h>
+#include <vision/module_cameras.h>
 #include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 
@@ -42,16 +43,17 @@ struct MarkerParameters {
   hc::Parameter<std::string> calibration_file =
       module.parameter("calibration_file", "", "",
                        "file of stereo_calibration, instead of focal, cx, cy", {.fixed = true});
-  hc::Parameter<double> focal =
-      module.parameter("focal", 800.0, "px", "focal length", {.min = 1e-3, .max = 1e6});
+  hc::Parameter<double> focal = module.parameter(
+      "focal", hc::vision::kUnknownFocal, "px",
+      "focal length; 0: unknown, the image's width is assumed", {.min = 0, .max = 1e6});
   hc::Parameter<double> cx = module.parameter("cx", -1.0, "px", "principal point, -1: the middle",
                                               {.min = -1, .max = 65535});
   hc::Parameter<double> cy =
       module.parameter("cy", -1.0, "px", "the same, from the top", {.min = -1, .max = 65535});
 
   /// The camera without a calibration.
-  [[nodiscard]] hc::vision::EyeCamera camera(const cv::Size& image) const {
-    return {{{*focal, *focal, *cx < 0 ? (image.width - 1) / 2.0 : *cx,
+  [[nodiscard]] hc::vision::EyeCamera camera(double known_focal, const cv::Size& image) const {
+    return {{{known_focal, known_focal, *cx < 0 ? (image.width - 1) / 2.0 : *cx,
               *cy < 0 ? (image.height - 1) / 2.0 : *cy},
              {}}};
   }
@@ -76,7 +78,7 @@ class MarkerSearch {
   void start();
   void read_parameters();
   void look(const hc::Message& message);
-  [[nodiscard]] hc::vision::EyeCamera camera_of(std::int32_t coord, const cv::Size& image) const;
+  [[nodiscard]] hc::vision::EyeCamera camera_of(std::int32_t coord, const cv::Size& image);
   [[nodiscard]] std::vector<Marker> find(const cv::Mat& pixels);
   /// The marker by its names, and its pose; nothing if it is not to be reported.
   [[nodiscard]] std::optional<Found> place(const Marker& marker,
@@ -95,11 +97,13 @@ class MarkerSearch {
                      "frame of the marker, 0 where it has none");
   hc::Output<hc::TableKind<double>> markers_ = module_.output(
       "markers", hc::table().of(0, hc::vision::kMarkerColumns),
-      "12 columns, a row each: kind (0 aruco, 1 apriltag, 2 colour), id (hue [degree] of colour), "
+      "13 columns, a row each: kind (0 aruco, 1 apriltag, 2 colour), id (hue [degree] of colour), "
       "side [m], x y z [m] and qx qy qz qw in the eye, which is coord, reprojection error, mean "
-      "side [px]");
+      "side [px], ambiguity [rad]: the angle to another rotation that fits about as well, else 0");
   const MarkerParameters parameters_{module_};
 
+  hc::vision::AssumedCameras assumed_{module_, "distances have no true scale",
+                                      "set calibration_file or focal"};
   std::optional<hc::vision::StereoCalibration> calibration_;
   std::optional<hc::vision::ArucoFinder> aruco_;
   std::optional<hc::vision::AprilTagFinder> apriltag_;

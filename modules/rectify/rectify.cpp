@@ -59,13 +59,18 @@ void Rectify::prepare(Eye eye, const hc::Header& header) {
   const cv::Size size(header.width, header.height);
   auto& rectifier = rectifiers_[eye == Eye::Left ? 0 : 1];
   if (rectifier && rectifier->size() == size) return;
-  const double baseline = frames_.fixed("left_eye", "right_eye").translation().norm();
-  if (parameters_.calibration_file->empty())
-    calibration_ = hc::vision::ideal_pair(size, *parameters_.focal, baseline);
+  if (parameters_.calibration_file->empty()) calibration_ = ideal_pair(size);
   if (calibration_->size.area() == 0) calibration_->size = size;
   if (mounting_.is_of_message)
     hc::vision::turn(*calibration_, mounting_.calibration.R_left_right());
   rectifier = hc::value_or_drop(Rectifier::make(*calibration_, eye, size));
+}
+
+hc::vision::StereoCalibration Rectify::ideal_pair(const cv::Size& size) {
+  const double baseline = frames_.fixed("left_eye", "right_eye").translation().norm();
+  const double focal = assumed_.focal(*parameters_.focal, size.width,
+                                      frames_.are_given() ? std::nullopt : std::optional(baseline));
+  return hc::vision::ideal_pair(size, focal, baseline);
 }
 
 void Rectify::send_intrinsics() {

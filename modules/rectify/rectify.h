@@ -10,6 +10,7 @@
 #include <gaze/eyes.h>
 #include <hc/module/module.h>
 #include <vision/calibration.h>
+#include <vision/module_cameras.h>
 #include <vision/rectifier.h>
 
 struct RectifyParameters {
@@ -20,8 +21,9 @@ struct RectifyParameters {
       "written by stereo_calibration and calibrate; without it an ideal pair is assumed",
       {.positional = true, .fixed = true});
   hc::Parameter<double> focal =
-      module.parameter("focal", 800.0, "px", "focal length of an ideal pair",
-                       {.min = 1e-3, .max = 1e6, .fixed = true});
+      module.parameter("focal", hc::vision::kUnknownFocal, "px",
+                       "focal length of an ideal pair; 0: unknown, the images' width is assumed",
+                       {.min = 0, .max = 1e6, .fixed = true});
 };
 
 class Rectify {
@@ -43,6 +45,7 @@ class Rectify {
   void rectify(const Image& first, const Image& second);
   /// Makes the rectifier for an eye's images.
   void prepare(hc::vision::Eye eye, const hc::Header& header);
+  hc::vision::StereoCalibration ideal_pair(const cv::Size& size);
   void send_intrinsics();
   void send_cameras();
 
@@ -69,6 +72,8 @@ class Rectify {
   const RectifyParameters parameters_{module_};
   hc::ModuleFrames frames_{module_, {.input = false}};
 
+  hc::vision::AssumedCameras assumed_{module_, "intrinsics have no true scale",
+                                      "set calibration_file, or focal and frames"};
   std::optional<hc::vision::StereoCalibration> calibration_;
   std::optional<hc::vision::Rectifier> rectifiers_[2];
   Mounting mounting_;

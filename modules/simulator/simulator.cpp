@@ -65,7 +65,8 @@ void Simulator::take_gaze(const hc::Message& message) {
   const auto q = hc::rotation_of(message);
   if (!q) return module_.log("gaze: " + q.error().detail);
   const auto time = message.header.time;
-  if (time <= hc::Time()) return;
+  if (time <= hc::Time())
+    return module_.log_once("gaze without a time", "gaze dropped: it has no time");
   if (!neck_) return turn(time, *q);
   neck_->add(time, *q);
   step_.restart(kNow);

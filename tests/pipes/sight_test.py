@@ -5,6 +5,7 @@
 import base64
 import json
 import math
+import os
 import re
 import struct
 import unittest
@@ -114,6 +115,11 @@ class Sight(Pipes):
     def simulate(self, options, **outputs):
         links = "".join(" --out %s=%s" % link for link in outputs.items())
         self.shell(self.SIMULATOR % (options + links))
+
+    FRAMES = (
+        "--frames 'left_eye 4 head 0 0 0 0 0 0 1; right_eye 5 left_eye 0.1 0 0 0 0 0 1; "
+        "head 3 world 0 0 0 0 0 0 1'"
+    )
 
     def messages(self, command):
         """The rows of each message."""
@@ -346,6 +352,56 @@ class Sight(Pipes):
         self.simulate("--ball absent --noise 20", left="left.mtp")
         self.assertEqual(self.shell("hc blob --in image=left.mtp"), "")
 
+    def test_a_camera_that_is_assumed_is_named(self):
+        self.simulate("--ball absent", left="left.mtp", right="right.mtp", depth="depth.mtp")
+        self.shell(
+            "hc rectify --focal 600 --in left=left.mtp --in right=right.mtp "
+            "--out left=l.mtp --out right=r.mtp --out intrinsics=i.mtp"
+        )
+        target = "1 1 0 0 8 0 10390 0 7 1 1\n1 2 0\n"
+        self.write("pixel.mtp", target)
+        pair = "--in left=l.mtp --in right=r.mtp"
+        raw = "--in left=left.mtp --in right=right.mtp"
+        objects = "--in left=left.mtp --in right=right.mtp --in depth=depth.mtp --out corners=c.mtp"
+        for command, focal, baseline, remedy in (
+            (
+                "depth %s --out depth=d.mtp" % pair,
+                "--focal 600",
+                "--baseline 0.1",
+                "link intrinsics",
+            ),
+            ("augment " + objects, "--focal 600", "--baseline 0.1", "link intrinsics"),
+            (
+                "marker --in image=left.mtp --out poses=p.mtp",
+                "--focal 600",
+                "",
+                "set calibration_file",
+            ),
+            (
+                "rectify %s --out left=a.mtp" % raw,
+                "--focal 600",
+                self.FRAMES,
+                "set calibration_file",
+            ),
+            (
+                "gaze --in target=pixel.mtp --out bid=b.mtp",
+                "--focal 600",
+                "--cx 9 --cy 9",
+                "set calib",
+            ),
+        ):
+            with self.subTest(command=command):
+                said = self.shell("hc %s 2>&1" % command)
+                self.assertEqual(len(re.findall("assumed: .*" + remedy, said)), 1, said)
+                if baseline:
+                    said = self.shell("hc %s %s 2>&1" % (command, focal))
+                    self.assertEqual(len(re.findall("assumed: .*" + remedy, said)), 1, said)
+                said = self.shell("hc %s %s %s 2>&1" % (command, focal, baseline))
+                self.assertNotIn("assumed", said)
+        for command in ("depth %s --out depth=d.mtp" % pair, "augment " + objects):
+            said = self.shell("hc %s --in intrinsics=i.mtp 2>&1" % command)
+            self.assertNotIn("assumed", said)
+
     def test_an_ideal_pair_that_is_rectified_gives_the_depth(self):
         options = "--focal 600 --noise 2 --encoding depth=text"
         self.simulate(options, left="left.mtp", right="right.mtp", depth="truth.mtp")
@@ -373,6 +429,7 @@ class Pipeline(Pipes):
         self.environment["HC_KEEP"] = keep
         words = "".join(" --set " + setting for setting in settings)
         out = self.shell("hc run %s/graphs/pipeline.toml --links --quiet%s" % (ROOT, words))
+        self.assertEqual(os.listdir(self.folder.name), [])
         return {
             link: int(count)
             for link, count in re.findall(r"^(\S+ → \S+) +(\d+) messages? ", out, re.M)
