@@ -29,11 +29,12 @@
 namespace {
 
 using bench::kBaseline, bench::kCamera, bench::median, bench::milliseconds;
-using hc::vision::Disparities, hc::vision::StereoMatcher;
+using hc::vision::Disparities, hc::vision::Eyes, hc::vision::StereoMatcher;
 
 struct Pair {
   cv::Mat left, right;  // (H, W, 3) u8, red, green, blue
   cv::Mat truth;        // disparity (H, W) f32 [px], 0 unknown
+  cv::Mat right_truth;  // the same of the right image; or empty
   cv::Mat walls;        // (H, W) u8, 255 on the four walls; or empty
 };
 
@@ -69,12 +70,14 @@ Pair draw_room(hc::graphics::Renderer& renderer, int number) {
   Pair pair;
   pair.left = left.image;
   pair.right = right.image;
-  pair.truth.create(depth.size(), CV_32F);
+  // Both ways the same: disparity = focal · baseline / depth, and 0 stays unknown.
+  const hc::vision::StereoGeometry geometry{.focal = kFocal, .baseline = kBaseline};
+  hc::vision::depth_of(left.truth, geometry, pair.truth);
+  hc::vision::depth_of(right.truth, geometry, pair.right_truth);
   pair.walls.create(depth.size(), CV_8U);
   for (int y = 0; y < depth.rows; ++y)
     for (int x = 0; x < depth.cols; ++x) {
       const double z = depth.at<float>(y, x);
-      pair.truth.at<float>(y, x) = z > 0 ? static_cast<float>(kFocal * kBaseline / z) : 0;
       const Eigen::Vector3d p =
           left.T_world_eye *
           Eigen::Vector3d((x - kCamera.cx) * z / kCamera.fx, (y - kCamera.cy) * z / kCamera.fy, z);
@@ -87,18 +90,32 @@ Pair draw_room(hc::graphics::Renderer& renderer, int number) {
   return pair;
 }
 
+/// A pair of 1/n of the size, with the disparities of its pixels.
+Pair smaller(const Pair& pair, int n) {
+  Pair small;
+  const cv::Size size = pair.truth.size() / n;
+  cv::resize(pair.left, small.left, size, 0, 0, cv::INTER_AREA);
+  cv::resize(pair.right, small.right, size, 0, 0, cv::INTER_AREA);
+  cv::resize(pair.truth, small.truth, size, 0, 0, cv::INTER_NEAREST);
+  small.truth /= n;
+  return small;
+}
+
 struct Contestant {
   std::string name;
   std::function<void(const Pair&, Disparities&)> match;
 };
 
+Contestant ours(const char* name, int disparities, Eyes eyes) {
+  const std::shared_ptr<StereoMatcher> matcher =
+      hc::vision::semi_global_matcher({.disparities = disparities});
+  return {name, [matcher, eyes](const Pair& pair, Disparities& found) {
+            if (auto matched = matcher->match(pair.left, pair.right, found, eyes); !matched)
+              std::abort();
+          }};
+}
+
 std::vector<Contestant> contestants(int disparities) {
-  const auto ours = [](std::unique_ptr<StereoMatcher> owned) {
-    const std::shared_ptr<StereoMatcher> matcher = std::move(owned);
-    return [matcher](const Pair& pair, Disparities& found) {
-      if (auto matched = matcher->match(pair.left, pair.right, found); !matched) std::abort();
-    };
-  };
   const auto theirs = [](const cv::Ptr<cv::StereoMatcher>& matcher) {
     return [matcher](const Pair& pair, Disparities& found) {
       cv::Mat sixteenths;
@@ -114,7 +131,7 @@ std::vector<Contestant> contestants(int disparities) {
   bm->setSpeckleWindowSize(100);
   bm->setSpeckleRange(2);
   bm->setDisp12MaxDiff(1);
-  return {{"semi_global", ours(hc::vision::semi_global_matcher({.disparities = disparities}))},
+  return {ours("semi_global", disparities, Eyes::Left),
           {"OpenCV 3WAY", sgbm(cv::StereoSGBM::MODE_SGBM_3WAY)},
           {"OpenCV SGBM", sgbm(cv::StereoSGBM::MODE_SGBM)},
           {"OpenCV HH4", sgbm(cv::StereoSGBM::MODE_HH4)},
@@ -157,6 +174,7 @@ void compare_speed(const Pair& pair, int rounds) {
   const int cores = cv::getNumberOfCPUs();
   for (const int disparities : {64, 128}) {
     auto all = contestants(disparities);
+    all.push_back(ours("semi_global, both eyes", disparities, Eyes::Both));
     std::vector<std::vector<double>> one(all.size()), many(all.size());
     std::vector<double> together;
     Crowd crowd(disparities);
@@ -300,6 +318,21 @@ void compare_quality(const char* title, const std::vector<Pair>& pairs, int disp
   }
 }
 
+/// The disparities of the right eye, which are from the same path costs as those of the left one.
+void print_right_eye(const std::vector<Pair>& pairs, int disparities) {
+  const auto matcher = ours("", disparities, Eyes::Both);
+  double left = 0, right = 0;
+  for (const Pair& pair : pairs) {
+    Disparities found;
+    matcher.match(pair, found);
+    left += hc::vision::score(found.disparity, pair.truth, 2).wrong_share();
+    right += hc::vision::score(found.right, pair.right_truth, 2).wrong_share();
+  }
+  const double per_cent = 100 / static_cast<double>(pairs.size());
+  std::printf("\nBad 2 px or hole: left eye %.2f %%, right eye %.2f %%\n", left * per_cent,
+              right * per_cent);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -315,6 +348,11 @@ int main(int argc, char** argv) {
   for (int number = 0; number < kRooms; ++number) rooms.push_back(draw_room(*renderer, number));
   compare_quality("Aloe", {aloe}, 128);
   compare_quality("Ten rooms", rooms, 64);
+  std::vector<Pair> small_rooms;
+  for (const Pair& room : rooms) small_rooms.push_back(smaller(room, 4));
+  compare_quality("Aloe, 1/8 of the size", {smaller(aloe, 8)}, 16);
+  compare_quality("Ten rooms, 1/4 of the size", small_rooms, 16);
+  print_right_eye(rooms, 64);
   print_errors_by_distance(rooms, 64);
   if (rounds == 0) return 0;
   std::printf("\n");

@@ -44,7 +44,8 @@ std::string_view pixel_encoding(const Info& info, std::int32_t coord) {
   const auto* names = std::ranges::find(kNames, info.scalar, &Names::scalar);
   if (names == std::end(kNames)) return "";
   if (info.type == MatrixType::RgbImage) return info.components == 4 ? names->rgba : names->rgb;
-  const bool is_measure = coord == Coord::kDepth || coord == Coord::kDisparity;
+  const bool is_measure =
+      coord == Coord::kDepth || coord == Coord::kRightDepth || coord == Coord::kDisparity;
   return is_measure ? names->measure : names->grey;
 }
 
@@ -184,6 +185,7 @@ std::string Encoder::frame_id(std::int32_t coord) const {
       return frame_id(Coord::kLeftEye);
     case Coord::kRightImage:
     case Coord::kRightRectified:
+    case Coord::kRightDepth:
       return frame_id(Coord::kRightEye);
     default:
       break;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "depth.h"
 
-#include <cmath>
+#include <algorithm>
 #include <utility>
 
 #include <vision/messages.h>
@@ -15,16 +15,11 @@ std::unique_ptr<hc::vision::StereoMatcher> DepthParameters::make_matcher() const
 
 Depth::Depth(hc::Module& module) : module_(module) {
   module.on_start([this] { matcher_ = parameters_.make_matcher(); });
-  module.on(intrinsics_, [this](const auto& message) { set_intrinsics(message.numbers()); });
-  module.on(hc::together(left_, right_),
-            [this](const hc::Message& left, const hc::Message& right) { match(left, right); });
-}
-
-void Depth::set_intrinsics(std::span<const double> numbers) {
-  const bool is_pair = numbers.size() == 5 && std::isfinite(numbers[0]) && numbers[0] > 0 &&
-                       std::isfinite(numbers[4]) && numbers[4] > 0;
-  if (!is_pair) return module_.log("intrinsics: not fx, fy, cx, cy, baseline of a pair");
-  measured_ = {.focal = numbers[0], .baseline = numbers[4], .cx = numbers[2], .cy = numbers[3]};
+  module.on(hc::together(left_, right_), [this](const hc::Message& left, const hc::Message& right) {
+    if (!pair_.is_awaited()) return match(left, right);
+    pair_.when_known([this, l = left.keep(), r = right.keep()] { match(l, r); });
+  });
+  module.on_end([this] { pair_.answer_all(); });
 }
 
 void Depth::match(const hc::Message& left, const hc::Message& right) {
@@ -33,9 +28,12 @@ void Depth::match(const hc::Message& left, const hc::Message& right) {
   auto disparity = disparity_.loan(header.height, header.width);
   auto confidence = confidence_.loan(header.height, header.width);
   auto depth = depth_.loan(header.height, header.width);
-  hc::vision::Disparities found{hc::as_mat(disparity), hc::as_mat(confidence)};
+  disparity.header.time = confidence.header.time = depth.header.time =
+      std::max(header.time, right.header.time);
+  hc::vision::Disparities found{hc::as_mat(disparity), hc::as_mat(confidence), right_disparity_};
   const cv::Mat right_mat = hc::value_or_drop(hc::as_mat(right));
-  if (auto matched = matcher_->match(left_mat, right_mat, found); !matched)
+  const auto eyes = right_depth_.linked() ? hc::vision::Eyes::Both : hc::vision::Eyes::Left;
+  if (auto matched = matcher_->match(left_mat, right_mat, found, eyes); !matched)
     throw hc::BadMessage(matched.error().detail);
   cv::Mat metres = hc::as_mat(depth);
   if (depth_.linked() || points_.linked())
@@ -44,25 +42,31 @@ void Depth::match(const hc::Message& left, const hc::Message& right) {
   disparity_.send(std::move(disparity));
   confidence_.send(std::move(confidence));
   depth_.send(std::move(depth));
+  if (eyes == hc::vision::Eyes::Both) send_right_depth(found.right, header);
+}
+
+void Depth::send_right_depth(const cv::Mat& disparity, const hc::Header& image) {
+  right_disparity_ = disparity;
+  auto draft = right_depth_.loan(image.height, image.width);
+  draft.header.time = image.time;
+  cv::Mat metres = hc::as_mat(draft);
+  hc::vision::depth_of(disparity, geometry(image), metres);
+  right_depth_.send(std::move(draft));
 }
 
 void Depth::send_points(const cv::Mat& metres, const cv::Mat& left, const hc::Header& image) {
   auto draft = points_.loan(image.height, image.width);
+  draft.header.time = image.time;
   cv::Mat mat = hc::as_mat(draft);
   hc::vision::points_of(metres, left, geometry(image), mat);
   points_.send(std::move(draft));
 }
 
 hc::vision::StereoGeometry Depth::geometry(const hc::Header& image) {
-  auto found = measured_;
-  if (found.focal == 0) {
-    found = {.focal = *parameters_.focal,
-             .baseline = *parameters_.baseline,
-             .cx = (image.width - 1) / 2.0,
-             .cy = (image.height - 1) / 2.0};
-    if (found.baseline == 0)
-      found.baseline = frames_.fixed("left_eye", "right_eye").translation().norm();
-  }
-  found.offset = *parameters_.offset;
-  return found;
+  const auto pair = pair_.of(image.width, image.height);
+  return {.focal = pair.fx,
+          .baseline = pair.baseline,
+          .offset = *parameters_.offset,
+          .cx = pair.cx,
+          .cy = pair.cy};
 }

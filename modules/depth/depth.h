@@ -4,11 +4,11 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
 
 #include <frames/module_frames.h>
 #include <hc/module/module.h>
+#include <vision/module_cameras.h>
 #include <vision/stereo/depth.h>
 #include <vision/stereo/matcher.h>
 
@@ -27,13 +27,6 @@ struct DepthParameters {
   hc::Parameter<std::int64_t> block_size =
       module.parameter("block_size", 5, "px", "side of the window compared by the matcher opencv",
                        {.min = 1, .max = 21, .step = 2, .fixed = true});
-  hc::Parameter<double> focal =
-      module.parameter("focal", 800.0, "px", "focal length", {.min = 1e-3});
-  hc::Parameter<double> baseline =
-      module.parameter("baseline", 0.0, "m",
-                       "distance of the cameras, 0: that of the frames left_eye and "
-                       "right_eye",
-                       {.min = 0});
   hc::Parameter<double> offset = module.parameter(
       "offset", 0.0, "px", "added to a disparity before depth is computed from it");
 
@@ -46,20 +39,16 @@ class Depth {
   explicit Depth(hc::Module& module);
 
  private:
-  void set_intrinsics(std::span<const double> numbers);
   void match(const hc::Message& left, const hc::Message& right);
+  void send_right_depth(const cv::Mat& disparity, const hc::Header& image);
   void send_points(const cv::Mat& metres, const cv::Mat& left, const hc::Header& image);
-  [[nodiscard]] hc::vision::StereoGeometry geometry(const hc::Header& image);
+  hc::vision::StereoGeometry geometry(const hc::Header& image);
 
   hc::Module& module_;
   hc::Input<hc::ImageKind> left_ = module_.input("left", hc::image(hc::Coord::kLeftRectified),
                                                  "rectified image of the left eye");
   hc::Input<hc::ImageKind> right_ = module_.input("right", hc::image(hc::Coord::kRightRectified),
                                                   "rectified image of the right eye");
-  hc::Input<hc::TableKind<double>> intrinsics_ =
-      module_.input("intrinsics", hc::table(),
-                    "fx, fy, cx, cy [px], baseline [m] of the rectified pair, from "
-                    "rectify; until then focal and baseline apply");
   hc::Output<hc::IntensityImageKind<float>> disparity_ =
       module_.output("disparity", hc::intensity_image<float>().in(hc::Coord::kDisparity),
                      "disparity of the left image's pixels [px], 0 unknown");
@@ -74,9 +63,13 @@ class Depth {
                      "point of each pixel: x, y, z [m] in the frame left_eye, red, green, "
                      "blue [0, 1]; NaN unknown",
                      {.on_demand = true});
+  hc::Output<hc::IntensityImageKind<float>> right_depth_ =
+      module_.output("right_depth", hc::intensity_image<float>().in(hc::Coord::kRightDepth),
+                     "depth of the right image's pixels [m], 0 unknown", {.on_demand = true});
   const DepthParameters parameters_{module_};
 
   hc::ModuleFrames frames_{module_, {.input = false}};
+  hc::vision::ModulePair pair_{module_, frames_, "depths have no true scale"};
   std::unique_ptr<hc::vision::StereoMatcher> matcher_;
-  hc::vision::StereoGeometry measured_;  // by `intrinsics`; focal 0: not yet
+  cv::Mat right_disparity_;  // memory
 };

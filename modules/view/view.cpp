@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <filesystem>
 #include <thread>
 #include <utility>
@@ -16,14 +17,22 @@
 
 namespace {
 
-bool is_right(const hc::Header& header) {
-  return header.coord == hc::Coord::kRightImage || header.coord == hc::Coord::kRightRectified;
+const char* unit_of(const hc::Header& header) {
+  if (header.coord == hc::Coord::kDisparity) return "px";
+  return header.coord == hc::Coord::kDepth || header.coord == hc::Coord::kRightDepth ? "m" : "";
 }
 
-const char* unit_of(const hc::Header& header) {
-  return header.coord == hc::Coord::kDepth       ? "m"
-         : header.coord == hc::Coord::kDisparity ? "px"
-                                                 : "";
+std::string size_of(const hc::Header& header) {
+  return std::to_string(header.width) + " x " + std::to_string(header.height);
+}
+
+/// An image u8 in blue, green, red, or grey.
+cv::Mat bgr_of(const hc::Message& message) {
+  const cv::Mat rgb = hc::value_or_drop(hc::as_mat(message));
+  if (rgb.channels() == 1) return rgb;
+  cv::Mat bgr;
+  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  return bgr;
 }
 
 }  // namespace
@@ -31,6 +40,12 @@ const char* unit_of(const hc::Header& header) {
 std::vector<std::string> ViewParameters::layouts() {
   std::vector<std::string> names = {"none"};
   for (const auto layout : hc::vision::stereo_layouts()) names.emplace_back(layout);
+  return names;
+}
+
+std::vector<std::string> ViewParameters::codings() {
+  std::vector<std::string> names;
+  for (const auto coding : hc::vision::depth_codings()) names.emplace_back(coding);
   return names;
 }
 
@@ -59,26 +74,47 @@ void ImageView::take(const hc::Message& message) {
   const hc::Header& header = message.header;
   const auto count = *parameters_.count;
   if (header.empty() || (count > 0 && seen_ == count)) return;
-  const cv::Mat bgr = visible(header, hc::value_or_drop(hc::as_mat(message)));
-  if (*parameters_.stereo == "none")
-    show(header, bgr);
-  else
-    join(header, bgr);
+  const bool is_pair = *parameters_.stereo != "none", is_fog = *parameters_.coding == "fog";
+  if (eyes_ == nullptr || !eyes_->is(is_pair, is_fog))
+    eyes_ = std::make_unique<EyeSets>(is_pair, is_fog, [this](auto set) { take_set(set); });
+  if (eyes_->is_whole(header)) return show(header, visible({&message, 1}, {}).front());
+  eyes_->push(message);
+  log_missing(false);
 }
 
-void ImageView::join(const hc::Header& header, const cv::Mat& bgr) {
+void ImageView::take_set(std::span<const hc::Message> set) {
+  const bool is_fog = *parameters_.coding == "fog";
+  const std::size_t depths = is_fog ? set.size() / 2 : 0;
+  const auto shown = set.subspan(depths), images = set.first(depths);
+  const auto first = size_of(set.front().header);
+  for (const hc::Message& each : set)
+    if (const auto size = size_of(each.header); size != first)
+      return module_.log_once("different sizes",
+                              "not shown, since the images of both eyes and their depths must have "
+                              "one size: " +
+                                  first + " and " + size);
+  auto eyes = visible(shown, images);
+  if (const cv::Mat joined = join(eyes); !joined.empty()) show(shown.front().header, joined);
+}
+
+cv::Mat ImageView::join(std::span<cv::Mat> eyes) {
   const auto& layout = *parameters_.stereo;
-  auto& [first, left, right] = eyes_;
-  if (header.time != first.time) eyes_ = {header, {}, {}};
-  (is_right(header) ? right : left) = bgr.clone();
-  if (left.empty() || right.empty()) return;
-  if (left.size() != right.size() || left.type() != right.type())
-    return module_.log_once("stereo", "the images of both eyes have different sizes or types");
+  if (eyes.size() == 1) return eyes.front();
+  if (eyes[0].type() != eyes[1].type()) {
+    module_.log_once("different types", "one eye's image is grey, the other's in colours");
+    return {};
+  }
   // Interleaved rows must not be scaled afterwards, so scale before.
   if (display_ && layout == "rows" && !display_->monitor_size().empty())
-    for (cv::Mat* eye : {&left, &right}) cv::resize(*eye, *eye, display_->monitor_size());
-  show(first, hc::vision::join_eyes(left, right, layout));
-  eyes_ = {};
+    for (cv::Mat& eye : eyes) cv::resize(eye, eye, display_->monitor_size());
+  return hc::vision::join_eyes(eyes[0], eyes[1], layout);
+}
+
+void ImageView::log_missing(bool is_end) {
+  const auto names = eyes_ == nullptr ? "" : eyes_->missing(is_end);
+  if (!names.empty())
+    module_.log_once("incomplete",
+                     "not shown, since there is no " + names + ": link it to the input image");
 }
 
 void ImageView::show(const hc::Header& header, const cv::Mat& bgr) {
@@ -90,22 +126,36 @@ void ImageView::show(const hc::Header& header, const cv::Mat& bgr) {
   if (++seen_ == *parameters_.count) std::raise(SIGTERM);
 }
 
-cv::Mat ImageView::visible(const hc::Header& header, const cv::Mat& values) const {
-  cv::Mat bgr;
-  if (values.depth() == CV_8U) {
-    if (values.channels() == 1) return values;
-    cv::cvtColor(values, bgr, cv::COLOR_RGB2BGR);
-    return bgr;
+std::vector<cv::Mat> ImageView::visible(std::span<const hc::Message> shown,
+                                        std::span<const hc::Message> images) const {
+  std::vector<cv::Mat> found;
+  cv::Mat measured;  // by both eyes: a common scale gives a point one colour
+  for (const hc::Message& each : shown) {
+    found.push_back(hc::value_or_drop(hc::as_mat(each)));
+    if (found.back().depth() == CV_8U) continue;
+    found.back().convertTo(found.back(), CV_32F);
+    measured.push_back(found.back());
   }
   hc::vision::Span span{*parameters_.min, *parameters_.max};
-  if (span.least == 0 && span.most == 0) span = hc::vision::span_of(values);
-  cv::cvtColor(hc::vision::colour_coded(values, span.least, span.most), bgr, cv::COLOR_RGB2BGR);
-  if (*parameters_.relief && values.type() == CV_32F) hc::vision::shade(bgr, values);
-  if (!*parameters_.legend) return bgr;
-  return hc::vision::with_legend(bgr, span.least, span.most, unit_of(header));
+  if (span.least == 0 && span.most == 0 && !measured.empty()) span = hc::vision::span_of(measured);
+  const std::string coding =
+      images.empty() && *parameters_.coding == "fog" ? "colours" : *parameters_.coding;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].depth() == CV_8U) {
+      found[i] = bgr_of(shown[i]);
+      continue;
+    }
+    cv::Mat image = images.empty() ? cv::Mat() : bgr_of(images[i]);
+    if (!image.empty() && image.channels() == 1) cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
+    found[i] = hc::vision::coded(found[i], image, coding, span);
+    if (*parameters_.legend)
+      found[i] = hc::vision::with_legend(found[i], coding, span, unit_of(shown[i].header));
+  }
+  return found;
 }
 
 void ImageView::end() {
+  log_missing(true);
   saver_.save_latest();
   constexpr std::chrono::milliseconds kPause{20};  // between checks for a signal
   while (display_ && *parameters_.stay && !hc::stop_requested() && display_->any_open())

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include <vision/window.h>
 #include <opencv2/core.hpp>
 
+#include "eye_sets.h"
 #include "saver.h"
 
 struct ViewParameters {
@@ -31,7 +33,11 @@ struct ViewParameters {
   hc::Parameter<std::string> stereo = module.parameter(
       "stereo", "none", "", "how the images of both eyes (by coordinate system) become one",
       {.choices = layouts()});
-  hc::Parameter<bool> relief = module.parameter("relief", false, "", "shade depth as a relief");
+  hc::Parameter<std::string> coding =
+      module.parameter("coding", "colours", "",
+                       "how depth is shown: in false colours, these shaded as a relief, or as fog "
+                       "in the image of the eye, which is linked too",
+                       {.choices = codings()});
   hc::Parameter<bool> legend =
       module.parameter("legend", true, "", "a scale beside images in colours");
   hc::Parameter<double> min =
@@ -42,6 +48,7 @@ struct ViewParameters {
       module.parameter("count", 0, "", "end after this number of images, 0: never", {.min = 0});
 
   static std::vector<std::string> layouts();
+  static std::vector<std::string> codings();
 };
 
 class ImageView {
@@ -54,30 +61,30 @@ class ImageView {
   [[nodiscard]] int finish(int status) const;
 
  private:
-  /// Images of both eyes at the same time.
-  struct Eyes {
-    hc::Header header;
-    cv::Mat left, right;
-  };
-
   void start();
   void take(const hc::Message& message);
-  void join(const hc::Header& header, const cv::Mat& bgr);
+  /// @param set  see EyeSets::Take.
+  void take_set(std::span<const hc::Message> set);
+  /// The images of the eyes as one; empty if they do not fit.
+  [[nodiscard]] cv::Mat join(std::span<cv::Mat> eyes);
+  void log_missing(bool is_end);
   void show(const hc::Header& header, const cv::Mat& bgr);
   void end();
-  /// An image in blue, green, red, or grey.
-  [[nodiscard]] cv::Mat visible(const hc::Header& header, const cv::Mat& values) const;
+  /// Images in blue, green, red, or grey, on one scale.
+  /// @param images  of the eyes, for fog.
+  [[nodiscard]] std::vector<cv::Mat> visible(std::span<const hc::Message> shown,
+                                             std::span<const hc::Message> images) const;
 
   hc::Module& module_;
-  hc::Input<hc::AnyKind> image_ =
-      module_.input("image",
-                    hc::any_of(hc::rgb_image(), hc::intensity_image(),
-                               hc::intensity_image<std::uint16_t>(), hc::intensity_image<float>()),
-                    "an image; other than u8 in colours, blue for small values");
+  hc::Input<hc::AnyKind> image_ = module_.input(
+      "image",
+      hc::any_of(hc::rgb_image(), hc::intensity_image(), hc::intensity_image<std::uint16_t>(),
+                 hc::intensity_image<float>()),
+      "images, also of both eyes; other than u8 as `coding` says, blue for small values");
   const ViewParameters parameters_{module_};
 
   std::unique_ptr<hc::vision::Display> display_;
   Saver saver_{module_};
   int seen_ = 0;
-  Eyes eyes_;
+  std::unique_ptr<EyeSets> eyes_;
 };

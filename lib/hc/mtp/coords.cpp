@@ -25,6 +25,8 @@ constexpr Coord kCoords[] = {
     {Coord::kDisparity, "disparity", "pixel grid of left_rectified; pixels"},
     {Coord::kGaze, "gaze", "radians: roll, tilt, pan of the pan-tilt unit"},
     {Coord::kSupervisor, "supervisor", "the person's head: metres, radians", true},
+    {Coord::kRightDepth, "right_depth",
+     "pixel grid of right_rectified; metres along the optical axis"},
     {Coord::kSound8k, "sound_8k", "sample frames at 8000 Hz"},
     {Coord::kSound16k, "sound_16k", "sample frames at 16000 Hz"},
     {Coord::kSound22k, "sound_22k", "sample frames at 22050 Hz"},

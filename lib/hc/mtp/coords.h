@@ -20,6 +20,7 @@ struct Coord {
   static constexpr std::int32_t kLeftRectified = 9, kRightRectified = 10;
   static constexpr std::int32_t kDepth = 11, kDisparity = 12;
   static constexpr std::int32_t kGaze = 13, kSupervisor = 14;
+  static constexpr std::int32_t kRightDepth = 15;
   static constexpr std::int32_t kSound8k = 20, kSound16k = 21, kSound22k = 22, kSound44k = 23,
                                 kSound48k = 24;
   static constexpr std::int32_t kText = 30, kOrder = 40;

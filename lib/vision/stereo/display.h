@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include <vision/image.h>
 #include <opencv2/core.hpp>
 
 namespace hc::vision {
@@ -21,18 +22,25 @@ std::span<const std::string_view> stereo_layouts();
 ///     left, odd rows of the right: monitors with polarised rows), left, right.
 cv::Mat join_eyes(const cv::Mat& left, const cv::Mat& right, std::string_view layout);
 
-/// Shades an image as a relief lit from the top left: brighter where depth decreases in the
-/// direction of the light.
-///
-/// @param[in,out] bgr  (H, W, 3) u8. @param values  (H, W) f32; 0: unknown, left unchanged.
-void shade(cv::Mat& bgr, const cv::Mat& values);
+/// How depth is shown by coded().
+std::span<const std::string_view> depth_codings();
 
-/// Adds a legend on the right: the colour scale, and black as "unknown".
+/// Makes depth, or another measured image, visible.
 ///
-/// @param bgr  (H, W, 3) u8, of colour_coded(). @param least, most  the ends of the scale.
-/// @param unit  printed after the numbers, such as "m".
+/// @param values  (H, W) of any scalar; 0, nan and inf are unknown and become black.
+/// @param image  (H, W, 3) u8, blue, green, red; only for fog.
+/// @param coding  one of depth_codings(): colours (colour_coded()), relief (the same, shaded as if
+///     lit from the top left: brighter where depth decreases in the direction of the light), fog
+///     (the image, faded into a light grey by distance).
+/// @param span  the ends of the scale, for both eyes the same.
+cv::Mat coded(const cv::Mat& values, const cv::Mat& image, std::string_view coding, Span span);
+
+/// Adds a legend on the right: the scale of `coding`, and black as "unknown".
+///
+/// @param bgr  (H, W, 3) u8, of coded(). @param unit  printed after the numbers, such as "m".
 /// @returns  (H, W + kLegendWidth, 3) u8; the image itself if it is not high enough for a legend.
-cv::Mat with_legend(const cv::Mat& bgr, double least, double most, const std::string& unit);
+cv::Mat with_legend(const cv::Mat& bgr, std::string_view coding, Span span,
+                    const std::string& unit);
 
 inline constexpr int kLegendWidth = 110;  ///< [px]
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
 namespace hc::vision {
@@ -35,27 +36,59 @@ TEST(JoinEyes, EachLayoutTakesGreyToo) {
   for (const auto layout : stereo_layouts()) EXPECT_FALSE(join_eyes(grey, grey, layout).empty());
 }
 
-TEST(Shade, IsBrightWhereTheSurfaceTurnsToTheLight) {
-  cv::Mat bgr(3, 30, CV_8UC3, cv::Scalar::all(100)), values(3, 30, CV_32F);
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+TEST(Coded, IsBlackWhereUnknown) {
+  const cv::Mat values = (cv::Mat_<float>(1, 5) << 0, kNan, kInfinity, 1, 2);
+  const cv::Mat image(1, 5, CV_8UC3, cv::Scalar(10, 20, 30));
+  for (const auto coding : depth_codings()) {
+    const cv::Mat bgr = coded(values, image, coding, {1, 2});
+    for (int x = 0; x < 3; ++x) EXPECT_EQ(bgr.at<Vec3b>(0, x), Vec3b()) << coding << x;
+    for (int x = 3; x < 5; ++x) EXPECT_NE(bgr.at<Vec3b>(0, x), Vec3b()) << coding << x;
+    const cv::Mat nothing = coded(cv::Mat::zeros(1, 5, CV_32F), image, coding, {0, 0});
+    EXPECT_EQ(cv::norm(nothing, cv::NORM_INF), 0) << coding;
+  }
+}
+
+TEST(Coded, ReliefIsDarkWhereTheSurfaceTurnsFromTheLight) {
+  cv::Mat values(3, 30, CV_32F);
   for (int x = 0; x < 30; ++x)
     values.col(x).setTo(x < 10 ? 1 : x < 20 ? 1 - 0.002 * (x - 10) : 0.98);
-  values.at<float>(1, 25) = 0;
-  shade(bgr, values);
-  EXPECT_EQ(bgr.at<Vec3b>(1, 5)[0], 100);
-  EXPECT_LT(bgr.at<Vec3b>(1, 15)[0], 95) << "comes nearer to the right";
-  EXPECT_EQ(bgr.at<Vec3b>(1, 25)[0], 100) << "unknown";
+  values.at<float>(1, 25) = kNan;
+  const cv::Mat flat = coded(values, {}, "colours", {0.9, 1.1});
+  const cv::Mat relief = coded(values, {}, "relief", {0.9, 1.1});
+  const auto is_darker = [&](int x) {
+    return cv::sum(relief.at<Vec3b>(1, x))[0] < cv::sum(flat.at<Vec3b>(1, x))[0];
+  };
+  EXPECT_FALSE(is_darker(5));
+  EXPECT_TRUE(is_darker(15)) << "comes nearer to the right";
+  EXPECT_FALSE(is_darker(26)) << "beside an unknown value";
+}
+
+TEST(Coded, FogFadesTheImageByDistance) {
+  const cv::Mat values = (cv::Mat_<float>(1, 4) << 0.5F, 1, 2, 9);
+  const cv::Mat image(1, 4, CV_8UC3, cv::Scalar(25, 125, 225));
+  const cv::Mat bgr = coded(values, image, "fog", {1, 3});
+  EXPECT_EQ(bgr.at<Vec3b>(0, 0), Vec3b(25, 125, 225)) << "nearer than the scale";
+  EXPECT_EQ(bgr.at<Vec3b>(0, 1), Vec3b(25, 125, 225));
+  EXPECT_EQ(bgr.at<Vec3b>(0, 2), Vec3b(115, 170, 225)) << "0.45 of the way to the fog's grey, 225";
+  EXPECT_EQ(bgr.at<Vec3b>(0, 3), Vec3b(205, 215, 225));
 }
 
 TEST(Legend, HasTheColoursOfTheScaleAndBlackForUnknown) {
   const cv::Mat image(300, 200, CV_8UC3, cv::Scalar(1, 2, 3));
-  const cv::Mat whole = with_legend(image, 0.5, 4, "m");
+  const cv::Mat whole = with_legend(image, "colours", {0.5, 4}, "m");
   ASSERT_EQ(whole.size(), cv::Size(200 + kLegendWidth, 300));
   EXPECT_EQ(whole.at<Vec3b>(150, 199), Vec3b(1, 2, 3));
   const Vec3b top = whole.at<Vec3b>(20, 225), low = whole.at<Vec3b>(235, 225);
   EXPECT_GT(top[2], top[0]) << "red on top";
   EXPECT_GT(low[0], low[2]) << "blue below";
   EXPECT_EQ(whole.at<Vec3b>(275, 225), Vec3b(0, 0, 0));
-  EXPECT_EQ(with_legend(image.rowRange(0, 100), 0, 1, "").size(), cv::Size(200, 100));
+  const cv::Mat of_fog = with_legend(image, "fog", {0.5, 4}, "m");
+  EXPECT_GT(of_fog.at<Vec3b>(20, 225)[0], 200) << "fog on top";
+  EXPECT_LT(of_fog.at<Vec3b>(235, 225)[0], 60) << "and what is in it below";
+  EXPECT_EQ(with_legend(image.rowRange(0, 100), "colours", {0, 1}, "").size(), cv::Size(200, 100));
 }
 
 }  // namespace

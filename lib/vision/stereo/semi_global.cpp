@@ -145,7 +145,6 @@ class Sweep {
                  {&winners_, sizeof(Winner) * width_},
                  {&best_, 2 * bytes},
                  {&window_, 2 * kBytes},
-                 {&right_costs_, bytes},
                  {&right_disparities_, bytes},
                  {&down_, bytes},
                  {&down_right_, bytes},
@@ -175,7 +174,7 @@ class Sweep {
         sweep<true, true>(row, above);
       if (y <= stripe_.begin) continue;
       write_row(stripe_.disparity->ptr<std::uint16_t>(y - 1), stripe_.margin->ptr(y - 1));
-      if (is_for_both_) write_right_row(above, stripe_.right_disparity->ptr<std::uint16_t>(y - 1));
+      if (is_for_both_) write_right_row(stripe_.right_disparity->ptr<std::uint16_t>(y - 1));
     }
   }
 
@@ -384,7 +383,6 @@ class Sweep {
         disparity.v[k] =
             hn::IfThenElse(hn::Eq(min.v[k], costs.v[k]), C::indices(k), disparity.v[k]);
       }
-      right_costs_[x] = hn::GetLane(min.v[0]);
       right_disparities_[x] = hn::GetLane(disparity.v[0]);
       for (std::size_t k = 0; k < kVectors; ++k) {
         min.v[k] = min.next_of(k, never);
@@ -418,14 +416,13 @@ class Sweep {
     const Byte cost = hn::GetLane(min);
     const auto disparity = static_cast<Byte>(first);
     return {disparity, cost, static_cast<Byte>(hn::GetLane(min_of_lanes(d, other)) - cost),
-            fraction(sums + disparity, 1, disparity)};
+            fraction(sums, disparity)};
   }
 
-  /// The sub-pixel offset of the minimum of a V through the three costs [1/64 px], which are `step`
-  /// bytes apart.
-  HWY_INLINE std::int8_t fraction(const Byte* cost, std::ptrdiff_t step, int disparity) const {
+  /// The sub-pixel offset of the minimum of a V through the three costs [1/64 px].
+  HWY_INLINE std::int8_t fraction(const Byte* sums, int disparity) const {
     if (disparity == 0 || disparity + 1 >= disparities_) return 0;
-    const int below = cost[-step], at = *cost, above = cost[step];
+    const int below = sums[disparity - 1], at = sums[disparity], above = sums[disparity + 1];
     const int rise = std::max(below, above) - at;
     if (rise <= 0 || std::max(below, above) == kNever) return 0;
     return static_cast<std::int8_t>((below - above) * (kSubPixels / 2) / rise);
@@ -450,31 +447,27 @@ class Sweep {
       const bool clear = is_clear(winner, x);
       const int other = best[clear ? x - winner.disparity : x] & 0xFF;
       const bool agrees = clear && std::abs(other - winner.disparity) <= left_right_;
-      const int found = std::max(1, winner.disparity * kSubPixels + winner.fraction);
-      disparity[x] = static_cast<std::uint16_t>(agrees ? found : 0);
+      disparity[x] = static_cast<std::uint16_t>(agrees ? disparity_of(winner) : 0);
       margin[x] = agrees ? winner.margin : Byte{0};
     }
   }
 
-  /// Writes the disparities of the right image's pixels that pass the same check: the partner is
-  /// clear, and its disparity the same. @param row  that of `winners_`.
-  void write_right_row(const Row& row, std::uint16_t* disparity) const {
-    constexpr auto kDiagonal = static_cast<std::ptrdiff_t>(kBytes + 1);
+  /// Writes the disparities of the right image's pixels that pass the same check: that of their
+  /// partners, which are clear.
+  void write_right_row(std::uint16_t* disparity) const {
     const auto* winners = reinterpret_cast<const Winner*>(winners_);
     for (std::size_t x = 0; x < width_; ++x) {
-      const std::size_t own = right_disparities_[x];
-      const std::size_t partner = right_costs_[x] == kNever ? x : x + own;
+      const std::size_t own = right_disparities_[x], partner = x + own;
       const Winner winner = winners[partner];
-      const bool agrees = right_costs_[x] != kNever && is_clear(winner, partner) &&
+      const bool agrees = is_clear(winner, partner) &&
                           std::abs(winner.disparity - static_cast<int>(own)) <= left_right_;
-      disparity[x] = 0;
-      if (!agrees) continue;
-      const int offset = partner + 1 == width_ ? 0
-                                               : fraction(row.sums + partner * kBytes + own,
-                                                          kDiagonal, static_cast<int>(own));
-      const int found = static_cast<int>(own) * kSubPixels + offset;
-      disparity[x] = static_cast<std::uint16_t>(std::max(1, found));
+      disparity[x] = static_cast<std::uint16_t>(agrees ? disparity_of(winner) : 0);
     }
+  }
+
+  /// In fixed point.
+  static int disparity_of(const Winner& winner) {
+    return std::max(1, winner.disparity * kSubPixels + winner.fraction);
   }
 
   [[nodiscard]] bool is_clear(const Winner& winner, std::size_t x) const {
@@ -500,10 +493,9 @@ class Sweep {
   Byte* north_west_ = nullptr;
   Byte* winners_ = nullptr;
   Byte* best_ = nullptr;  // of each pixel of the right image, its cost · 256 + its disparity, u16
-  // For both eyes: of each pixel of the right image the winner, and before, of those opposite to
-  // the disparities of a left pixel, the minimum so far and its disparity.
+  // For both eyes: of the right pixels opposite to the disparities of a left one, the minimum so
+  // far and its disparity; in the end, the disparity of each right pixel.
   Byte* window_ = nullptr;
-  Byte* right_costs_ = nullptr;
   Byte* right_disparities_ = nullptr;
   // Differences of the grey levels of a row to those of the row above.
   Byte* down_ = nullptr;

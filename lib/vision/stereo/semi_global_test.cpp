@@ -132,14 +132,14 @@ class Plain {
         other = std::min(other, sum[static_cast<std::size_t>(d)]);
     found.margin = other - found.cost;
     if (found.disparity == 0 || found.disparity == count_ - 1) return found;
-    found.fraction = fraction(best[-1], *best, best[1]);
+    const int below = best[-1], above = best[1], rise = std::max(below, above) - *best;
+    if (rise > 0 && std::max(below, above) < kMost)
+      found.fraction = (below - above) * (kSubPixels / 2) / rise;
     return found;
   }
 
-  static int fraction(int below, int at, int above) {
-    const int rise = std::max(below, above) - at;
-    if (rise <= 0 || std::max(below, above) >= kMost) return 0;
-    return (below - above) * (kSubPixels / 2) / rise;
+  static std::uint16_t in_fixed_point(const Winner& winner) {
+    return static_cast<std::uint16_t>(std::max(1, winner.disparity * kSubPixels + winner.fraction));
   }
 
   bool is_usable(const Winner& winner, int x) const {
@@ -156,12 +156,9 @@ class Plain {
       const auto best = std::min_element(costs.begin(), costs.end());
       const auto own = static_cast<int>(best - costs.begin());
       const Winner& partner = winners[static_cast<std::size_t>(x + own)];
-      const bool is_known = *best < kMost && is_usable(partner, x + own) &&
-                            std::abs(partner.disparity - own) <= options_.left_right;
-      const bool is_inside = own > 0 && own + 1 < static_cast<int>(costs.size());
-      const int offset = is_inside ? fraction(best[-1], *best, best[1]) : 0;
-      disparity.at<std::uint16_t>(y, x) =
-          static_cast<std::uint16_t>(is_known ? std::max(1, own * kSubPixels + offset) : 0);
+      const bool is_known =
+          is_usable(partner, x + own) && std::abs(partner.disparity - own) <= options_.left_right;
+      disparity.at<std::uint16_t>(y, x) = is_known ? in_fixed_point(partner) : std::uint16_t{0};
     }
   }
 
@@ -181,8 +178,7 @@ class Plain {
       bool is_known =
           usable(x) && std::abs(partner_disparity[static_cast<std::size_t>(x - w.disparity)] -
                                 w.disparity) <= options_.left_right;
-      disparity.at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(
-          is_known ? std::max(1, w.disparity * kSubPixels + w.fraction) : 0);
+      disparity.at<std::uint16_t>(y, x) = is_known ? in_fixed_point(w) : std::uint16_t{0};
       margin.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(is_known ? w.margin : 0);
     }
   }
