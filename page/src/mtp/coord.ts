@@ -17,6 +17,7 @@ export const Coord = {
   disparity: 12,
   gaze: 13,
   supervisor: 14,
+  right_depth: 15,
   sound_8k: 20,
   sound_16k: 21,
   sound_22k: 22,

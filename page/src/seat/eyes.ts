@@ -3,7 +3,9 @@
 import { sentHeader } from "../mtp";
 import type { Arrival, GraphState, Server, Stream } from "../server";
 import { moduleOf, portOf } from "../graph/structure";
+import { codings, type Coding, type SlowRange } from "../views/coding";
 import { bitmapOf } from "../views/picture";
+import { DepthEye } from "./depth_eye";
 
 export type Side = "left" | "right";
 
@@ -17,9 +19,33 @@ export interface EyePair {
   readonly raw: boolean;
   /** With virtual objects. */
   readonly augmented: boolean;
+  /** Of a pair of depths: how they are shown, and what was matched. */
+  readonly coding?: Coding;
+  readonly images?: readonly (string | undefined)[];
 }
 
-/** The pairs in a graph: cameras first, then augmented ones. */
+/** The name of a pair for a person. */
+export function nameOf({ module, augmented, coding }: EyePair): string {
+  if (coding) return `${module} (${coding})`;
+  return augmented ? `${module} (augmented)` : module;
+}
+
+/** The pairs of depths in a graph, in each coding: in fog if their images are known. */
+function depthPairs(state: GraphState): EyePair[] {
+  const programs = state.modules.filter(({ program }) => program.split("/").at(-1) === "depth");
+  return programs.flatMap(({ name }) => {
+    const images = ["left", "right"].map(
+      (side) => state.links.find((link) => link.to === `${name}.${side}`)?.from,
+    );
+    const [left, right] = [`${name}.depth`, `${name}.right_depth`];
+    const possible = codings.filter((coding) => coding !== "fog" || images.every(Boolean));
+    return possible.map((coding) => {
+      return { module: name, left, right, raw: false, augmented: false, coding, images };
+    });
+  });
+}
+
+/** The pairs in a graph: cameras first, then augmented ones, depths last. */
 export function eyePairs(state: GraphState): EyePair[] {
   const outputs = new Set(state.links.map((link) => link.from));
   const inputs = new Set(state.links.map((link) => link.to));
@@ -37,7 +63,7 @@ export function eyePairs(state: GraphState): EyePair[] {
     ];
   });
   const order = (pair: EyePair): number => (pair.raw ? 0 : pair.augmented ? 1 : 2);
-  return pairs.sort((a, b) => order(a) - order(b));
+  return [...pairs.sort((a, b) => order(a) - order(b)), ...depthPairs(state)];
 }
 
 /** The output of the ears: linked to a module `hearing`, or any named sound. */
@@ -64,37 +90,52 @@ export interface Picture {
   readonly decoded: number;
 }
 
+/** How an eye's depth is shown. */
+export interface DepthOptions {
+  readonly coding: Coding;
+  /** The output with the eye's image, for fog. */
+  readonly image?: string;
+  /** Shared by both eyes, so that a point has one colour. */
+  readonly range: SlowRange;
+}
+
 /** One eye's stream. */
 export class Eye {
   private readonly stream: Stream;
+  private readonly depth?: DepthEye;
   private closed = false;
   picture?: Picture;
 
+  /** @param depth  undefined: the stream is of images. */
   constructor(
     server: Server,
     port: string,
     width: number,
+    depth: DepthOptions | undefined,
     private readonly shown: (picture: Picture) => void,
     problem: (text: string) => void,
   ) {
-    this.stream = server.stream(port, { as: "jpeg", width });
+    this.stream = server.stream(port, { as: depth ? "raw" : "jpeg", width });
+    if (depth) this.depth = new DepthEye(server, width, depth, problem);
     this.stream.on("message", (arrival) => this.take(arrival));
     this.stream.on("problem", problem);
   }
 
   setWidth(width: number): void {
     this.stream.setWidth(width);
+    this.depth?.setWidth(width);
   }
 
   close(): void {
     this.closed = true;
     this.stream.close();
+    this.depth?.close();
     this.picture?.bitmap.close();
     this.picture = undefined;
   }
 
   private async take({ message, at }: Arrival): Promise<void> {
-    const bitmap = await bitmapOf(message);
+    const bitmap = await (this.depth ? this.depth.bitmapOf(message) : bitmapOf(message));
     if (!bitmap || this.closed) return bitmap?.close();
     const sensor = sentHeader(this.stream.header ?? "") ?? message.header;
     this.picture?.bitmap.close();

@@ -2,6 +2,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { sentHeader } from "../mtp";
+import type { GraphState } from "../server";
+import { eyePairs, nameOf } from "./eyes";
 import { headOutput } from "./gaze";
 import { Latency } from "./latency";
 import { anglesOfDevice, anglesOfHeadset, anglesOfPose, since, type Angles } from "./orientation";
@@ -138,4 +140,22 @@ test("the wall clock, with fractions of a millisecond", () => {
   // Its clock is set back by a second.
   wall -= 1000;
   assert.equal(clock.now(), 7_200_002);
+});
+
+test("depths of both eyes are a pair in each coding", () => {
+  const link = (from: string, to: string) => ({ from, to });
+  const state = {
+    modules: [
+      { name: "eyes", program: "simulator" },
+      { name: "depth", program: "/usr/bin/depth" },
+    ],
+    links: [link("eyes.left", "depth.left"), link("eyes.right", "depth.right")],
+  } as unknown as GraphState;
+  const pairs = eyePairs(state);
+  assert.deepEqual(pairs.map(nameOf), ["eyes", "depth (colours)", "depth (relief)", "depth (fog)"]);
+  const { left, right, raw, images } = pairs.at(-1)!;
+  assert.deepEqual([left, right, raw], ["depth.depth", "depth.right_depth", false]);
+  assert.deepEqual(images, ["eyes.left", "eyes.right"]);
+  const alone = { ...state, links: state.links.slice(0, 1) };
+  assert.deepEqual(eyePairs(alone).map(nameOf).slice(1), ["depth (colours)", "depth (relief)"]);
 });

@@ -2,7 +2,9 @@
 // The images of the robot's eyes in the seat: a canvas and its streams.
 import type { GraphState, Server } from "../server";
 import { fill, h } from "../shell";
-import { Eye, eyePairs, type EyePair, type Picture, type Side } from "./eyes";
+import { moduleOf } from "../graph/structure";
+import { SlowRange } from "../views/coding";
+import { Eye, eyePairs, nameOf, type EyePair, type Picture, type Side } from "./eyes";
 import type { Latency } from "./latency";
 import { drawPictures, thumbnailOf, type Pictures } from "./picture";
 import { pixelAt, placesOf, sidesOf, ways, type Way } from "./places";
@@ -54,24 +56,24 @@ export class SeatView {
     if (JSON.stringify(pairs) === JSON.stringify(this.pairs)) return;
     const chosen = this.source.value;
     this.pairs = pairs;
-    const label = (pair: EyePair): string =>
-      pair.augmented ? `${pair.module} (augmented)` : pair.module;
     fill(
       this.source,
-      pairs.map((pair) => h("option", { value: pair.module }, label(pair))),
+      pairs.map((pair) => h("option", nameOf(pair))),
     );
-    if (pairs.some((pair) => pair.module === chosen)) this.source.value = chosen;
+    if (pairs.some((pair) => nameOf(pair) === chosen)) this.source.value = chosen;
     this.reopen();
   }
 
   get pair(): EyePair | undefined {
-    return this.pairs.find(({ module }) => module === this.source.value) ?? this.pairs[0];
+    return this.pairs.find((pair) => nameOf(pair) === this.source.value) ?? this.pairs[0];
   }
 
   /** Focal length of the cameras, from the graph's parameters [px of the sensor]. */
   get focal(): number {
     const modules = this.server.state?.modules ?? [];
-    const own = modules.find((module) => module.name === this.pair?.module)?.parameters.focal;
+    const { pair } = this;
+    const camera = pair?.images?.[0] ? moduleOf(pair.images[0]) : pair?.module;
+    const own = modules.find((module) => module.name === camera)?.parameters.focal;
     return Number(own) || 600;
   }
 
@@ -121,13 +123,16 @@ export class SeatView {
     this.way.disabled = pair.right === undefined;
     const wanted = this.xr ? (["left", "right"] as const) : sidesOf(this.shownWay);
     const first = wanted[0]!;
+    const range = new SlowRange();
     for (const side of wanted) {
       const port = side === "left" ? pair.left : (pair.right ?? pair.left);
+      const image = pair.images?.[side === "left" ? 0 : 1];
+      const depth = pair.coding && { coding: pair.coding, image, range };
       const shown = (picture: Picture): void => this.take(side, picture, side === first);
       const problem = (text: string): void => {
         this.problem.textContent = text;
       };
-      this.eyes.set(side, new Eye(this.server, port, this.width(), shown, problem));
+      this.eyes.set(side, new Eye(this.server, port, this.width(), depth, shown, problem));
     }
   }
 

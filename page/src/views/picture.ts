@@ -139,6 +139,6 @@ export function isMeasured(header: Header): boolean {
   return (
     header.type === "intensity_image" &&
     header.scalar !== "u8" &&
-    (header.coord === Coord.depth || header.coord === Coord.disparity)
+    [Coord.depth, Coord.disparity, Coord.right_depth].some((each) => each === header.coord)
   );
 }

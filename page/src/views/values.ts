@@ -3,40 +3,16 @@
 import { Coord, numbersOf, type Header, type Numbers } from "../mtp";
 import type { Arrival } from "../server";
 import { h } from "../shell/h";
+import { code, known, SlowRange, stripes, type Range } from "./coding";
 import { isMeasured } from "./picture";
 import { pixelAt, Probe, type Spot } from "./probe";
 import { askForWidth } from "./room";
-import { turbo, turboPixels } from "./turbo";
+import { turbo } from "./turbo";
 import type { View, ViewHost, ViewKind } from "./view";
 
-const palette = turboPixels();
-/** Holes are stripes of two greys, which are not in the scale. */
-const holes = [0xff101010, 0xff585858] as const;
-
 function unitOf(header: Header): string {
-  if (header.coord === Coord.depth) return "m";
+  if (header.coord === Coord.depth || header.coord === Coord.right_depth) return "m";
   return header.coord === Coord.disparity ? "px" : "";
-}
-
-/** Whether a value is known: 0 is unknown in some coordinate systems (R44). */
-function known(value: number, isZeroUnknown: boolean): boolean {
-  return Number.isFinite(value) && !(isZeroUnknown && value === 0);
-}
-
-/** 2nd and 98th percentile of about 2000 samples of known values. */
-export function usualRange(
-  values: ArrayLike<number>,
-  isZeroUnknown: boolean,
-): readonly [number, number] | undefined {
-  const step = Math.max(1, Math.floor(values.length / 2000));
-  const samples: number[] = [];
-  for (let i = 0; i < values.length; i += step) {
-    if (known(values[i]!, isZeroUnknown)) samples.push(values[i]!);
-  }
-  if (samples.length === 0) return undefined;
-  samples.sort((a, b) => a - b);
-  const at = (part: number) => samples[Math.floor(part * (samples.length - 1))]!;
-  return [at(0.02), at(0.98)];
 }
 
 export class ValuesView implements View {
@@ -55,7 +31,7 @@ export class ValuesView implements View {
   private readonly holePart = h("span.hole-part");
   private readonly probe: Probe;
   private readonly endRoom: () => void;
-  private range?: readonly [number, number];
+  private range = new SlowRange();
   private image?: ImageData;
   private shown?: { arrival: Arrival; sent: Header; values: Numbers };
 
@@ -68,7 +44,7 @@ export class ValuesView implements View {
       this.fixed.setAttribute("aria-pressed", String(isFixed));
     };
     this.component.onchange = () => {
-      this.range = undefined;
+      this.range = new SlowRange();
       if (this.shown) this.show(this.shown.arrival, this.shown.sent);
     };
     this.tools = [this.component, this.fixed];
@@ -123,43 +99,21 @@ export class ValuesView implements View {
             { length: all.length / components },
             (_, i) => all[i * components + which]!,
           );
-    this.updateRange(values, isZeroUnknown);
-    const [least, most] = this.range ?? [0, 1];
-    const scale = 255 / (most > least ? most - least : 1);
-    const image = this.image!;
-    const pixels = new Uint32Array(image.data.buffer);
-    let unknown = 0;
-    for (let i = 0, x = 0, y = 0; i < pixels.length; ++i) {
-      const value = values[i]!;
-      if (known(value, isZeroUnknown)) {
-        const level = Math.round((value - least) * scale);
-        pixels[i] = palette[level < 0 ? 0 : level > 255 ? 255 : level]!;
-      } else {
-        ++unknown;
-        pixels[i] = holes[((x + y) >> 2) & 1]!;
-      }
-      if (++x === image.width) {
-        x = 0;
-        ++y;
-      }
-    }
+    const grid = { values, width: this.image!.width, isZeroUnknown };
+    const isFixed = this.fixed.getAttribute("aria-pressed") === "true";
+    const range = (isFixed && this.range.range) || this.range.update(grid);
+    if (range) this.label(range);
+    const pixels = new Uint32Array(this.image!.data.buffer);
+    const unknown = code(grid, range, "colours", stripes, pixels);
     this.holePart.textContent = `${((100 * unknown) / pixels.length).toFixed(1)} % unknown`;
   }
 
-  /** Follows the values slowly, so that colours do not flicker. */
-  private updateRange(values: ArrayLike<number>, isZeroUnknown: boolean): void {
-    const isFixed = this.fixed.getAttribute("aria-pressed") === "true";
-    if (isFixed && this.range) return;
-    const usual = usualRange(values, isZeroUnknown);
-    if (!usual) return;
-    const [least, most] = this.range ?? usual;
-    const follow = (now: number, to: number) => now + 0.2 * (to - now);
-    this.range = [follow(least, usual[0]), follow(most, usual[1])];
+  private label([least, most]: Range): void {
     const unit = this.shown ? unitOf(this.shown.sent) : "";
     const text = (value: number) => `${Number(value.toPrecision(3))} ${unit}`.trim();
-    this.least.textContent = `≤ ${text(this.range[0])}`;
-    this.middle.textContent = text((this.range[0] + this.range[1]) / 2);
-    this.most.textContent = `≥ ${text(this.range[1])}`;
+    this.least.textContent = `≤ ${text(least)}`;
+    this.middle.textContent = text((least + most) / 2);
+    this.most.textContent = `≥ ${text(most)}`;
   }
 
   private words({ across, down }: Spot): string {
