@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// boards: the search of chessboards, their corners and the calibration from drawn views, beside
-// OpenCV's findChessboardCorners, cornerSubPix and the flags of its sample stereo_calib, as
-// Markdown.
+// boards: the search of boards, their corners and the calibration from drawn views, beside OpenCV's
+// findChessboardCorners, cornerSubPix, interpolateCornersCharuco and the flags of its sample
+// stereo_calib, as Markdown.
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
+#include <map>
 #include <random>
 #include <string>
 #include <utility>
@@ -14,6 +17,8 @@
 
 #include <vision/board.h>
 #include <vision/drawn_board_test.h>
+#include <vision/marked_board.h>
+#include <vision/opencv_charuco_test.h>
 #include <vision/squinting_pair_test.h>
 #include <vision/stereo_fit.h>
 #include <opencv2/calib3d.hpp>
@@ -73,12 +78,13 @@ struct Off {
   void add(Corners corners, const Corners& truth) {
     if ((corners.back() - corners.front()).dot(truth.back() - truth.front()) < 0)
       std::reverse(corners.begin(), corners.end());
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-      const double off = cv::norm(corners[i] - truth[i]);
-      squares += off * off;
-      worst = std::max(worst, off);
-      ++count;
-    }
+    for (std::size_t i = 0; i < truth.size(); ++i) add(corners[i], truth[i]);
+  }
+  void add(cv::Point2f corner, cv::Point2f truth) {
+    const double off = cv::norm(corner - truth);
+    squares += off * off;
+    worst = std::max(worst, off);
+    ++count;
   }
   [[nodiscard]] double rms() const { return std::sqrt(squares / count); }
 };
@@ -166,6 +172,87 @@ void compare_calibrations(const DrawingCamera& left, const DrawingCamera& right,
   print((std::to_string(sample.size()) + " views: OpenCV's sample").c_str(), c, "–");
 }
 
+constexpr const char* kDictionary = "6X6_250";
+
+/// The corners that OpenCV finds of a ChArUco board.
+BoardView charuco_of_opencv(const cv::Mat& left, const cv::Mat& right, const Board& board) {
+  const auto its = hc::vision::opencv_charuco(board);
+  const auto words = hc::vision::opencv_dictionary(its);
+  std::map<int, cv::Point2f> found[2];
+  for (const auto& [image, corners] : {std::pair{&left, &found[0]}, {&right, &found[1]}}) {
+    std::vector<Corners> markers;
+    std::vector<int> ids, numbers;
+    Corners places;
+    cv::aruco::detectMarkers(*image, words, markers, ids);
+    if (ids.empty()) continue;
+    cv::aruco::interpolateCornersCharuco(markers, ids, *image, its, places, numbers);
+    for (std::size_t i = 0; i < numbers.size(); ++i) (*corners)[numbers[i]] = places[i];
+  }
+  BoardView view;
+  for (const auto& [number, place] : found[0])
+    if (const auto same = found[1].find(number); same != found[1].end()) {
+      view.numbers.push_back(static_cast<std::size_t>(number));
+      view.left.push_back(place);
+      view.right.push_back(same->second);
+    }
+  return view;
+}
+
+/// Corners of a board that is partly outside the images, and the calibration from them.
+struct Trial {
+  const char* name;
+  std::function<BoardView(const cv::Mat& left, const cv::Mat& right)> find;
+  Off off = {};
+  double milliseconds = 0;
+  std::vector<BoardView> views = {};
+};
+
+void compare_marked(const char* name, const Board& board, const DrawingCamera& left,
+                    const DrawingCamera& right, const StereoCalibration& truth) {
+  const auto finder = bench::must(hc::vision::MarkedBoardFinder::make(board, kDictionary));
+  const auto print = printed(board, kDictionary);
+  std::vector<Trial> trials = {{"ours", [&](const cv::Mat& l, const cv::Mat& r) {
+                                  return finder.find(l, r).value_or(BoardView());
+                                }}};
+  if (board.kind == hc::vision::BoardKind::Charuco)
+    trials.push_back({"OpenCV's", [&](const cv::Mat& l, const cv::Mat& r) {
+                        return charuco_of_opencv(l, r, board);
+                      }});
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> spread(-1, 1);
+  constexpr std::uint64_t kViews = 20;
+  for (std::uint64_t i = 1; i <= kViews; ++i) {
+    const double z = 0.4 + 0.12 * spread(random);
+    const auto pose =
+        BoardPose::at(board, {0.6 * spread(random), 0.6 * spread(random), 0.3 * spread(random)},
+                      {0.05 + 0.45 * z * spread(random), 0.35 * z * spread(random), z});
+    const cv::Mat l = left.draw(print, pose, 2, 0.7, 2 * i);
+    const cv::Mat r = right.draw(print, pose.seen_by_right(truth), 2, 0.7, 2 * i + 1);
+    const Corners all = corners_of(board, pose, truth.M1, truth.D1);
+    for (auto& trial : trials) {
+      BoardView view;
+      trial.milliseconds += bench::milliseconds([&] { view = trial.find(l, r); }) / kViews;
+      constexpr std::size_t kLeast = 8;
+      if (view.left.size() < kLeast) continue;
+      for (std::size_t k = 0; k < view.left.size(); ++k)
+        trial.off.add(view.left[k], all[view.number(k)]);
+      trial.views.push_back(view);
+    }
+  }
+  for (const auto& trial : trials) {
+    const auto found = calibrate(trial.views, board, truth.size);
+    std::printf("| %s: %s | %.0f | %zu of %d | %d | %.3f, %.2f | ", name, trial.name,
+                trial.milliseconds, trial.views.size(), static_cast<int>(kViews), trial.off.count,
+                trial.off.rms(), trial.off.worst);
+    if (found)
+      std::printf("%.3f, %.3f | %.3f |\n", 100 * (found->calibration.M1(0, 0) / truth.M1(0, 0) - 1),
+                  100 * (found->calibration.M2(0, 0) / truth.M2(0, 0) - 1),
+                  100 * (cv::norm(found->calibration.T) / cv::norm(truth.T) - 1));
+    else
+      std::printf("%s | |\n", found.error().detail.c_str());
+  }
+}
+
 }  // namespace
 
 int main() {
@@ -191,4 +278,10 @@ int main() {
   }
   compare_corners(left, pair);
   compare_calibrations(left, right, pair);
+  std::printf(
+      "\n| incomplete boards: corners | search [ms] | views | corners | RMS, worst [px] | focal "
+      "lengths off by [%%] | baseline [%%] |\n|---|---:|---:|---:|---:|---:|---:|\n");
+  using hc::vision::BoardKind;
+  compare_marked("ChArUco", {11, 8, 0.025, BoardKind::Charuco, 0.018}, left, right, pair);
+  compare_marked("AprilGrid", {6, 5, 0, BoardKind::AprilGrid, 0.035, 0.3}, left, right, pair);
 }

@@ -6,7 +6,7 @@
 int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"stereo_calibration",
-                    "Finds the geometry of two cameras from views of a chessboard."};
+                    "Finds the geometry of two cameras from views of a board."};
   StereoCalibration calibration{module};
   return module.run(argc, argv);
 }

@@ -6,22 +6,53 @@
 #include <utility>
 
 #include <hc/base/format.h>
+#include <hc/os/new_file.h>
+#include <hc/os/program.h>
+#include <vision/board_print.h>
 #include <vision/messages.h>
+
+namespace {
+
+using hc::vision::BoardKind;
+
+const char* advice_for(BoardKind kind) {
+  switch (kind) {
+    case BoardKind::Chessboard:
+      return "is it complete, with a white margin? columns and rows count inner corners";
+    case BoardKind::Charuco:
+      return "is it of this dictionary? columns and rows count squares";
+    default:
+      return "are its tags of the family 36h11, and tag 0 at the lower left? columns and rows "
+             "count tags";
+  }
+}
+
+}  // namespace
+
+hc::vision::Board StereoCalibrationParameters::its_board() const {
+  hc::vision::Board its{static_cast<int>(*columns), static_cast<int>(*rows), *square};
+  its.kind = *board == "charuco"     ? BoardKind::Charuco
+             : *board == "aprilgrid" ? BoardKind::AprilGrid
+                                     : BoardKind::Chessboard;
+  its.marker = *marker_size;
+  its.spacing = *tag_spacing;
+  return its;
+}
 
 StereoCalibration::StereoCalibration(hc::Module& module) : module_(module) {
   module.on_start([this] { start(); });
   module.on(hc::together(left_, right_),
             [this](const hc::Message& left, const hc::Message& right) { look(left, right); });
   module.on_end([this] {
-    if (views_) finish(hc::value_or_end(views_->calibrate()));
+    if (views_ && !hc::stop_requested()) finish(hc::value_or_end(views_->calibrate()));
   });
 }
 
 void StereoCalibration::start() {
-  const hc::vision::Board board{static_cast<int>(*parameters_.columns),
-                                static_cast<int>(*parameters_.rows), *parameters_.square};
-  views_.emplace(hc::value_or_end(
-      hc::vision::BoardViews::make(board, static_cast<std::size_t>(*parameters_.views))));
+  if (!parameters_.print->empty()) return draw_board();
+  views_.emplace(hc::value_or_end(hc::vision::BoardViews::make(
+      parameters_.its_board(), static_cast<std::size_t>(*parameters_.views),
+      *parameters_.dictionary)));
   const auto& file = *parameters_.calibration_file;
   // A file that is not a calibration is not to be overwritten after all views have been taken.
   if (std::filesystem::is_regular_file(file) && !std::filesystem::is_empty(file)) {
@@ -33,6 +64,16 @@ void StereoCalibration::start() {
   }
 }
 
+void StereoCalibration::draw_board() const {
+  const auto& file = *parameters_.print;
+  const auto print =
+      hc::value_or_end(hc::vision::print_of(parameters_.its_board(), *parameters_.dictionary));
+  hc::succeed_or_end(hc::replace_file(file, hc::vision::pdf_of(print)));
+  module_.log(hc::format("{}: {:.0f} x {:.0f} mm, to be printed without scaling", file,
+                         1000 * print.paper.width, 1000 * print.paper.height));
+  module_.stop();
+}
+
 void StereoCalibration::look(const hc::Message& left, const hc::Message& right) {
   if (!views_) return;
   const cv::Mat image = hc::value_or_drop(hc::as_mat(left));
@@ -41,10 +82,8 @@ void StereoCalibration::look(const hc::Message& left, const hc::Message& right) 
   show(image);
   constexpr std::size_t kPatience = 50;  // pairs
   if (views_->pairs() == kPatience && views_->found() == 0)
-    module_.log(
-        hc::format("no board of {} x {} inner corners in {} pairs: is it complete, with a "
-                   "white margin? columns and rows count inner corners",
-                   *parameters_.columns, *parameters_.rows, kPatience));
+    module_.log(hc::format("no {} in {} pairs: {}", views_->board().text(), kPatience,
+                           advice_for(views_->board().kind)));
   if (!is_kept) return;
   time_ = std::max(left.header.time, right.header.time);
   view_.send({static_cast<double>(views_->size()), static_cast<double>(*parameters_.views)});
@@ -72,8 +111,14 @@ void StereoCalibration::finish(const hc::vision::Calibrated& calibrated) {
 }
 
 bool StereoCalibration::may_write(const hc::vision::Calibrated& calibrated) const {
-  if (!calibration_ || calibration_->rms == 0) return true;  // rms 0: by calibrate, not measured
   const auto& file = *parameters_.calibration_file;
+  if (!*parameters_.replace && hc::vision::has_changed(file, calibration_)) {
+    module_.log(file +
+                " is kept: another program has written it since the start; replace = true "
+                "replaces it");
+    return false;
+  }
+  if (!calibration_ || calibration_->rms == 0) return true;  // rms 0: by calibrate, not measured
   const double error = views_->error_of(*calibration_);
   constexpr double kFits = 1.5;  // times the error of the new one
   if (error > kFits * views_->error_of(calibrated.calibration)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Calibrates two cameras from images of a chessboard, and replaces the file unless it is better.
+// Calibrates two cameras from images of a board, and replaces the file unless it is better.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,18 +23,36 @@ struct StereoCalibrationParameters {
   hc::Parameter<std::int64_t> views =
       module.parameter("views", 20, "", "how many views to take; more if they are not enough",
                        {.min = hc::vision::kLeastViews, .max = 200, .fixed = true});
-  hc::Parameter<std::int64_t> columns =
-      module.parameter("columns", 9, "", "inner corners in a row of the board",
-                       {.min = 3, .max = 50, .fixed = true});
+  hc::Parameter<std::string> board =
+      module.parameter("board", "chessboard", "", "kind of board",
+                       {.choices = {"chessboard", "charuco", "aprilgrid"}, .fixed = true});
+  hc::Parameter<std::int64_t> columns = module.parameter(
+      "columns", 9, "",
+      "inner corners in a row of a chessboard, squares of a charuco, tags of an aprilgrid",
+      {.min = 2, .max = 50, .fixed = true});
   hc::Parameter<std::int64_t> rows =
-      module.parameter("rows", 6, "", "inner corners in a column, different from columns",
-                       {.min = 3, .max = 50, .fixed = true});
-  hc::Parameter<double> square = module.parameter("square", 0.025, "m", "side of a square",
-                                                  {.min = 1e-4, .max = 10, .fixed = true});
+      module.parameter("rows", 6, "", "the same in a column; of a chessboard not as many",
+                       {.min = 2, .max = 50, .fixed = true});
+  hc::Parameter<double> square =
+      module.parameter("square", 0.025, "m", "side of a square of a chessboard or charuco",
+                       {.min = 1e-4, .max = 10, .fixed = true});
+  hc::Parameter<double> marker_size = module.parameter(
+      "marker_size", 0.0, "m", "side of a marker of a charuco, or of a tag of an aprilgrid",
+      {.min = 0, .max = 10, .fixed = true});
+  hc::Parameter<double> tag_spacing = module.parameter(
+      "tag_spacing", 0.3, "", "gap between the tags of an aprilgrid, relative to marker_size",
+      {.min = 0.01, .max = 10, .fixed = true});
+  hc::Parameter<std::string> dictionary =
+      module.parameter("dictionary", "6X6_250", "",
+                       "of the ArUco markers of a charuco, e.g. 4X4_50", {.fixed = true});
+  hc::Parameter<std::string> print = module.parameter(
+      "print", "", "", "draw the board into this PDF file, in true size, and end", {.fixed = true});
   hc::Parameter<double> difference = module.parameter(
       "difference", 0.02, "",
       "of the images' width: minimum distance of the corners from those of any other view's",
       {.min = 0, .max = 1});
+
+  [[nodiscard]] hc::vision::Board its_board() const;
 };
 
 class StereoCalibration {
@@ -44,6 +62,7 @@ class StereoCalibration {
 
  private:
   void start();
+  void draw_board() const;
   void look(const hc::Message& left, const hc::Message& right);
   /// Calibrates; a refused calibration is logged, and more views are taken.
   void try_to_finish();
