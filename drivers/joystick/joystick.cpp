@@ -25,6 +25,14 @@ double as_number(Sint16 value) {
   return std::max(value / 32767.0, -1.0);
 }
 
+/// x and y of a hat, right and down > 0.
+std::array<double, 2> as_axes(Uint8 hat) {
+  const auto side = [hat](Uint8 more, Uint8 less) {
+    return static_cast<double>((hat & more) != 0) - static_cast<double>((hat & less) != 0);
+  };
+  return {side(SDL_HAT_RIGHT, SDL_HAT_LEFT), side(SDL_HAT_DOWN, SDL_HAT_UP)};
+}
+
 template <typename T>
 bool put(std::vector<T>& all, int at, T value) {
   if (at < 0 || static_cast<std::size_t>(at) >= all.size()) return false;
@@ -38,6 +46,7 @@ struct Joystick::Device {
   SDL_GameController* controller = nullptr;  // null for a joystick without a mapping
   SDL_Joystick* joystick = nullptr;
   SDL_JoystickID id = -1;
+  int axes = 0;  // before those of its hats
   DeviceFile file;
 
   ~Device() {
@@ -116,6 +125,14 @@ bool Joystick::update() {
         if (is_ours(event.jaxis.which, false))
           changed |= put(state_.axes, event.jaxis.axis, as_number(event.jaxis.value));
         break;
+      case SDL_JOYHATMOTION:
+        if (is_ours(event.jhat.which, false)) {
+          const auto [x, y] = as_axes(event.jhat.value);
+          const int at = device_->axes + 2 * event.jhat.hat;
+          changed |= put(state_.axes, at, x);
+          changed |= put(state_.axes, at + 1, y);
+        }
+        break;
       case SDL_CONTROLLERBUTTONDOWN:
       case SDL_CONTROLLERBUTTONUP:
         if (is_ours(event.cbutton.which, true) &&
@@ -160,9 +177,9 @@ bool Joystick::attach_any() {
       }
       state_.name = name;
       auto* controller = device->controller;
-      const int axes = controller != nullptr
-                           ? SDL_CONTROLLER_AXIS_MAX
-                           : std::min(SDL_JoystickNumAxes(device->joystick), kMostAxes);
+      const int axes = device->axes =
+          controller != nullptr ? SDL_CONTROLLER_AXIS_MAX
+                                : std::min(SDL_JoystickNumAxes(device->joystick), kMostAxes);
       const int buttons = controller != nullptr
                               ? SDL_CONTROLLER_BUTTON_MAX
                               : std::min(SDL_JoystickNumButtons(device->joystick), kMostButtons);
@@ -178,6 +195,11 @@ bool Joystick::attach_any() {
             controller != nullptr
                 ? SDL_GameControllerGetButton(controller, static_cast<SDL_GameControllerButton>(k))
                 : SDL_JoystickGetButton(device->joystick, k));
+      const int hats = controller != nullptr ? 0 : SDL_JoystickNumHats(device->joystick);
+      for (int k = 0; k < std::min(hats, kMostAxes / 2); ++k) {
+        const auto sides = as_axes(SDL_JoystickGetHat(device->joystick, k));
+        state_.axes.insert(state_.axes.end(), sides.begin(), sides.end());
+      }
       device_ = std::move(device);
       return true;
     }

@@ -16,7 +16,8 @@ namespace hc {
 /// State of axes and buttons. A controller's axes are left stick x, y, right stick x, y (right and
 /// down > 0), left and right trigger (0 … 1); its buttons are those of SDL_GameControllerButton: A,
 /// B, X, Y, back, guide, start, left and right stick, left and right shoulder, up, down, left,
-/// right, … A joystick without a mapping has its own order.
+/// right, … A joystick without a mapping has its own order; its hats, which D-pads are, are two
+/// more axes each, x and y.
 struct JoystickState {
   std::string name;                   ///< empty: none connected
   std::vector<double> axes;           ///< each −1 … 1; those of the last joystick

@@ -32,8 +32,8 @@ class JoystickTest : public testing::Test {
     return true;
   }
   /// Plugs in a virtual controller and returns its SDL handle.
-  SDL_Joystick* plug_in(SDL_JoystickType type = SDL_JOYSTICK_TYPE_GAMECONTROLLER) {
-    const int index = SDL_JoystickAttachVirtual(type, 6, 15, 0);
+  SDL_Joystick* plug_in(SDL_JoystickType type = SDL_JOYSTICK_TYPE_GAMECONTROLLER, int hats = 0) {
+    const int index = SDL_JoystickAttachVirtual(type, 6, 15, hats);
     EXPECT_GE(index, 0) << SDL_GetError();
     EXPECT_TRUE(changes());
     EXPECT_FALSE(joystick->state().name.empty());
@@ -90,6 +90,20 @@ TEST_F(JoystickTest, one_that_goes_lets_everything_go_and_comes_back) {
   pad = plug_in();
   SDL_JoystickSetVirtualAxis(pad, 0, 32767);
   while (joystick->state().axes[0] != 1) ASSERT_TRUE(changes());
+}
+
+TEST_F(JoystickTest, the_hats_of_one_without_a_mapping_are_axes) {
+  SDL_Joystick* pad = plug_in(SDL_JOYSTICK_TYPE_UNKNOWN, 2);
+  ASSERT_EQ(SDL_IsGameController(0), SDL_FALSE);
+  const auto& axes = joystick->state().axes;
+  ASSERT_EQ(axes.size(), 6 + 2 * 2);
+  SDL_JoystickSetVirtualHat(pad, 1, SDL_HAT_LEFTDOWN);
+  while (axes[8] == 0) ASSERT_TRUE(changes());
+  EXPECT_EQ(axes, (std::vector<double>{0, 0, 0, 0, 0, 0, 0, 0, -1, 1}));
+  SDL_JoystickSetVirtualHat(pad, 1, SDL_HAT_CENTERED);
+  SDL_JoystickSetVirtualHat(pad, 0, SDL_HAT_UP);
+  while (axes[7] == 0) ASSERT_TRUE(changes());
+  EXPECT_EQ(axes, (std::vector<double>{0, 0, 0, 0, 0, 0, 0, -1, 0, 0}));
 }
 
 TEST_F(JoystickTest, a_second_one_waits_for_its_turn) {

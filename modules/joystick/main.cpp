@@ -14,8 +14,10 @@ int main(int argc, char** argv) {
   hc::Module module{"joystick", "Sends a game controller's sticks and buttons."};
   auto stick = module.output("stick", hc::table().of(1, 2),
                              "left > 0, down > 0, each -1 to 1, of the left stick");
-  auto axes = module.output("axes", hc::table(),
-                            "raw, -1 to 1: left x, y, right x, y, left and right trigger");
+  auto axes =
+      module.output("axes", hc::table(),
+                    "raw, -1 to 1: left x, y, right x, y, left and right trigger; without a "
+                    "mapping its own, then x, y of each hat");
   auto buttons = module.output("buttons", hc::table<std::uint8_t>(),
                                "1 if pressed: A, B, X, Y, back, guide, start, left and "
                                "right stick, left and right shoulder, up, down, left, right, …");
