@@ -11,6 +11,12 @@ using namespace std::chrono_literals;
 // Heights of capital letters to read a line at [px]: the network's errors differ between them.
 constexpr int kHeights[] = {36, 30, 42};
 
+/// Whether an image was cut out of another around a word or a line.
+bool is_crop(const cv::Mat& image) {
+  constexpr int kQqvga = 120, kQvga = 240;  // rows of the smallest images of cameras
+  return image.rows < kQqvga || (image.rows < kQvga && image.cols >= 2 * image.rows);
+}
+
 /// Reads a line, at several sizes until the letters match the shapes of the glyphs.
 hc::vision::Reading read_line(Recogniser& recogniser, const cv::Mat& image,
                               const hc::vision::TextLine& line, bool upper_case) {
@@ -54,7 +60,23 @@ std::optional<hc::vision::Reading> BlockReader::read_when_due(const cv::Mat& ima
   return read(image, block);
 }
 
+BlockReader::Block BlockReader::find(const cv::Mat& image, double min_score) {
+  if (!is_crop(image))
+    return hc::vision::block_of_best(hc::vision::find_text_lines(image, min_score));
+  constexpr double kLeastContrast = 8;  // standard deviation of grey values
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(hc::vision::mean_of_channels(image), mean, deviation);
+  if (deviation[0] < kLeastContrast) return {};
+  const auto right = static_cast<float>(image.cols), bottom = static_cast<float>(image.rows);
+  hc::vision::TextLine all;
+  all.corners = {cv::Point2f(0, 0), {right, 0}, {right, bottom}, {0, bottom}};
+  all.height = image.rows;
+  return {all};
+}
+
 hc::vision::Reading BlockReader::read(const cv::Mat& image, const Block& block) {
+  if (block.empty()) return {"", 0, {}};
+  if (is_crop(image)) return recogniser_.read_crop(hc::vision::mean_of_channels(image));
   hc::vision::Reading all{"", 1, {}};
   for (const auto& line : block) {
     const auto reading = read_line(recogniser_, image, line, upper_case_);

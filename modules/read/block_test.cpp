@@ -97,7 +97,7 @@ int read(const std::vector<Text>& texts, const Look& look, bool upper_case = tru
   for (const auto* font : kFonts)
     for (const auto& text : texts) {
       const auto image = draw(text, font, look);
-      const auto block = hc::vision::block_of_best(hc::vision::find_text_lines(image));
+      const auto block = BlockReader::find(image, 0.4);
       const auto reading = readers.at(upper_case).read(image, block);
       std::string truth;
       for (const auto& line : text) truth += (truth.empty() ? "" : " ") + line;
@@ -170,9 +170,24 @@ TEST(Block, codes_are_read_letter_by_letter) {
          {"LAV56X", "F90WRA", "T5ZTLA4 PO3FAN0W", "EBQID5I 9AHG5QO8", "3WSH470 RI7E9URP", "5ASDRY1",
           "VW9CXTIJ 2D03I", "IBZJ9JQF", "Y2H0NULX 6Q9KJ0", "XG6PDW9S 2DK", "OIYIWEWP"}) {
       const auto image = draw_strokes(code, noise);
-      const auto block = hc::vision::block_of_best(hc::vision::find_text_lines(image));
+      const auto block = BlockReader::find(image, 0.4);
       EXPECT_EQ(reader->read(image, block).text, code) << noise;
     }
+}
+
+TEST(Block, may_be_a_crop_with_letters_at_its_border) {
+  auto reader = BlockReader::make("eng", false);
+  ASSERT_TRUE(reader) << reader.error().text();
+  for (const auto& [ink, ground] : {std::pair(30, 200), {200, 30}, {140, 100}}) {
+    const auto image = draw({"Stationery"}, kFonts[3], {.ink = ink, .ground = ground});
+    const auto line = hc::vision::find_text_lines(image).at(0).box();
+    const cv::Mat crop = image(cv::Rect(line) + cv::Point(-2, -2) + cv::Size(4, 12)).clone();
+    const auto block = BlockReader::find(crop, 0.4);
+    ASSERT_EQ(block.size(), 1U);
+    EXPECT_EQ(hc::vision::box_of(block).width, static_cast<float>(crop.cols));
+    EXPECT_EQ(reader->read(crop, block).text, "Stationery") << ink;
+  }
+  EXPECT_TRUE(BlockReader::find(cv::Mat(40, 200, CV_8UC3, cv::Scalar(90, 80, 70)), 0.4).empty());
 }
 
 TEST(Block, is_read_when_it_is_whole_and_due_by_the_times_of_images) {
@@ -181,7 +196,7 @@ TEST(Block, is_read_when_it_is_whole_and_due_by_the_times_of_images) {
   auto reader = BlockReader::make("eng", true);
   ASSERT_TRUE(reader) << reader.error().text();
   const auto image = draw_strokes("LAV56X", 2);
-  auto block = hc::vision::block_of_best(hc::vision::find_text_lines(image));
+  auto block = BlockReader::find(image, 0.4);
   ASSERT_FALSE(block.empty());
   const auto is_read = [&](int time, double rate) {
     return reader->read_when_due(image, block, hc::Time(time * 1ms), rate).has_value();

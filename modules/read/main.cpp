@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{
       "read", "Reads lines of letters on an even ground, as on a board.", {.background = true}};
-  auto image = module.input("image", hc::image(), "image with letters");
+  auto image = module.input("image", hc::image(), "image with letters, or a word cropped from one");
   auto text = module.output("text", hc::string().in(hc::Coord::kText),
                             "the text, once it is certain, and when it changes");
   auto confidence =
@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
       [&] { reader.emplace(hc::value_or_end(BlockReader::make(*language, *upper_case))); });
   module.on(image, [&](const hc::Message& message) {
     const cv::Mat pixels = hc::value_or_drop(hc::as_mat(message));
-    const auto block = hc::vision::block_of_best(hc::vision::find_text_lines(pixels, *score));
+    const auto block = BlockReader::find(pixels, *score);
     if (block.empty()) return;
     const auto box = hc::vision::box_of(block);
     target.send({box.x + box.width / 2, box.y + box.height / 2, box.width}, {},

@@ -38,7 +38,6 @@ hc::Result<Recogniser> Recogniser::make(const std::string& language, bool upper_
   if (api.Init(nullptr, language.c_str(), tesseract::OEM_LSTM_ONLY) != 0)
     return hc::Error{hc::Code::Invalid, "Tesseract has no language " + language +
                                             " (package tesseract-ocr-" + language + ")"};
-  api.SetPageSegMode(tesseract::PSM_SINGLE_LINE);
   if (upper_case)
     api.SetVariable("tessedit_char_whitelist", "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-.,!? ");
   else  // look-alikes of ASCII characters
@@ -50,8 +49,18 @@ hc::Result<Recogniser> Recogniser::make(const std::string& language, bool upper_
 }
 
 hc::vision::Reading Recogniser::read(const cv::Mat& line) {
+  return read_by(tesseract::PSM_SINGLE_LINE, line);
+}
+
+hc::vision::Reading Recogniser::read_crop(const cv::Mat& crop) {
+  // As a line, letters that touch the border are often missed.
+  return read_by(tesseract::PSM_SINGLE_WORD, crop);
+}
+
+hc::vision::Reading Recogniser::read_by(int segmentation, const cv::Mat& image) {
   auto& api = engine_->api;
-  api.SetImage(line.data, line.cols, line.rows, 1, static_cast<int>(line.step));
+  api.SetPageSegMode(static_cast<tesseract::PageSegMode>(segmentation));
+  api.SetImage(image.data, image.cols, image.rows, 1, static_cast<int>(image.step));
   api.SetSourceResolution(300);
   const std::unique_ptr<char[]> text(api.GetUTF8Text());
   hc::vision::Reading reading;

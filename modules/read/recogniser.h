@@ -24,8 +24,15 @@ class Recogniser {
   /// Cost: 30 … 150 ms on one core.
   hc::vision::Reading read(const cv::Mat& line);
 
+  /// Reads an image that contains a word, or a few, and hardly anything else.
+  ///
+  /// @param crop  (H, W) u8, dark letters on bright or bright ones on dark.
+  /// Cost: as read().
+  hc::vision::Reading read_crop(const cv::Mat& crop);
+
  private:
   struct Engine;
   explicit Recogniser(std::shared_ptr<Engine> engine) : engine_(std::move(engine)) {}
+  hc::vision::Reading read_by(int segmentation, const cv::Mat& image);
   std::shared_ptr<Engine> engine_;
 };

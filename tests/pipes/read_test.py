@@ -6,9 +6,13 @@ import json
 import os
 import pathlib
 import random
+import sys
 import unittest
 
-from harness import Pipes, WATCHDOG, wait_until
+from harness import BUILD, Pipes, ROOT, WATCHDOG, wait_until
+
+sys.path.insert(0, str(ROOT / "bench"))
+import words  # noqa: E402
 
 ROOM_TIME = 10**18  # of the first image [ns]; any time will do, and so it is the same each time
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
@@ -23,16 +27,6 @@ def random_text(seed):
     if length > 8 and draw.random() < 0.5:
         text[draw.randint(3, length - 4)] = " "
     return "".join(text)
-
-
-def edits(truth, read):
-    """Letters to insert, delete or replace to make one text of the other (Levenshtein)."""
-    row = list(range(len(read) + 1))
-    for i, letter in enumerate(truth, 1):
-        above, row[0] = row[0], i
-        for k, other in enumerate(read, 1):
-            above, row[k] = row[k], min(above + (letter != other), row[k] + 1, row[k - 1] + 1)
-    return row[-1]
 
 
 class Read(Pipes):
@@ -60,7 +54,7 @@ class Read(Pipes):
         for seed in SEEDS:
             truth = random_text(seed)
             found = self.read_board(truth, seed, noise, images=6)
-            wrong += edits(truth, found["text"][0] if found["text"] else "")
+            wrong += words.edits(truth, found["text"][0] if found["text"] else "")
             letters += len(truth)
         print("noise %g: character error rate %.2f %%" % (noise, 100 * wrong / letters))
         return wrong / letters
@@ -127,6 +121,16 @@ class Read(Pipes):
                         )
                         lines = [json.loads(line)["elements"][0] for line in read.splitlines()]
                         self.assertEqual(lines, [text])
+
+    @unittest.skipUnless(words.FOLDER.exists(), "opencv-doc has no photographs of text")
+    def test_words_that_are_cropped_from_photographs_are_read(self):
+        folder = pathlib.Path(self.folder.name)
+        for crops, most in ((words.SEEN, 4), (words.UNSEEN[:10], 6)):
+            pairs = []
+            for image, box, truth in crops:
+                words.crop(BUILD / "bin/hc", image, box, self.path("word.ppm"))
+                pairs.append((truth, words.read_word(BUILD / "bin/hc", folder)))
+            self.assertLess(words.error_rate(pairs), most, pairs)
 
     def test_what_was_said_out_of_focus_is_said_anew_in_focus(self):
         self.draw("LOOK HERE", "DejaVu Sans")
