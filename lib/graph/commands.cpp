@@ -128,6 +128,7 @@ void apply_command(Graph& graph, const GraphCommand& command, Problems& problems
     case Verb::Describe:
     case Verb::Observe:
     case Verb::Feed:
+    case Verb::Notices:
       return;
   }
 }

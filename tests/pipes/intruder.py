@@ -166,6 +166,7 @@ def main():
     for words in (
         ["cat", "head_eyes.left", "--count", "1"],
         ["cat", "%s/workspace.focus" % facts["graph"], "--count", "1"],
+        ["page", "--of", facts["graph"]],
         ["graph", "stop"],
         ["graph", "set", "workspace.rate=1"],
     ):

@@ -9,6 +9,7 @@ import resource
 import ssl
 import unittest
 
+from harness import wait_until
 from page import Page, TASKS
 from web_socket import TEXT, Refused, connect, get
 
@@ -54,6 +55,25 @@ class Access(Page):
                 )
             self.assertEqual(refused.exception.status, status, (path, fields))
 
+    def test_the_url_that_is_valid_now_is_printed_again(self):
+        process = self.serve()
+        url = "http://127.0.0.1:%d/?token=" % self.port
+        self.environment["HC_GRAPH"] = "g.%d" % process.pid
+        self.assertEqual(self.shell("hc page"), "web: page: " + url + self.token + "\n")
+        graph = self.socket("/graph", self.session())
+
+        def next_token():
+            printed = self.shell("hc page --of g.%d" % process.pid)
+            token = printed.split(url)[1].strip()
+            return token != self.token and token
+
+        self.session(wait_until(next_token))
+        self.assertEqual(self.command(graph, "notices")[0], "ok")
+        self.shell("hc graph remove web")
+        self.shell("hc page", 1)
+        self.assertIn("hc graph add web web", self.err)
+        self.stop(process)
+
     def invited(self, graph, right):
         """The cookie of a session that was invited."""
         answer = self.command(graph, "invite " + right)
@@ -79,6 +99,7 @@ class Access(Page):
             "invite operate",
             "record one camera.left",
             "record end",
+            "notices",
             "nonsense",
         )
         for right, cookie, refused in (

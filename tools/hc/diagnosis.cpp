@@ -104,7 +104,10 @@ Needs needs_of(const hc::Plan& plan) {
   needs.modules = plan.modules.size();
   for (const auto& module : plan.modules) {
     const auto& given = module.parameters;
-    if (std::filesystem::path(module.program).filename() == "view" && !given.contains("save"))
+    const auto window = given.find("window");
+    const bool may_have_none =
+        given.contains("save") || (window != given.end() && window->second == "no");
+    if (std::filesystem::path(module.program).filename() == "view" && !may_have_none)
       needs.viewers.push_back(module.name);
     for (const auto& [name, value] : given)
       if (auto need = need_of_parameter(module.name, name, value))

@@ -36,7 +36,7 @@ struct Need {
 /// The resources that a graph needs.
 struct Needs {
   std::size_t modules = 0;
-  std::vector<std::string> viewers;  ///< modules `view` that do not save
+  std::vector<std::string> viewers;  ///< modules `view` that are to show a window
   std::vector<Need> places;
 
   [[nodiscard]] std::vector<std::string> questions() const;

@@ -125,6 +125,14 @@ TEST(Doctor, WhatAPlanNamesOutsideOfItself) {
                                                          "read /focus.mtp", "write logs"}));
 }
 
+TEST(Doctor, AViewWithoutAWindowNeedsNoDisplay) {
+  for (const auto& [name, value] : {std::pair("window", "no"), {"save", "a.png"}}) {
+    auto plan = some_plan();
+    plan.modules.back().parameters[name] = value;
+    EXPECT_TRUE(needs_of(plan).viewers.empty()) << name;
+  }
+}
+
 TEST(Doctor, WhatARunWouldMiss) {
   auto needs = needs_of(some_plan());
   auto facts = good_facts();

@@ -154,10 +154,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(footer);
   using namespace tool;
-  for (const auto add :
-       {add_run,    add_check,    add_doctor, add_frames, add_graph, add_ports,      add_ps,
-        add_top,    add_trace,    add_cat,    add_info,   add_send,  add_record,     add_play,
-        add_replay, add_describe, add_new,    add_key,    add_agent, add_completion, add_manual})
+  for (const auto add : {add_run,  add_check,  add_doctor,     add_frames, add_graph,    add_ports,
+                         add_ps,   add_top,    add_page,       add_trace,  add_cat,      add_info,
+                         add_send, add_record, add_play,       add_replay, add_describe, add_new,
+                         add_key,  add_agent,  add_completion, add_manual})
     add(app);
 
   if (argc == 1) {

@@ -57,6 +57,7 @@ void add_info(CLI::App& app);
 void add_key(CLI::App& app);
 void add_manual(CLI::App& app);
 void add_new(CLI::App& app);
+void add_page(CLI::App& app);
 void add_play(CLI::App& app);
 void add_ports(CLI::App& app);
 void add_ps(CLI::App& app);

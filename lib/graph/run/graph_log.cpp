@@ -5,7 +5,7 @@
 
 namespace hc::internal {
 
-constexpr std::size_t kMostResults = 100;
+constexpr std::size_t kMostResults = 100, kMostNotices = 100;
 
 void GraphLog::print(const LogLine& line) const {
   if (options_.event) options_.event(line);
@@ -23,7 +23,12 @@ void GraphLog::take(LogLine line) {
   if ((is_error || line.level == Level::Result) && results_.size() < kMostResults)
     results_.push_back(line);
   if (options_.with_module_lines || is_error || line.level == Level::Notice) print(line);
-  if (server_ != nullptr && line.level != Level::Notice) server_->log(line);
+  if (line.level == Level::Notice) {
+    notices_.push_back(std::move(line));
+    if (notices_.size() > kMostNotices) notices_.pop_front();
+  } else if (server_ != nullptr) {
+    server_->log(line);
+  }
 }
 
 std::string GraphLog::with_link_names(std::string line) const {

@@ -3,6 +3,7 @@
 // The log of a running graph: for whom runs it, for clients, and the results for its end. Internal
 // to graph.
 
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ class GraphLog {
   /// Results and errors.
   [[nodiscard]] std::vector<LogLine>& results() { return results_; }
 
+  /// The last notices of modules, which only the user who runs the graph may see.
+  [[nodiscard]] const std::deque<LogLine>& notices() const { return notices_; }
+
   /// Replaces a link's URI by "MODULE.PORT → MODULE.PORT".
   [[nodiscard]] std::string with_link_names(std::string line) const;
 
@@ -42,6 +46,7 @@ class GraphLog {
   GraphServer* server_ = nullptr;
   bool is_stopping_ = false;
   std::vector<LogLine> results_;
+  std::deque<LogLine> notices_;
 };
 
 }  // namespace hc::internal

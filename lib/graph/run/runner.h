@@ -46,6 +46,7 @@ class Runner {
   Result<std::string> feed(const std::string& port);
   Result<std::string> open_port(bool is_input, const std::string& port);
   [[nodiscard]] Result<std::string> describe(const std::string& module) const;
+  [[nodiscard]] std::vector<std::string> notices() const;
   void carry_out(const Commands& commands);
   GraphAnswer set_parameters(const Commands& commands);
   void change_to(Plan plan);

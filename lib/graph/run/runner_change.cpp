@@ -7,10 +7,12 @@
 #include <hc/contract/trace.h>
 
 #include <algorithm>
+#include <map>
 
 namespace hc::internal {
 
 GraphAnswer Runner::answer_to(const GraphCommand& question) {
+  if (question.verb == GraphCommand::Verb::Notices) return {true, notices()};
   const auto& word = question.words[0];
   const auto found = question.verb == GraphCommand::Verb::Observe ? observe(word)
                      : question.verb == GraphCommand::Verb::Feed  ? feed(word)
@@ -69,6 +71,16 @@ Result<std::string> Runner::describe(const std::string& module) const {
     known.push_back(each.name);
   }
   return Error{Code::Invalid, "no module \"" + module + "\"" + suggestion(module, known)};
+}
+
+/// The last notice of each module that the graph has.
+std::vector<std::string> Runner::notices() const {
+  std::map<std::string, std::string> last;
+  for (const auto& notice : log_.notices())
+    if (modules_.find(notice.module) != nullptr) last[notice.module] = notice.line();
+  std::vector<std::string> lines;
+  for (const auto& [module, line] : last) lines.push_back(line);
+  return lines;
 }
 
 /// Executes the commands that do not change the plan.

@@ -24,7 +24,7 @@ struct Form {
   std::string_view text;
 };
 
-constexpr std::array<Form, 10> kForms = {{
+constexpr std::array<Form, 11> kForms = {{
     {"set", Verb::Set, 1, true, "set MODULE.PARAMETER=VALUE"},
     {"add", Verb::Add, 2, true, "add MODULE[@HOST] PROGRAM [PARAMETER=VALUE ...]"},
     {"remove", Verb::Remove, 1, false, "remove MODULE"},
@@ -35,6 +35,7 @@ constexpr std::array<Form, 10> kForms = {{
     {"describe", Verb::Describe, 1, false, "describe MODULE"},
     {"observe", Verb::Observe, 1, false, "observe MODULE.PORT"},
     {"feed", Verb::Feed, 1, false, "feed MODULE.PORT"},
+    {"notices", Verb::Notices, 0, false, "notices"},
 }};
 
 std::vector<std::string> split(std::string_view text) {

@@ -20,7 +20,19 @@ struct Assignment {
 Result<Assignment> parse_assignment(std::string_view text);
 
 struct GraphCommand {
-  enum class Verb { Set, Add, Remove, Restart, Link, Unlink, Stop, Describe, Observe, Feed };
+  enum class Verb {
+    Set,
+    Add,
+    Remove,
+    Restart,
+    Link,
+    Unlink,
+    Stop,
+    Describe,
+    Observe,
+    Feed,
+    Notices
+  };
 
   Verb verb = Verb::Stop;
   std::vector<std::string> words;  ///< after the verb; for `set`: module, parameter, value
@@ -31,7 +43,8 @@ struct GraphCommand {
   }
   /// Whether it asks something, which must be alone in a message, and leaves the graph as it is.
   [[nodiscard]] bool is_question() const {
-    return verb == Verb::Describe || verb == Verb::Observe || verb == Verb::Feed;
+    return verb == Verb::Describe || verb == Verb::Observe || verb == Verb::Feed ||
+           verb == Verb::Notices;
   }
 };
 

@@ -16,7 +16,8 @@ TEST(GraphCommand, a_value_may_hold_anything) {
 }
 
 TEST(GraphCommand, questions_change_nothing) {
-  for (const char* line : {"describe camera", "observe camera.left", "feed view.image"}) {
+  for (const char* line :
+       {"describe camera", "observe camera.left", "feed view.image", "notices"}) {
     const auto command = parse_graph_command(line);
     ASSERT_TRUE(command) << command.error().detail;
     EXPECT_TRUE(command->is_question());
