@@ -6,7 +6,7 @@ import json
 import time
 import unittest
 
-from harness import DATA, PYTHON, Pipes, messages_of
+from harness import DATA, PYTHON, Pipes, WATCHDOG, messages_of
 
 # This video is not encoded at a fixed rate: the times of its first images [ms].
 TREE = DATA + "/tree.avi"
@@ -126,6 +126,14 @@ write("right.avi", 10, 3)"""
     def draw(self, script):
         """Runs a script with OpenCV and NumPy."""
         self.shell("%s -c 'import cv2, numpy\n%s'" % (PYTHON, script))
+
+    def test_libraries_print_no_lines_of_their_own(self):
+        self.shell("head -c 5000 $HC_DATA/tree.avi >cut.avi; echo text >text.mp4")
+        for name in ("cut.avi", "text.mp4"):
+            process = self.start("exec hc camera %s --count 1 >/dev/null" % name)
+            _, log = process.communicate(timeout=WATCHDOG)
+            for line in log.decode().splitlines():
+                self.assertRegex(line, "^camera: ")
 
     def test_a_jpeg_that_is_cut_is_refused(self):
         self.shell("head -c 30000 $HC_DATA/aloeL.jpg >cut.jpg; hc camera cut.jpg", status=2)
