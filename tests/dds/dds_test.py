@@ -93,7 +93,8 @@ class Dds(unittest.TestCase):
         for folder in folders:
             folder.mkdir()
             graph = GRAPHS / "fleet_watch.toml"
-            watchers.append(self.start([HC, "run", graph, "--links"], folder, **words))
+            command = [HC, "run", graph, "--links", "--set", "view.save=seen.png"]
+            watchers.append(self.start(command, folder, **words))
         graph = GRAPHS / "fleet_camera.toml"
         count = ["--set", "camera.count=5"]
         camera = self.start([HC, "run", graph, *count], HC_READERS="4", **words)
@@ -101,7 +102,7 @@ class Dds(unittest.TestCase):
         for folder, watcher in zip(folders, watchers):
             out = self.output(watcher).decode()
             self.assertRegex(out, r"ran for .*: 2 modules, 10 messages")
-            self.assertTrue((folder / (robot + ".png")).exists(), out)
+            self.assertTrue((folder / "seen.png").exists(), out)
 
 
 if __name__ == "__main__":

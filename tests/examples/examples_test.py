@@ -238,6 +238,7 @@ class Examples(Pipes):
     def test_programs_of_the_documents(self):
         self.check_module([self.example("README_1")], TABLE)
         self.check_module([self.example("modules_1")], TABLE)
+        self.check_module([self.example("modules_2")], IMAGE)
         listener = [self.example("coming_from_ros2_1")]
         self.check_module(listener, IMAGE, answers=False, own_lines="listener: first pixel")
         # Its answers wait for poses of the head.

@@ -110,6 +110,10 @@ class Check(Pipes):
             out = self.shell("hc check %s/graphs/%s" % (ROOT, graph))
             self.assertRegex(out, r"\.toml: [0-9]+ modules?, [0-9]+ links?: no problems found\n$")
 
+    def test_no_shipped_graph_names_a_file_to_write(self):
+        for graph in (ROOT / "graphs").glob("*.toml"):
+            self.assertNotRegex(graph.read_text(), r"(?m)^[^#]*(\bsave\b|\bfile:)")
+
     def test_a_real_head_has_the_tasks_of_the_simulated_one(self):
         self.environment["HC_HEAD"] = "real_head.toml"
         self.assertIn(": no problems found", self.shell("hc check %s/graphs/head.toml" % ROOT))

@@ -13,7 +13,10 @@ from harness import BUILD, DATA, Pipes, ROOT, WATCHDOG, wait_until
 
 class Graph(Pipes):
     def test_depth_graph_with_opencvs_matcher_is_as_good_as_opencv_called_directly(self):
-        out = self.shell("hc run --links %s/graphs/depth.toml --set depth.matcher=opencv" % ROOT)
+        out = self.shell(
+            "hc run --links %s/graphs/depth.toml --set depth.matcher=opencv"
+            " --set view.save=depth.png" % ROOT
+        )
         said = self.err
         direct = self.shell("%s/tests/depth_direct %s" % (BUILD, DATA))
         self.assertIn("depth_score: " + direct, said)
@@ -35,6 +38,7 @@ class Graph(Pipes):
             return float(re.search(r"bad or hole ([0-9.]+) %", out)[1])
 
         self.assertLess(holes_and_bad("semi_global"), 0.6 * holes_and_bad("opencv"))
+        self.assertEqual(os.listdir(self.folder.name), [])
 
     def test_one_pipe_does_the_same(self):
         out = self.shell(

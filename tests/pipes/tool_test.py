@@ -23,7 +23,7 @@ class Tool(Pipes):
                 "hc run nosuch",
                 1,
                 "hc run: NotFound: nosuch: cannot be read: No such file or "
-                "directory; shipped graphs: clocked_track, depth, fleet_camera, ",
+                "directory; shipped graphs: clocked_track, depth, depth_stereo, fleet_camera, ",
             ),
             (
                 "hc camera --widht 1",

@@ -54,9 +54,10 @@ TEST(Open, OptionsAreChecked) {
             "Invalid: option wait has no value");
   EXPECT_EQ(open_source(*parse_uri("-?wait=3")).error().detail, "- has no option \"wait\" here");
   EXPECT_EQ(open_source(*parse_uri("-?keep=latest")).error().code, Code::Invalid);
-  EXPECT_EQ(
-      open_sink(*parse_uri("-?wait=3")).error().detail,
-      "- has no option \"wait\" here, only \"keep\", \"rate\", \"burst\", \"memory\", \"timeout\"");
+  EXPECT_EQ(open_sink(*parse_uri("-?wait=3")).error().detail,
+            "- has no option \"wait\" here, only \"keep\", \"rate\", \"burst\", \"bandwidth\", "
+            "\"memory\", "
+            "\"timeout\"");
   EXPECT_EQ(open_sink(*parse_uri("-?keep=some")).error().code, Code::Invalid);
   EXPECT_EQ(open_source(*parse_uri("tcp:localhost:1?wait=x")).error().code, Code::Invalid);
   EXPECT_EQ(open_sink(*parse_uri("unix-listen:@x?readers=-1")).error().code, Code::Invalid);
