@@ -173,7 +173,7 @@ bool Module::Inlets::take_each() {
       // To find the newest set, all messages that have arrived are taken.
       const int most = inlet.together() != nullptr && inlet.together()->is_latest ? kMostAtOnce : 1;
       for (int i = 0; i < most; ++i) {
-        if (!inlet.is_open() || is_crowded(inlet) != crowded) break;
+        if (module_.is_done_ || !inlet.is_open() || is_crowded(inlet) != crowded) break;
         if (any) now_.read();  // handling the messages before took time
         if (!take_one(inlet)) break;
         any = true;

@@ -158,6 +158,7 @@ void Module::Loop::read_watched() {
   if (!is_known && now.machine - looked_ < kLookPeriod) return;
   looked_ = now.machine;
   for (auto& watch : module.watches_) {
+    if (module.is_done_) return;
     pollfd watched{watch.descriptor(), POLLIN, 0};
     if (watched.fd < 0) continue;
     if (is_known ? !waits_.was_readable(watched.fd) : ::poll(&watched, 1, 0) <= 0) continue;

@@ -109,7 +109,7 @@ void Module::add_together(const std::vector<std::shared_ptr<internal::InputState
 }
 
 void Module::handle(internal::TogetherState& together) {
-  if (together.set.empty()) return;
+  if (is_done_ || together.set.empty()) return;
   const auto set = std::exchange(together.set, {});
   const Header& latest = std::max_element(set.begin(), set.end(), [](const auto& a, const auto& b) {
                            return a.header.time < b.header.time;

@@ -244,8 +244,8 @@ class Module {
   /// The same until a time of monotonic().
   void wait_until(MonotonicTime time);
 
-  /// Ends the module when the handler that calls this has returned: on_end() is called, the outputs
-  /// end, and run() gives 0.
+  /// Ends the module when the handler that calls this has returned: no other handler is called but
+  /// on_end(), the outputs end, and run() gives 0.
   void stop() { is_done_ = true; }
 
   /// Writes a line to standard error, with the module's name before it.

@@ -469,6 +469,52 @@ TEST(Module, EndsWhenNobodyReadsItAnyMore) {
   reader.join();
 }
 
+TEST(Module, NoHandlerIsCalledAfterStop) {
+  std::vector<std::string> log;
+  Module module{"stopping", "Stops."};
+  const auto stop = [&](const std::string& what) {
+    log.push_back(what);
+    module.stop();
+  };
+  std::vector<std::unique_ptr<Sink>> sinks;
+  std::vector<std::string> words;
+  for (const std::string name : {"one", "other", "left", "right"}) {
+    sinks.push_back(sink_of("inproc:m8-" + name));
+    ASSERT_TRUE(sinks.back()->send(table().message({1.0})));
+    words.insert(words.end(), {"--in", name + "=inproc:m8-" + name});
+  }
+  for (const char* name : {"one", "other"})
+    module.on(module.input(name, table(), ""), [&, name](const auto&) { stop(name); });
+  module.on(together(module.input("left", table(), ""), module.input("right", table(), "")),
+            [&](const auto&, const auto&) { stop("pair"); });
+  module.every(std::chrono::nanoseconds(1), [&] { stop("timer"); });
+  module.on_readable([] { return 0; }, [&] { stop("descriptor"); });
+  module.on_end([&] { log.push_back("end"); });
+  EXPECT_EQ(run(module, words), 0);
+  EXPECT_EQ(log, (std::vector<std::string>{"one", "end"}));
+}
+
+TEST(Module, AGeneratorIsNotCalledAfterStop) {
+  int calls = 0;
+  Module module{"stopping", "Stops."};
+  module.every(std::chrono::nanoseconds(1), [&] { module.stop(); });
+  module.generate([&] { ++calls; });
+  EXPECT_EQ(run(module, {}), 0);
+  EXPECT_EQ(calls, 0);
+}
+
+TEST(Module, TheFirstOfTwoTimersMayStopIt) {
+  int fired = 0;
+  Module module{"stopping", "Stops."};
+  for (int i = 0; i < 2; ++i)
+    module.every(std::chrono::nanoseconds(1), [&] {
+      ++fired;
+      module.stop();
+    });
+  EXPECT_EQ(run(module, {}), 0);
+  EXPECT_EQ(fired, 1);
+}
+
 TEST(Module, ReportsItsCounters) {
   Module module{"counted", "Counts."};
   auto in = module.input("in", table(), "");

@@ -31,6 +31,7 @@ class Module::Schedule::Live final : public Schedule {
     loop_.inlets.receive_focus();
     const bool any = loop_.inlets.take_each();
     loop_.work_between_messages();
+    if (loop_.module.is_done_) return false;
     if (any) return true;
     if (loop_.module.generate_) {
       loop_.generate();
@@ -87,6 +88,7 @@ class Module::Schedule::ByMessages : public Schedule {
     loop_.delivery.expire_focus();
     const Next next = advance();
     loop_.work_between_messages();
+    if (loop_.module.is_done_) return false;
     if (next == Next::Advance) return true;
     if (next == Next::Generate) {
       has_generated_ = true;

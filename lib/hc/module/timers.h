@@ -37,7 +37,11 @@ struct Now {
 class Module::Timers {
  public:
   Timers(Module& module, internal::Now& now, internal::Trace& trace)
-      : timers_(module.timers_), timeouts_(module.timeouts_), now_(now), trace_(trace) {}
+      : module_(module),
+        timers_(module.timers_),
+        timeouts_(module.timeouts_),
+        now_(now),
+        trace_(trace) {}
 
   /// Starts them all.
   void start() {
@@ -56,14 +60,15 @@ class Module::Timers {
   }
 
   void fire_due() {
-    for (std::size_t i = 0; i < timers_.size(); ++i) {
+    for (std::size_t i = 0; i < timers_.size() && !module_.is_done_; ++i) {
       auto& timer = timers_[i];
       const auto due = timer.due();
       if (due > now_.time()) continue;
       fire_traced(i);
       timer.last = std::max(due, now_.time() - timer.period());
     }
-    for (std::size_t i = 0; i < timeouts_.size(); ++i)  // a handler may add some
+    // A handler may add some.
+    for (std::size_t i = 0; i < timeouts_.size() && !module_.is_done_; ++i)
       if (timeouts_[i]->due && *timeouts_[i]->due <= now_.time()) fire_traced(timers_.size() + i);
   }
 
@@ -84,6 +89,7 @@ class Module::Timers {
     now_.read();
   }
 
+  const Module& module_;
   std::vector<Timer>& timers_;
   std::vector<std::shared_ptr<Timeout::State>>& timeouts_;
   internal::Now& now_;
