@@ -106,10 +106,10 @@ class Comparer {
   void compare(const hc::Message& recorded, hc::Time time) {
     begin_ = begin_.value_or(time);
     ++result_.recorded;
-    const auto reach = hc::later(time, tolerance_.time + kDisorder);
+    const auto reach = hc::later(time, kDisorder);
     while (has_more_ && (held_.empty() || std::prev(held_.end())->first <= reach))
       has_more_ = hold_next();
-    drop_until(held_.lower_bound(time - tolerance_.time - kDisorder));
+    drop_until(held_.lower_bound(time - kDisorder));
     count(recorded, time, match(recorded, time));
   }
 
@@ -123,27 +123,22 @@ class Comparer {
  private:
   struct Match {
     bool is_found = false;
-    KeptMessage* nearest = nullptr;  ///< if none is the same
-    std::string difference;          ///< from the nearest
+    KeptMessage* other = nullptr;  ///< the first that is not the same, of those without a match
+    std::string difference;        ///< from it
   };
 
-  /// The same message of the replay, else the nearest in time that has no match yet.
+  /// The same message of the replay, of this time.
   Match match(const hc::Message& recorded, hc::Time time) {
     Match found;
-    std::chrono::nanoseconds distance{0};
-    const auto end = held_.upper_bound(hc::later(time, tolerance_.time));
-    for (auto each = held_.lower_bound(time - tolerance_.time); each != end; ++each) {
+    const auto [begin, end] = held_.equal_range(time);
+    for (auto each = begin; each != end && !found.is_found; ++each) {
       auto& candidate = each->second;
-      // Without a tolerance of time, match one to one; otherwise a message may match several.
-      if (tolerance_.time.count() == 0 && candidate.is_matched) continue;
+      if (candidate.is_matched) continue;
       auto differs = difference(recorded, candidate.message, tolerance_);
       if (differs.empty()) {
         found.is_found = candidate.is_matched = true;
-        if (tolerance_.time.count() == 0) break;
-      } else if (!candidate.is_matched &&
-                 (found.nearest == nullptr || std::chrono::abs(each->first - time) < distance)) {
-        distance = std::chrono::abs(each->first - time);
-        found.nearest = &candidate;
+      } else if (found.other == nullptr) {
+        found.other = &candidate;
         found.difference = std::move(differs);
       }
     }
@@ -153,8 +148,8 @@ class Comparer {
   void count(const hc::Message& recorded, hc::Time time, const Match& match) {
     if (match.is_found) {
       ++result_.same;
-    } else if (match.nearest != nullptr) {
-      match.nearest->is_matched = true;
+    } else if (match.other != nullptr) {
+      match.other->is_matched = true;
       ++result_.differing;
       note(recorded.header, time, match.difference);
     } else if (recorded.header.seq > last_) {

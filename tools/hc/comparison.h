@@ -2,7 +2,6 @@
 #pragma once
 // Compares two recordings of an output. Pure.
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -15,9 +14,8 @@ namespace tool {
 
 /// Allowed differences.
 struct Tolerance {
-  double number = 0;                 ///< difference of numbers
-  std::chrono::nanoseconds time{0};  ///< difference of times, in both directions
-  double share = 1;                  ///< least share of equal messages
+  double number = 0;  ///< difference of numbers
+  double share = 1;   ///< least share of equal messages
 };
 
 /// The first field in which two messages differ, with both values: "width: 4 recorded, 5 replayed".
@@ -41,8 +39,8 @@ struct Comparison {
 /// Returns the next message, uncompressed, in memory that the caller may keep; false at the end.
 using NextMessage = std::function<bool(hc::Message&)>;
 
-/// Compares messages of equal time, or within the tolerance of time; times within a recording may
-/// go back by 1 s at most.
+/// Compares messages of equal time, one to one; times within a recording may go back by 1 s at
+/// most.
 /// @param last  the `seq` of the last recorded message that a replay must reproduce.
 Comparison compare(const NextMessage& recorded, const NextMessage& replayed,
                    const Tolerance& tolerance,

@@ -80,12 +80,9 @@ TEST(Comparison, EqualMessagesOfOneTimeAreCounted) {
   EXPECT_EQ(result.missing, 1U);
 }
 
-TEST(Comparison, ATimeMayDifferWhereThatIsAllowed) {
-  const std::vector<hc::Message> recorded = {number(1s, 1), number(2s, 2)};
-  const std::vector<hc::Message> replayed = {number(1s + 100ns, 1), number(2s - 100ns, 2)};
-  EXPECT_EQ(compare_all(recorded, replayed).missing, 2U);
-  EXPECT_EQ(compare_all(recorded, replayed, {.time = 99ns}).missing, 2U);
-  EXPECT_EQ(compare_all(recorded, replayed, {.time = 100ns}).text(), "2 messages, the same");
+TEST(Comparison, MessagesOfOneTimeAreMatchedInAnyOrder) {
+  const std::vector<hc::Message> recorded = {number(1s, 1), number(1s, 2)};
+  EXPECT_EQ(compare_all(recorded, {number(1s, 2), number(1s, 1)}).same, 2U);
 }
 
 TEST(Comparison, OfTheEndNotAllHasToBeReplayed) {
@@ -112,7 +109,6 @@ TEST(Comparison, DoesNotOverflow) {
   constexpr auto kLatest = hc::Time::max().time_since_epoch();
   const std::vector<hc::Message> all = {number(1ns, 1), number(kLatest, 2)};
   EXPECT_EQ(compare_all(all, all).same, 2U);
-  EXPECT_EQ(compare_all(all, all, {.time = hc::duration(1e99)}).same, 2U);
 }
 
 }  // namespace

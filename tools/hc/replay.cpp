@@ -46,7 +46,7 @@ constexpr std::size_t kStepsAtOnce = 1000;  // per message
 struct ReplayOptions {
   std::string recording, out;
   hc::LoadOptions graph;
-  std::vector<std::string> except, numbers, times, shares;
+  std::vector<std::string> except, numbers, shares;
   bool check = false;
   double timeout = 300;
 };
@@ -126,20 +126,6 @@ RecordedTrace read_trace_of(const GraphRecording& recording, const std::string& 
   return trace;
 }
 
-/// The module's clock at an event: the time of a message sent then with a new time, since that is
-/// when the module read its clock; otherwise the event's moment.
-hc::Time clock_at(const std::vector<hc::TraceEvent>& events, std::size_t at) {
-  const auto& event = events[at];
-  const bool is_handler = event.what == What::Began;
-  for (auto next = is_handler ? at + 1 : at; next < events.size(); ++next) {
-    const auto& other = events[next];
-    if (other.what == What::Ended || (other.what == What::Began && !is_handler)) break;
-    if (other.what == What::Sent && other.time >= event.moment && other.time <= other.moment)
-      return other.time;
-  }
-  return event.moment;
-}
-
 /// The number of events up to the end of the last complete step. The module was stopped during the
 /// rest, or did not report it; the rest is not replayed.
 std::size_t whole_steps(std::span<const hc::TraceEvent> events) {
@@ -148,21 +134,18 @@ std::size_t whole_steps(std::span<const hc::TraceEvent> events) {
   return events.size();
 }
 
-/// The steps to replay: the start, as an event with only a moment, then each handler, and each
-/// change of a parameter.
+/// The steps to replay: the start, as an event with only a moment, then each handler, each change
+/// of a parameter, and each reading of the clock.
 std::vector<hc::TraceEvent> steps_of(const std::vector<hc::TraceEvent>& events) {
   std::vector<hc::TraceEvent> steps;
-  const auto last = whole_steps(events);
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    const bool is_focus = events[i].what == What::Took && events[i].port == kFocus;
-    if (i == 0) steps.push_back({What::Took, "", 0, 0, {}, clock_at(events, i)});
-    const bool is_set = events[i].what == What::Set;
-    if (!is_focus && !is_set && events[i].what != What::Began) continue;
-    if (i >= last) break;
-    auto& step = steps.emplace_back(events[i]);
-    if (is_set) continue;
-    step.what = What::Began;
-    if (!is_focus) step.moment = clock_at(events, i);
+  if (!events.empty()) steps.push_back({What::Took, "", 0, 0, {}, events.front().moment});
+  for (const auto& event : std::span(events).first(whole_steps(events))) {
+    const bool is_focus = event.what == What::Took && event.port == kFocus;
+    if (!is_focus && (event.what == What::Took || event.what == What::Ended ||
+                      event.what == What::Sent || event.what == What::Lost))
+      continue;
+    steps.push_back(event);
+    if (is_focus) steps.back().what = What::Began;
   }
   return steps;
 }
@@ -225,14 +208,13 @@ class Replay {
         recording_(options.recording),
         plan_(load()),
         numbers_("--tolerance", options.numbers, 0),
-        times_("--time-tolerance", options.times, 0),
         shares_("--share", options.shares, 1) {
     std::set<std::string> known;
     for (const auto& module : plan_.modules) {
       known.insert(module.name);
       for (const auto& output : recorded_outputs(module)) known.insert(module.name + "." + output);
     }
-    for (const auto* settings : {&numbers_, &times_, &shares_}) settings->check(known);
+    for (const auto* settings : {&numbers_, &shares_}) settings->check(known);
     for (const auto& name : options.except) check_known(name, known);
   }
   ~Replay() {
@@ -439,8 +421,7 @@ class Replay {
     auto replayed = [&](hc::Message& message) {
       return receive(*made, message, again) && expand(message, again);
     };
-    const Tolerance tolerance{numbers_.of(output), hc::duration(times_.of(output)),
-                              shares_.of(output)};
+    const Tolerance tolerance{numbers_.of(output), shares_.of(output)};
     const auto last = last_.find(output);
     const auto result = last == last_.end() ? compare(recorded, replayed, tolerance)
                                             : compare(recorded, replayed, tolerance, last->second);
@@ -455,7 +436,7 @@ class Replay {
   const GraphRecording recording_;
   hc::Plan plan_;
   fs::path folder_;  // removed at the end, unless given
-  Settings numbers_, times_, shares_;
+  Settings numbers_, shares_;
   std::map<std::string, std::int64_t> last_;  // last `seq` sent in a complete step, by output
 };
 
@@ -479,7 +460,6 @@ void add_replay(CLI::App& app) {
   verb->add_option("--out", options->out, "keep the modules' outputs in this folder");
   many("--except", options->except, "MODULE not to run, or MODULE.PORT not to compare; repeatable");
   many("--tolerance", options->numbers, "[MODULE[.PORT]=]NUMBER by which numbers may differ");
-  many("--time-tolerance", options->times, "[MODULE[.PORT]=]SECONDS by which times may differ");
   many("--share", options->shares, "[MODULE[.PORT]=]SHARE of messages that must be equal");
   verb->add_option("--timeout", options->timeout, "for each module [s]")
       ->check(CLI::Range(0.1, 86400.0));

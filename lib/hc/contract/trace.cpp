@@ -12,8 +12,8 @@
 namespace hc {
 namespace {
 
-constexpr std::array<std::string_view, 6> kWhats = {"took", "began", "ended",
-                                                    "sent", "lost",  "set"};
+constexpr std::array<std::string_view, 7> kWhats = {"took", "began", "ended", "sent",
+                                                    "lost", "set",   "read"};
 
 /// The rest of the row of a parameter.
 std::optional<TraceEvent> parse_set(TraceEvent event, std::string_view row) {

@@ -15,7 +15,7 @@ namespace hc {
 /// The implicit output of every module with `control`.
 inline constexpr const char* kTracePort = "trace";
 
-/// An event in the life of a message, or a change of a parameter.
+/// An event in the life of a message, a change of a parameter, or a reading of the clock.
 struct TraceEvent {
   enum class What {
     Took,   ///< an input took the message from its link
@@ -24,6 +24,7 @@ struct TraceEvent {
     Sent,   ///< an output passed the message to its links
     Lost,   ///< too many events: `seq` of them were not recorded
     Set,    ///< the parameter `port` was given another value
+    Read,   ///< the module read its clock, which was `moment`
   };
   What what = What::Took;
   std::string port;

@@ -18,7 +18,8 @@ TEST(Trace, IsReadAsItWasWritten) {
       {What::Sent, "target", 4, 8, Time::max(), Time::max()},
       {What::Lost, "", 0, 12, Time(), unix_time(2004)},
       {What::Set, "modes", 0, 0, Time(), unix_time(2005), 0, "read=5, track=4"},
-      {What::Set, "file", 0, 0, Time(), unix_time(2006), 0, ""}};
+      {What::Set, "file", 0, 0, Time(), unix_time(2006), 0, ""},
+      {What::Read, "", 0, 0, Time(), unix_time(2007)}};
   const Message message = make_trace(events);
   EXPECT_EQ(rows_of(message)[0], "took image 3 7 1000 2000");
   EXPECT_EQ(rows_of(message)[1], "began - 0 0 0 2001 2");

@@ -192,6 +192,41 @@ TEST_F(ByMessages, ATraceSaysWhenEachMessageAndTimerComes) {
                         "timer at 14"}));
 }
 
+TEST_F(ByMessages, ATraceSaysWhatIsReadFromTheClock) {
+  using enum TraceEvent::What;
+  feed("a", {at(1), at(2), at(3)});
+  const auto moment = [](std::int64_t milliseconds) { return at(milliseconds).header.time; };
+  module.on_start([&] { log.push_back("start" + now()); });
+  module.on(b, [this](const auto&) {});
+  module.every(1h, [&] { log.push_back("timer" + now()); });
+  const auto read = [&](std::int64_t at) { return TraceEvent{Read, "", 0, 0, Time(), moment(at)}; };
+  const auto began = [&](const char* port, std::int64_t at) {
+    return TraceEvent{Began, port, 0, 0, Time(), moment(at)};
+  };
+  // now() reads it three times; of the second message once more, and of the third less often.
+  follow({{Took, "a", 0, 1, Time(), moment(4)},
+          read(5),
+          read(5),
+          read(6),
+          began("a", 7),
+          read(8),
+          read(8),
+          {Sent, "x", 0, 0, Time(), moment(8)},
+          read(9),
+          began("a", 10),
+          read(11),
+          read(11),
+          read(12),
+          read(20),
+          began("a", 13),
+          read(22),
+          began("", 30),
+          read(31),
+          read(31),
+          read(32)});
+  EXPECT_EQ(run(), Log({"start at 6", "a 1 at 9", "a 2 at 12", "a 3 at 22", "timer at 32"}));
+}
+
 TEST_F(ByMessages, ATraceSaysWhenAParameterIsSet) {
   using enum TraceEvent::What;
   const auto factor = module.parameter("factor", 2.0, "", "", {.max = 9});

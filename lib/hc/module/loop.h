@@ -46,6 +46,12 @@ struct Module::Loop {
   void note(TraceEvent::What what, const std::string& port, const Header& header) {
     trace.note(what, port, header);
   }
+  /// The module's clock, for the module.
+  Time read_clock() {
+    if (!now.message_time) return trace.read_clock();
+    schedule_->read_clock();
+    return *now.message_time;
+  }
   void note_set(const std::string& parameter, const std::string& value) {
     trace.note_set(parameter, value);
   }

@@ -200,6 +200,16 @@ void ModuleAccess::report_focus(Module& module, std::int32_t mode, const Stops& 
   if (is_new && module.loop_ != nullptr) module.loop_->report_state();
 }
 
+Time Module::now() const {
+  if (loop_ != nullptr) return loop_->read_clock();
+  return message_time_ ? *message_time_ : clock_.wall();
+}
+
+MonotonicTime Module::monotonic() const {
+  const Time wall = now();  // is traced
+  return message_time_ ? wall.time_since_epoch() : clock_.monotonic();
+}
+
 void Module::keep_rate(double rate) {
   auto period = [&] { return internal::period_of(rate); };
   loop_->pause([&] { return last_period_ ? *last_period_ + period() : MonotonicTime(0); });

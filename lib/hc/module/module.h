@@ -262,12 +262,10 @@ class Module {
 
   /// Wall clock, for messages that begin here: the machine's, or with `--clock messages` that of
   /// the messages which come.
-  [[nodiscard]] Time now() const { return message_time_ ? *message_time_ : clock_.wall(); }
+  [[nodiscard]] Time now() const;
   /// The same clock for periods and time-outs, which never goes back. What is done in the time of
   /// messages goes by this; what talks to a device at the machine's pace has a clock of its own.
-  [[nodiscard]] MonotonicTime monotonic() const {
-    return message_time_ ? message_time_->time_since_epoch() : clock_.monotonic();
-  }
+  [[nodiscard]] MonotonicTime monotonic() const;
 
   /// Number of the system mode in focus; 0: none, or the workspace has not repeated it for 120 ms.
   [[nodiscard]] std::int32_t focus() const { return focus_.current; }

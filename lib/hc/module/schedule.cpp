@@ -180,7 +180,10 @@ class Module::Schedule::Replay final : public ByMessages {
       const auto any = receive(*source, message);
       if (!any) internal::fail(trace.text(), any.error());
       if (!*any) return;
-      for (auto& event : read_trace(message)) events_.push_back(std::move(event));
+      for (auto& event : read_trace(message)) {
+        if (!first_) first_ = event.moment.time_since_epoch();
+        if (is_repeated(event)) events_.push_back(std::move(event));
+      }
     }
   }
 
@@ -188,7 +191,7 @@ class Module::Schedule::Replay final : public ByMessages {
   void begin() override {
     loop_.now.read();
     loop_.serve();
-    if (!events_.empty()) loop_.now.pass_to(events_.front().moment.time_since_epoch());
+    if (first_) loop_.now.pass_to(*first_);
   }
 
   bool turn() override {
@@ -205,7 +208,23 @@ class Module::Schedule::Replay final : public ByMessages {
     ByMessages::pause(due);
   }
 
+  void read_clock() override {
+    if (events_.empty() || events_.front().what != What::Read) return;
+    pass_to_next();
+    events_.pop_front();
+  }
+
  private:
+  using What = TraceEvent::What;
+
+  static bool is_repeated(const TraceEvent& event) {
+    return event.what == What::Began || event.what == What::Set || event.what == What::Read;
+  }
+
+  void pass_to_next() {
+    loop_.now.pass_to(std::max(loop_.now.time(), events_.front().moment.time_since_epoch()));
+  }
+
   /// Repeats an event at its moment, or waits for messages. Events without a cause in this module,
   /// which may have changed since, are skipped.
   void repeat_next() {
@@ -213,13 +232,13 @@ class Module::Schedule::Replay final : public ByMessages {
       loop_.wait(true, MonotonicTime::max());
       return;
     }
+    pass_to_next();
     const TraceEvent event = std::move(events_.front());
     events_.pop_front();
-    const bool is_set = event.what == TraceEvent::What::Set;
-    if (event.what != TraceEvent::What::Began && !is_set) return;
-    loop_.now.pass_to(std::max(loop_.now.time(), event.moment.time_since_epoch()));
+    if (event.what == What::Read) return;
     // A parameter that the module does not have any more has no effect.
-    if (is_set) return static_cast<void>(loop_.remote.set_parameter(event.port, event.value));
+    if (event.what == What::Set)
+      return static_cast<void>(loop_.remote.set_parameter(event.port, event.value));
     loop_.delivery.expire_focus();
     if (!event.port.empty())
       handle_head_of(event);
@@ -239,6 +258,7 @@ class Module::Schedule::Replay final : public ByMessages {
     if (found != nullptr) handle_head(*found);
   }
 
+  std::optional<MonotonicTime> first_;
   std::deque<TraceEvent> events_;
 };
 

@@ -20,6 +20,8 @@ class Module::Schedule {
   virtual bool turn() = 0;
   /// Waits until a time that `due` gives, which may change meanwhile, as commands are obeyed.
   virtual void pause(const std::function<MonotonicTime()>& due) = 0;
+  /// The module reads its clock, which may be set before.
+  virtual void read_clock() {}
 
   /// The schedule by the module's clock. @param trace  to be replayed.
   static std::unique_ptr<Schedule> make(Loop& loop, const std::optional<Uri>& trace);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hc/base/clock.h>
@@ -22,19 +23,25 @@ class Trace {
   void note(TraceEvent::What what, const std::string& port, const Header& header,
             std::int32_t number = 0) {
     if (is_linked()) [[unlikely]]
-      add(what, port, header, number);
+      add({what, port, header.src, header.seq, header.time, clock_.wall(), number});
   }
   /// Notes an event without a message. @param number  of a timer, or TraceEvent::kGenerator.
   void note(TraceEvent::What what, std::int32_t number) {
     if (is_linked()) [[unlikely]]
-      add(what, {}, {}, number);
+      add({what, {}, 0, 0, {}, clock_.wall(), number});
   }
 
   /// Notes that a parameter was given another value.
   void note_set(const std::string& parameter, const std::string& value) {
-    if (!is_linked()) return;
-    add(TraceEvent::What::Set, parameter, {}, 0);
-    if (lost_ == 0) events_.back().value = value;
+    if (is_linked()) add({TraceEvent::What::Set, parameter, 0, 0, {}, clock_.wall(), 0, value});
+  }
+
+  /// The wall clock, of which the reading is noted.
+  Time read_clock() {
+    const Time now = clock_.wall();
+    if (is_linked()) [[unlikely]]
+      add({TraceEvent::What::Read, {}, 0, 0, {}, now});
+    return now;
   }
 
   /// Sends the events when there are many, or twice a second.
@@ -51,10 +58,9 @@ class Trace {
   static constexpr std::size_t kMost = 20'000;  // are kept; further ones are counted
   static constexpr std::chrono::milliseconds kPeriod{500};
 
-  void add(TraceEvent::What what, const std::string& port, const Header& header,
-           std::int32_t number) {
+  void add(TraceEvent event) {
     if (events_.size() < kMost)
-      events_.push_back({what, port, header.src, header.seq, header.time, clock_.wall(), number});
+      events_.push_back(std::move(event));
     else
       ++lost_;
   }

@@ -66,6 +66,33 @@ TEST_F(RunningModule, ReportsWhenItTookHandledAndSent) {
   EXPECT_EQ(events[3].moment - events[2].moment, std::chrono::milliseconds(1));
 }
 
+TEST_F(RunningModule, ReportsWhatItReadFromItsClock) {
+  ManualClock clock;
+  clock.set_wall(unix_time(5));
+  Module module{"reader", "Reads its clock.", {.clock = &clock}};
+  auto in = module.input("in", table(), "");
+  std::vector<Time> read;
+  module.on_start([&] { read.push_back(module.now()); });
+  module.on(in, [&](const Doubles&) {
+    for (int i = 0; i < 2; ++i) {
+      clock.advance(std::chrono::nanoseconds(3));
+      read.push_back(i == 0 ? module.now() : Time(module.monotonic()));
+    }
+  });
+  auto first = sink_of(uri("in"));
+  auto trace = source_of(uri("trace"));
+  ASSERT_TRUE(first->send(at(table().message({1.0}), 1000, 7)));
+  ASSERT_TRUE(first->close());
+  start(module, {"--in=" + uri("in"), "--out=trace=" + uri("trace")});
+  const auto events = events_of(*trace);
+  EXPECT_EQ(join(), 0);
+  EXPECT_EQ(words(events),
+            (std::vector<std::string>{"read - 0 0 0", "took in 0 7 1000", "began in 0 7 1000",
+                                      "read - 0 0 0", "read - 0 0 0", "ended in 0 7 1000"}));
+  EXPECT_EQ(read, (std::vector<Time>{events[0].moment, events[3].moment, unix_time(6)}));
+  EXPECT_EQ(events[4].moment, unix_time(11));
+}
+
 TEST_F(RunningModule, ReportsEachMessageThatIsTakenTogether) {
   Module module{"pair", "Takes two together."};
   auto left = module.input("left", table(), ""), right = module.input("right", table(), "");
