@@ -148,11 +148,11 @@ hc::LoadedGraph load_when_hosts_answer(hc::GraphLoader& loader, const std::strin
     auto loaded = loader.load(nullptr, said.empty() ? -1 : hc::stop_descriptor());
     if (!loaded || !loaded->awaits_hosts || !is_read_again)
       return without_problems("run", std::move(loaded));
+    const int stop = hc::stop_descriptor();  // before the message, after which one may stop it
     if (std::exchange(said, loaded->problems) != loaded->problems)
       for (const auto& line : loaded->problems)
         say(hc::format("hc run: {}; trying again until it answers", line));
-    if (auto waited = hc::wait_readable({}, hc::stop_descriptor(), kPause); !waited)
-      throw Failure(waited.error());
+    if (auto waited = hc::wait_readable({}, stop, kPause); !waited) throw Failure(waited.error());
   }
 }
 
