@@ -10,9 +10,9 @@
 #include <string_view>
 
 #include <graph/held_port.h>
-#include <graph/module_process.h>
 #include <hc/base/clock.h>
 #include <hc/base/format.h>
+#include <hosts/connection_module.h>
 
 namespace hc::hosts {
 namespace {
@@ -20,33 +20,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kGreeting{
-    20000};  // for ssh to connect and the agent to send its first order
 constexpr milliseconds kAnswerTime{30000};
 constexpr std::chrono::seconds kLasting{10};  // a connection of this length resets the backoff
 constexpr int kFirstExchanges = 8;            // of timestamps, or as many as
 constexpr milliseconds kLongestFirst{300};    // take no longer
 constexpr std::size_t kSpares = 4;
-constexpr std::size_t kMaxErrorText = 4096;  // [byte]
-
-/// Quotes a word for a shell, except for a leading ~/.
-std::string quoted(const std::string& word) {
-  std::string text = word.starts_with("~/") ? "~/'" : "'";
-  for (char c : word.substr(text.size() - 1)) text += c == '\'' ? "'\\''" : std::string(1, c);
-  return text + "'";
-}
-
-std::vector<std::string> ssh_command(const GraphHost& host) {
-  // No terminal, prompts, forwarding or sharing; detects a broken network.
-  std::vector<std::string> words = {"ssh", "-T", "-x", "-a"};
-  for (const char* option :
-       {"BatchMode=yes", "ConnectTimeout=10", "ServerAliveInterval=1", "ServerAliveCountMax=3",
-        "ClearAllForwardings=yes", "ControlMaster=no", "RemoteCommand=none", "EscapeChar=none"})
-    words.insert(words.end(), {"-o", option});
-  for (const auto& word : host.ssh) words.push_back(word.value);
-  words.push_back("exec " + quoted(host.program.value) + " agent");
-  return words;
-}
 
 /// An address reported by the agent; empty if links cannot use it, such as a link-local one.
 std::string address_in(const Json& hello, const char* key) {
@@ -61,108 +39,7 @@ Error not_connected() {
   return {Code::Closed, "not connected"};
 }
 
-/// The last non-empty line of a text, with control characters replaced.
-std::string last_line(std::string text) {
-  while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' '))
-    text.pop_back();
-  std::string line = text.substr(text.rfind('\n') + 1);
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
-  return line;
-}
-
-constexpr std::string_view kHowToInstall =
-    R"(; install Hypercolumn there, or set the path of its hc: hc = "PATH")";
-
 }  // namespace
-
-/// Runs the processes of a module on that host.
-class Connection::Module final : public ModuleProcess {
- public:
-  /// @param number  identifies the module in messages.
-  Module(std::shared_ptr<Connection> host, std::int64_t number, std::string manage_uri,
-         ModuleCallbacks callbacks)
-      : host_(std::move(host)),
-        number_(number),
-        manage_uri_(std::move(manage_uri)),
-        callbacks_(std::move(callbacks)) {
-    host_->modules_[number_] = this;
-  }
-  Module(const Module&) = delete;
-  Module& operator=(const Module&) = delete;
-  ~Module() override {
-    send("kill");
-    send("over");
-    host_->modules_.erase(number_);
-  }
-
-  Status start(const std::vector<std::string>& command, const std::string& control_uri) override {
-    if (!host_->state_.is_connected) return Error{Code::Closed, "its host is not connected"};
-    runs_ = true;
-    host_->send({{"what", "start"},
-                 {"number", number_},
-                 {"command", command},
-                 {"manage", manage_uri_},
-                 {"control", control_uri}});
-    return {};
-  }
-  [[nodiscard]] bool runs() const override { return runs_; }
-  void ask_to_end() override { send("end"); }
-  void kill() override { send("kill"); }
-  void check_end() override {}  // the agent reports it
-  void release_names() override { send("over"); }
-  [[nodiscard]] bool is_listening() const override { return is_listening_; }
-  bool send(const Message& command) override {
-    Message forwarded = command;
-    forwarded.header.src = Commands;
-    forwarded.header.dst = static_cast<std::int32_t>(number_);
-    host_->forward(forwarded);
-    return true;
-  }
-  [[nodiscard]] pid_t number() const override { return process_; }
-  Usage usage(bool) override { return usage_; }
-
-  // Events reported by the agent.
-
-  void wrote(std::string_view bytes) const { callbacks_.wrote(bytes); }
-  void reported(Message report) const {
-    report.header.src -= Report;
-    report.header.dst = 0;
-    callbacks_.reported(report);
-  }
-  void obey(const std::string& what, const Json& order) {
-    if (what == "started") process_ = order.at("process");
-    if (what == "listens") {
-      is_listening_ = runs_;
-      for (const auto& command : callbacks_.connected()) send(command);
-    }
-    if (what != "ended") return;
-    if (order.contains("error")) wrote(order.at("error").get<std::string>() + "\n");
-    ended(std::clamp(order.at("status").get<int>(), 0, kHostLost - 1));
-  }
-  void used(const UsageRow& row) {
-    process_ = static_cast<pid_t>(row[1]);
-    usage_ = {std::chrono::nanoseconds(row[2]), static_cast<std::uint64_t>(row[3]), row[4] != 0};
-  }
-  void ended(int status) {
-    if (!std::exchange(runs_, false)) return;
-    is_listening_ = false;
-    process_ = 0;
-    usage_ = {};
-    callbacks_.ended(status);
-  }
-
- private:
-  void send(const char* what) const { host_->send({{"what", what}, {"number", number_}}); }
-
-  const std::shared_ptr<Connection> host_;
-  const std::int64_t number_;
-  const std::string manage_uri_;
-  const ModuleCallbacks callbacks_;
-  bool runs_ = false, is_listening_ = false;
-  pid_t process_ = 0;
-  Usage usage_;
-};
 
 bool Connection::is_of(const GraphHost& declared) const {
   auto words = [](const GraphHost& host) {
@@ -175,7 +52,7 @@ bool Connection::is_of(const GraphHost& declared) const {
 
 void Connection::close() {
   is_closed_ = true;
-  if (conversation_) lose("closed");
+  if (ssh_) lose("closed");
   again_.reset();
   disconnect();
 }
@@ -273,29 +150,11 @@ std::shared_ptr<void> Connection::read_in_place(const std::string& reader_uri) {
 
 void Connection::connect() {
   disconnect();
-  is_greeted_ = false;
-  error_text_.clear();
-  auto ssh = Process::start(ssh_command(parts_.declared), Process::Capture::Both);
+  auto ssh = Ssh::start(loop_, parts_.declared,
+                        {[this](const Message& message) { take(message); },
+                         [this](const std::string& why) { lose(why); }});
   if (!ssh) return lose(ssh.error().detail);
-  ssh_.emplace(std::move(*ssh));
-  auto errors = loop_.watch(ssh_->errors(), EPOLLIN, [this](auto) { read_ssh_errors(); });
-  if (!errors) return lose(errors.error().detail);
-  ssh_errors_ = std::move(*errors);
-  auto conversation = Conversation::make(loop_, ssh_->output(), ssh_->input(), kGreeting,
-                                         {[this](const Message& message) { take(message); },
-                                          [this](const std::string& why) { lose(why); }});
-  if (!conversation) return lose(conversation.error().detail);
-  conversation_ = std::move(*conversation);
-}
-
-/// Keeps the end of ssh's error output, which says why it cannot connect.
-void Connection::read_ssh_errors() {
-  std::array<char, kMaxErrorText> piece;
-  const ssize_t size = ::read(ssh_->errors(), piece.data(), piece.size());
-  if (size == 0) ssh_errors_.reset();
-  if (size <= 0) return;
-  error_text_.append(piece.data(), static_cast<std::size_t>(size));
-  if (error_text_.size() > kMaxErrorText) error_text_.erase(0, error_text_.size() - kMaxErrorText);
+  ssh_ = std::move(*ssh);
 }
 
 void Connection::take(const Message& message) {
@@ -334,8 +193,7 @@ void Connection::obey(const Json& order, MonotonicTime received) try {
 
 /// Handles the first message of the agent.
 void Connection::greet(const Json& hello) {
-  is_greeted_ = true;
-  error_text_.clear();  // a banner
+  ssh_->greeted();
   const std::string version = hello.value("version", "");
   if (version != parts_.version)
     return lose("it has hc " + version + ", but this is hc " + parts_.version +
@@ -355,7 +213,7 @@ void Connection::greet(const Json& hello) {
 /// Handles an answer to a heartbeat. The connection counts as made after the first few, sent back
 /// to back, so that its clock is known even if one of them was late.
 void Connection::take_times(const Moments& times, MonotonicTime received) {
-  if (!is_greeted_) return;
+  if (!ssh_->is_greeted()) return;
   using std::chrono::nanoseconds;
   const nanoseconds asked(times[0]), taken(times[1]), answered(times[2]);
   const auto there = std::clamp(nanoseconds(times[3]), -kMostApart, kMostApart);
@@ -415,42 +273,15 @@ void Connection::ask_time() {
 }
 
 void Connection::send_heartbeat() {
-  if (!conversation_) return;
+  if (!ssh_) return;
   ask_time();
   heartbeat_ = loop_.call_at(Clock::now() + kHeartbeat, [this] { send_heartbeat(); });
-}
-
-/// Why the connection is lost: the error message of ssh, or else what was observed here.
-std::string Connection::reason_of(const std::string& observed) const {
-  std::string ssh_error = last_line(error_text_);
-  auto contains = [&](std::string_view words) {
-    return ssh_error.find(words) != std::string::npos;
-  };
-  const bool has_ssh = !ssh_error.starts_with("exec(");  // otherwise ssh is missing here
-  if (!is_greeted_ && has_ssh && (contains("not found") || contains("No such file")))
-    return ssh_error + std::string(kHowToInstall);
-  if (!ssh_error.empty()) return ssh_error;
-  const bool is_noise = !is_greeted_ && observed.starts_with(Conversation::kNoMessage);
-  return observed + (is_noise ? "; start-up files of the shell there, such as ~/.bashrc, must "
-                                "print nothing"
-                              : "");
-}
-
-/// Whether the host is not there, for now at least.
-bool Connection::is_out_of_reach() const {
-  constexpr std::array<std::string_view, 6> kWords = {
-      "No route to host",       "Connection refused", "timed out",
-      "Network is unreachable", "Host is down",       "Could not resolve hostname"};
-  const auto line = last_line(error_text_);
-  return !is_greeted_ && line.starts_with("ssh: ") &&
-         std::ranges::any_of(kWords, [&](auto words) { return line.find(words) != line.npos; });
 }
 
 /// Ends all modules and questions after the connection was lost or could not be made. Reconnects,
 /// unless it was the first attempt.
 void Connection::lose(const std::string& why) {
-  if (ssh_) read_ssh_errors();
-  const std::string reason = reason_of(why);
+  const std::string reason = ssh_ ? ssh_->reason_of(why) : why;
   const bool was_connected = std::exchange(state_.is_connected, false);
   state_.detail = reason;
   state_.offset = state_.error = state_.drift = state_.latency = {};
@@ -461,15 +292,16 @@ void Connection::lose(const std::string& why) {
       module->second->ended(kHostLost);
   for (const auto& [id, answered] : std::exchange(questions_, {})) answered(not_connected());
   heartbeat_.reset();
-  // The conversation may be the caller, so it is destroyed later.
-  if (conversation_) conversation_->close();
+  const bool is_out_of_reach = ssh_ && ssh_->is_out_of_reach();
+  // It may be the caller, so it is destroyed later.
+  if (ssh_) ssh_->close();
   again_ = loop_.call_at(Clock::now(), [this] {
     disconnect();
     if (!is_closed_) again_ = loop_.call_at(Clock::now() + pause_.next(), [this] { connect(); });
   });
   if (const auto opened = std::exchange(opened_, {})) {
     is_closed_ = true;
-    return opened(Error{is_out_of_reach() ? Code::NotFound : Code::Closed, reason});
+    return opened(Error{is_out_of_reach ? Code::NotFound : Code::Closed, reason});
   }
   if (is_closed_) return;
   if (was_connected && Clock::now() - connected_ > kLasting) pause_.reset();
@@ -479,8 +311,6 @@ void Connection::lose(const std::string& why) {
 }
 
 void Connection::disconnect() {
-  conversation_.reset();
-  ssh_errors_.reset();
   heartbeat_.reset();
   ssh_.reset();
 }

@@ -11,11 +11,10 @@
 #include <vector>
 
 #include <graph/hosts.h>
-#include <graph/process.h>
 #include <hc/base/backoff.h>
 #include <hosts/answer.h>
 #include <hosts/clock_estimate.h>
-#include <hosts/conversation.h>
+#include <hosts/ssh.h>
 
 namespace hc::hosts {
 
@@ -70,7 +69,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   /// Sends to the agent, if connected.
   void send(const Json& order) { forward(make_order(order)); }
   void forward(const Message& message) {
-    if (conversation_) conversation_->send(message);
+    if (ssh_) ssh_->send(message);
   }
   void ask(Json question, Answered answered);
   /// Reserves a port there; number 0: any.
@@ -79,7 +78,6 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   std::shared_ptr<const HeldPort> held(std::uint16_t number, bool of_all);
 
   void connect();
-  void read_ssh_errors();
   void take(const Message& message);
   void obey(const Json& order, MonotonicTime received);
   void greet(const Json& hello);
@@ -90,8 +88,6 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   void ask_time();
   void send_heartbeat();
   void lose(const std::string& why);
-  [[nodiscard]] bool is_out_of_reach() const;
-  [[nodiscard]] std::string reason_of(const std::string& observed) const;
   void disconnect();
 
   Loop& loop_;
@@ -102,11 +98,8 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   HostPlace place_;
 
   // While ssh runs:
-  std::optional<Process> ssh_;
-  std::unique_ptr<Conversation> conversation_;
-  Loop::Handle ssh_errors_, heartbeat_, again_;
-  std::string error_text_;  // end of ssh's standard error
-  bool is_greeted_ = false;
+  std::unique_ptr<Ssh> ssh_;
+  Loop::Handle heartbeat_, again_;
   Backoff pause_{std::chrono::milliseconds(100), std::chrono::seconds(5)};
   std::chrono::steady_clock::time_point connected_, greeted_;
   int first_exchanges_ = 0;  // of timestamps, before it counts as connected
