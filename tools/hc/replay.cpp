@@ -12,8 +12,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <span>
-#include <tuple>
 
 #include <graph/process.h>
 #include <hc/base/clock.h>
@@ -23,7 +21,6 @@
 #include <hc/base/uri.h>
 #include <hc/compress/compress.h>
 #include <hc/compress/convert.h>
-#include <hc/contract/trace.h>
 #include <hc/os/program.h>
 #include <hc/os/wait_readable.h>
 
@@ -31,17 +28,14 @@
 #include "comparison.h"
 #include "graph.h"
 #include "graph_recording.h"
+#include "replay_inputs.h"
 #include "verbs.h"
 
 namespace tool {
 namespace {
 
 namespace fs = std::filesystem;
-using Key = std::tuple<std::int32_t, std::int64_t, hc::Time>;  // src, seq, time
 using What = hc::TraceEvent::What;
-
-constexpr const char* kFocus = "focus";
-constexpr std::size_t kStepsAtOnce = 1000;  // per message
 
 struct ReplayOptions {
   std::string recording, out;
@@ -101,106 +95,6 @@ class Settings {
   std::map<std::string, double> values_;
 };
 
-/// The recorded trace of a module.
-struct RecordedTrace {
-  std::vector<hc::TraceEvent> events;  ///< none: missing, or events or messages were dropped
-  bool was_restarted = false;
-};
-
-RecordedTrace read_trace_of(const GraphRecording& recording, const std::string& module) {
-  const auto output = module + "." + hc::kTracePort;
-  if (!recording.has(output)) return {};
-  RecordedTrace trace;
-  bool is_whole = true;
-  auto source = recording.open(output);
-  hc::Message message;
-  for (std::int64_t seq = 0; recording.receive(*source, message, output); ++seq) {
-    trace.was_restarted |= message.header.seq < seq;
-    is_whole = is_whole && message.header.seq == seq;
-    for (auto& event : hc::read_trace(message)) {
-      is_whole = is_whole && event.what != What::Lost;
-      trace.events.push_back(std::move(event));
-    }
-  }
-  if (!is_whole) trace.events.clear();
-  return trace;
-}
-
-/// The number of events up to the end of the last complete step. The module was stopped during the
-/// rest, or did not report it; the rest is not replayed.
-std::size_t whole_steps(std::span<const hc::TraceEvent> events) {
-  while (!events.empty() && events.back().what != What::Ended)
-    events = events.first(events.size() - 1);
-  return events.size();
-}
-
-/// The steps to replay: the start, as an event with only a moment, then each handler, each change
-/// of a parameter, and each reading of the clock.
-std::vector<hc::TraceEvent> steps_of(const std::vector<hc::TraceEvent>& events) {
-  std::vector<hc::TraceEvent> steps;
-  if (!events.empty()) steps.push_back({What::Took, "", 0, 0, {}, events.front().moment});
-  for (const auto& event : std::span(events).first(whole_steps(events))) {
-    const bool is_focus = event.what == What::Took && event.port == kFocus;
-    if (!is_focus && (event.what == What::Took || event.what == What::Ended ||
-                      event.what == What::Sent || event.what == What::Lost))
-      continue;
-    steps.push_back(event);
-    if (is_focus) steps.back().what = What::Began;
-  }
-  return steps;
-}
-
-/// A link by which recorded messages go to a module again.
-struct Feed {
-  std::string output;         ///< their sender
-  std::string port;           ///< the module's input
-  std::int32_t number = 0;    ///< among the links of the port
-  hc::Conversion conversion;  ///< what the link does to them, which the recording is without
-  bool is_adapted = false;    ///< to a bandwidth: in what form is unknown
-};
-
-/// Writes the messages of a link whose headers are `is_wanted` to a file, as the link sends them.
-template <typename IsWanted>
-void write_messages(const GraphRecording& recording, const Feed& feed, const fs::path& to,
-                    const IsWanted& is_wanted) {
-  const auto& output = feed.output;
-  auto source = recording.open(output);
-  auto sink = open_file_sink(to);
-  hc::Message message;
-  while (recording.receive(*source, message, output))
-    if (is_wanted(message.header) &&
-        !send(*sink, value_or_fail(hc::convert(message, feed.conversion), output), to))
-      return;
-  if (auto closed = sink->close(); !closed) throw Failure(to.string(), closed.error());
-}
-
-/// Writes the handled messages of a link to a file; drops steps whose message was not recorded.
-void write_handled(const GraphRecording& recording, const Feed& feed,
-                   std::vector<hc::TraceEvent>& steps, const fs::path& to) {
-  const auto is_of_link = [&](const auto& step) {
-    return step.what == What::Began && step.port == feed.port && step.number == feed.number;
-  };
-  std::set<Key> handled, found;
-  for (const auto& step : steps)
-    if (is_of_link(step)) handled.insert({step.src, step.seq, step.time});
-  write_messages(recording, feed, to, [&](const hc::Header& header) {
-    const Key key{header.src, header.seq, header.time};
-    return handled.contains(key) && found.insert(key).second;
-  });
-  std::erase_if(steps, [&](const auto& step) {
-    return is_of_link(step) && !found.contains({step.src, step.seq, step.time});
-  });
-}
-
-void write_steps(const std::vector<hc::TraceEvent>& steps, const fs::path& file) {
-  auto sink = open_file_sink(file);
-  for (std::size_t i = 0; i < steps.size(); i += kStepsAtOnce) {
-    const auto some = std::span(steps).subspan(i, std::min(kStepsAtOnce, steps.size() - i));
-    if (!send(*sink, hc::make_trace(some), file)) return;
-  }
-  if (auto closed = sink->close(); !closed) throw Failure(file.string(), closed.error());
-}
-
 class Replay {
  public:
   explicit Replay(const ReplayOptions& options)
@@ -229,7 +123,7 @@ class Replay {
     std::size_t differing = 0, compared = 0;
     for (const auto& module : plan_.modules) {
       if (hc::stop_requested()) throw Failure(0);
-      const auto trace = read_trace_of(recording_, module.name);
+      const auto trace = RecordedTrace::read(recording_, module.name);
       const auto reason = why_not(module, trace);
       if (!reason.empty()) {
         print(hc::format("{}: not run: {}\n", module.name, reason));
@@ -339,13 +233,12 @@ class Replay {
     std::vector<std::string> words = {module.program};
     words.insert(words.end(), module.options.begin(), module.options.end());
     for (const auto& [key, value] : module.parameters) words.push_back("--" + key + "=" + value);
-    const auto& events = trace.events;
-    auto steps = steps_of(events);
+    auto steps = trace.steps();
     const bool is_in_their_time = is_in_time_of_messages(module);
     const bool is_known = !steps.empty() && !is_in_their_time;
     if (is_known)
       for (const auto& port : recorded_outputs(module)) last_[module.name + "." + port] = -1;
-    for (const auto& event : std::span(events).first(whole_steps(events)))
+    for (const auto& event : trace.whole())
       if (event.what == What::Sent) last_[module.name + "." + event.port] = event.seq;
     const auto add = [&](const char* option, const hc::PlannedEnd& end, const fs::path& file) {
       const std::string link = end.port + "=file:" + file.string();
@@ -357,9 +250,9 @@ class Replay {
       const auto feed = feed_of(module, end);
       const auto file = folder_ / hc::format("{}.{}.{}.in", module.name, end.port, feed.number);
       if (is_known)
-        write_handled(recording_, feed, steps, file);
+        feed.write_handled(recording_, steps, file);
       else
-        write_messages(recording_, feed, file, [](const hc::Header&) { return true; });
+        feed.write_all(recording_, file);
       add("--in", end, file);
     }
     for (const auto& port : recorded_outputs(module)) {

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "replay_inputs.h"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "common.h"
+
+namespace tool {
+namespace {
+
+namespace fs = std::filesystem;
+using Key = std::tuple<std::int32_t, std::int64_t, hc::Time>;  // src, seq, time
+using What = hc::TraceEvent::What;
+
+constexpr std::size_t kStepsAtOnce = 1000;  // per message
+
+bool is_step(const hc::TraceEvent& event) {
+  if (event.what == What::Took) return event.port == kFocus;
+  return event.what == What::Began || event.what == What::Set || event.what == What::Read;
+}
+
+}  // namespace
+
+RecordedTrace RecordedTrace::read(const GraphRecording& recording, const std::string& module) {
+  const auto output = module + "." + hc::kTracePort;
+  if (!recording.has(output)) return {};
+  RecordedTrace trace;
+  bool is_whole = true;
+  auto source = recording.open(output);
+  hc::Message message;
+  for (std::int64_t seq = 0; recording.receive(*source, message, output); ++seq) {
+    trace.was_restarted |= message.header.seq < seq;
+    is_whole = is_whole && message.header.seq == seq;
+    for (auto& event : hc::read_trace(message)) {
+      is_whole = is_whole && event.what != What::Lost;
+      trace.events.push_back(std::move(event));
+    }
+  }
+  if (!is_whole) trace.events.clear();
+  return trace;
+}
+
+std::span<const hc::TraceEvent> RecordedTrace::whole() const {
+  const auto end = std::find_if(events.rbegin(), events.rend(),
+                                [](const auto& event) { return event.what == What::Ended; });
+  return {events.begin(), end.base()};
+}
+
+std::vector<hc::TraceEvent> RecordedTrace::steps() const {
+  std::vector<hc::TraceEvent> steps;
+  if (!events.empty()) steps.push_back({What::Took, "", 0, 0, {}, events.front().moment});
+  std::ranges::copy_if(whole(), std::back_inserter(steps), is_step);
+  for (auto& step : steps)
+    if (step.what == What::Took && !step.port.empty()) step.what = What::Began;  // the focus
+  return steps;
+}
+
+template <typename IsWanted>
+void Feed::write(const GraphRecording& recording, const fs::path& to,
+                 const IsWanted& is_wanted) const {
+  auto source = recording.open(output);
+  auto sink = open_file_sink(to);
+  hc::Message message;
+  while (recording.receive(*source, message, output))
+    if (is_wanted(message.header) &&
+        !send(*sink, value_or_fail(hc::convert(message, conversion), output), to))
+      return;
+  if (auto closed = sink->close(); !closed) throw Failure(to.string(), closed.error());
+}
+
+void Feed::write_all(const GraphRecording& recording, const fs::path& to) const {
+  write(recording, to, [](const hc::Header&) { return true; });
+}
+
+void Feed::write_handled(const GraphRecording& recording, std::vector<hc::TraceEvent>& steps,
+                         const fs::path& to) const {
+  const auto is_of_link = [&](const auto& step) {
+    return step.what == What::Began && step.port == port && step.number == number;
+  };
+  std::set<Key> handled, found;
+  for (const auto& step : steps)
+    if (is_of_link(step)) handled.insert({step.src, step.seq, step.time});
+  write(recording, to, [&](const hc::Header& header) {
+    const Key key{header.src, header.seq, header.time};
+    return handled.contains(key) && found.insert(key).second;
+  });
+  std::erase_if(steps, [&](const auto& step) {
+    return is_of_link(step) && !found.contains({step.src, step.seq, step.time});
+  });
+}
+
+void write_steps(const std::vector<hc::TraceEvent>& steps, const fs::path& to) {
+  auto sink = open_file_sink(to);
+  for (std::size_t i = 0; i < steps.size(); i += kStepsAtOnce) {
+    const auto some = std::span(steps).subspan(i, std::min(kStepsAtOnce, steps.size() - i));
+    if (!send(*sink, hc::make_trace(some), to)) return;
+  }
+  if (auto closed = sink->close(); !closed) throw Failure(to.string(), closed.error());
+}
+
+}  // namespace tool
