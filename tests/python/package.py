@@ -15,7 +15,18 @@ sys.path.insert(0, str(BUILD / "python"))
 
 import hypercolumn as hc  # noqa: E402
 
-__all__ = ["BUILD", "Package", "ROOT", "WATCHDOG", "hc", "mappings", "wait_until"]
+__all__ = [
+    "BUILD",
+    "ECHO",
+    "IN",
+    "Modules",
+    "Package",
+    "ROOT",
+    "WATCHDOG",
+    "hc",
+    "mappings",
+    "wait_until",
+]
 
 PUBLISHER = """
 import hypercolumn as hc
@@ -80,3 +91,28 @@ class Package(Pipes):
         stream = hc.open(uri + "?wait=60")
         self.addCleanup(stream.close)
         return process, stream
+
+
+ECHO = """
+import hypercolumn as hc
+module = hc.Module("echo", "Sends what comes.")
+numbers = module.input("numbers", hc.table(), "any numbers")
+out = module.output("out", hc.%s, "what it is made into")
+
+@module.on(numbers)
+def echo(message):
+    %s
+
+module.run()
+"""
+IN = b"1 7 0 0 8 55 120190 3 0 3 1\n1 2.5 -3\n"
+
+
+class Modules(Package):
+    def run_module(self, text, arguments="", data=b"", status=0):
+        program = self.write_module("module", text)
+        out = self.shell(program + " " + arguments, status, data)
+        return out
+
+    def echo(self, kind, body, arguments="", data=IN, status=0):
+        return self.run_module(ECHO % (kind, body), arguments, data, status)
