@@ -26,7 +26,7 @@ ALLOWED = {
     "vision": "base os frames",
     "gaze": "base",
     "graphics": "base compress",
-    "room": "base graphics",
+    "room": "base graphics vision",
     "sound": "base os",
     "web": "base os mtp link client tls",
     "ros": "base mtp contract compress frames",

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <vector>
 
-#include <opencv2/aruco.hpp>
+#include <vision/marker_finder.h>
 #include <opencv2/freetype.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -120,24 +120,12 @@ cv::Mat paint_poster(int width, int height, std::uint64_t seed) {
 }
 
 cv::Mat paint_tag(const std::string& dictionary, int id) {
-  const auto words = cv::aruco::getPredefinedDictionary(
-      dictionary == "aruco" ? cv::aruco::DICT_6X6_250 : cv::aruco::DICT_APRILTAG_36h11);
-  // cv::Ptr in OpenCV 4.6, a value in 4.7 and later.
-  const auto& all = [](const auto& each) -> const cv::aruco::Dictionary& {
-    if constexpr (requires { each.get(); })
-      return *each;
-    else
-      return each;
-  }(words);
-  const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(
-      all.bytesList.rowRange(id, id + 1), all.markerSize);
-  // The bits, a black border of one cell, and a white one.
-  cv::Mat cells(all.markerSize + 4, all.markerSize + 4, CV_8U, cv::Scalar(255));
-  cells(cv::Rect(1, 1, all.markerSize + 2, all.markerSize + 2)) = cv::Scalar(0);
-  cells(cv::Rect(2, 2, all.markerSize, all.markerSize)) = bits * 255;
-  // OpenCV's AprilTags are upside down relative to the AprilTag library.
-  if (dictionary == "apriltag") cv::rotate(cells, cells, cv::ROTATE_180);
-  cv::Mat image;
+  const cv::Mat inside = dictionary == "aruco"
+                             ? vision::ArucoFinder::make("6X6_250").value().cells(id)
+                             : vision::apriltag_cells(id);
+  cv::Mat cells, image;
+  cv::copyMakeBorder(inside, cells, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+  cv::copyMakeBorder(cells, cells, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(255));
   cv::resize(cells, image, {}, kCell, kCell, cv::INTER_NEAREST);
   cv::cvtColor(image, image, cv::COLOR_GRAY2RGB);
   return image;
