@@ -29,14 +29,14 @@ const char* advice_for(BoardKind kind) {
 
 }  // namespace
 
-hc::vision::Board StereoCalibrationParameters::its_board() const {
-  hc::vision::Board its{static_cast<int>(*columns), static_cast<int>(*rows), *square};
-  its.kind = *board == "charuco"     ? BoardKind::Charuco
-             : *board == "aprilgrid" ? BoardKind::AprilGrid
-                                     : BoardKind::Chessboard;
-  its.marker = *marker_size;
-  its.spacing = *tag_spacing;
-  return its;
+hc::vision::Board StereoCalibrationParameters::sought_board() const {
+  hc::vision::Board sought{static_cast<int>(*columns), static_cast<int>(*rows), *square};
+  sought.kind = *board == "charuco"     ? BoardKind::Charuco
+                : *board == "aprilgrid" ? BoardKind::AprilGrid
+                                        : BoardKind::Chessboard;
+  sought.marker = *marker_size;
+  sought.spacing = *tag_spacing;
+  return sought;
 }
 
 StereoCalibration::StereoCalibration(hc::Module& module) : module_(module) {
@@ -51,7 +51,7 @@ StereoCalibration::StereoCalibration(hc::Module& module) : module_(module) {
 void StereoCalibration::start() {
   if (!parameters_.print->empty()) return draw_board();
   views_.emplace(hc::value_or_end(hc::vision::BoardViews::make(
-      parameters_.its_board(), static_cast<std::size_t>(*parameters_.views),
+      parameters_.sought_board(), static_cast<std::size_t>(*parameters_.views),
       *parameters_.dictionary)));
   const auto& file = *parameters_.calibration_file;
   // A file that is not a calibration is not to be overwritten after all views have been taken.
@@ -67,7 +67,7 @@ void StereoCalibration::start() {
 void StereoCalibration::draw_board() const {
   const auto& file = *parameters_.print;
   const auto print =
-      hc::value_or_end(hc::vision::print_of(parameters_.its_board(), *parameters_.dictionary));
+      hc::value_or_end(hc::vision::print_of(parameters_.sought_board(), *parameters_.dictionary));
   hc::succeed_or_end(hc::replace_file(file, hc::vision::pdf_of(print)));
   module_.log(hc::format("{}: {:.0f} x {:.0f} mm, to be printed without scaling", file,
                          1000 * print.paper.width, 1000 * print.paper.height));

@@ -52,7 +52,7 @@ struct StereoCalibrationParameters {
       "of the images' width: minimum distance of the corners from those of any other view's",
       {.min = 0, .max = 1});
 
-  [[nodiscard]] hc::vision::Board its_board() const;
+  [[nodiscard]] hc::vision::Board sought_board() const;
 };
 
 class StereoCalibration {
