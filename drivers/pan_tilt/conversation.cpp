@@ -181,7 +181,8 @@ bool Conversation::awaits(Awaits answer) const {
 
 void Conversation::look(MonotonicTime now) {
   // The previous tilt may still be on the line to us; the other direction is idle.
-  if (phase_ != Phase::Ready || awaits(Awaits::Pan)) return;
+  is_look_due_ = awaits(Awaits::Pan);
+  if (phase_ != Phase::Ready || is_look_due_) return;
   say(now, pan_tilt::command(kAskPan), {Awaits::Pan});
   looks_.push_back({now, written_});
   say(now, pan_tilt::command(kAskTilt), {Awaits::Tilt});
@@ -268,7 +269,9 @@ void Conversation::hear(MonotonicTime now, const Reply& reply) {
   } else if (is_place) {
     hear_place(now, awaited == Awaits::Pan ? 0 : 1, reply.text);
   }
-  if (phase_ == Phase::Ready) send_wanted(now);
+  if (phase_ != Phase::Ready) return;
+  send_wanted(now);
+  if (is_look_due_) look(now);
 }
 
 void Conversation::hear_place(MonotonicTime now, int axis, const std::string& text) {

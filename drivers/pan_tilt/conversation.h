@@ -50,7 +50,7 @@ class Conversation {
   /// Handles timeouts: overdue answers, motions to halt. Call every few ms.
   void pass(MonotonicTime now);
 
-  /// Queries the position, unless a query is unanswered.
+  /// Queries the position; while a query is unanswered, as soon as it is answered.
   void look(MonotonicTime now);
   /// Turns to these finite angles [rad], or the nearest reachable. False if not ready.
   ///
@@ -139,6 +139,7 @@ class Conversation {
     MonotonicTime sent;  // when its last byte left
   };
   std::deque<Look> looks_;  // unanswered
+  bool is_look_due_ = false;
   std::optional<Places> wanted_, heading_, place_;
   MonotonicTime wanted_until_{0};
   bool is_heading_sure_ = false;  // the unit has accepted the command

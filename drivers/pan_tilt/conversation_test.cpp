@@ -175,6 +175,19 @@ TEST_F(Begun, an_answer_that_nobody_has_looked_at_tells_no_gaze) {
   EXPECT_EQ(line.host.phase(), Phase::Ready);
 }
 
+TEST(Conversation, commands_on_a_slow_line_leave_no_gap_between_looks) {
+  Line line;
+  line.begin_slowly();
+  line.gazes.clear();
+  for (int i = 0; i < 2000; ++i) {
+    ASSERT_TRUE(line.host.command(line.now, -1e-3 * i, 0.3 + 1e-4 * i));
+    line.step();
+  }
+  ASSERT_GT(line.gazes.size(), 2U);
+  for (std::size_t i = 1; i < line.gazes.size(); ++i)
+    EXPECT_LT(line.gazes[i].time - line.gazes[i - 1].time, milliseconds(35));
+}
+
 TEST(Conversation, late_answers_are_borne) {
   Line line;
   line.delay = milliseconds(300);

@@ -1,12 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // A simulated pan-tilt unit on a pseudo-terminal: speaks the protocol of a real one, moves in real
 // time, and fails on request.
+#include <sched.h>
+
 #include <optional>
 
 #include <hc/module/module.h>
 #include <transports/all.h>
 
 #include "simulated_line.h"
+
+namespace {
+
+/// Takes the bytes on the line when they come, as a unit does, and not when other programs let it.
+/// Without the right to that (CAP_SYS_NICE, as root has), it is as late as they are.
+void run_before_programs() {
+  const sched_param least{.sched_priority = 1};
+  static_cast<void>(::sched_setscheduler(0, SCHED_RR, &least));
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   hc::add_all_transports();
@@ -47,6 +60,7 @@ int main(int argc, char** argv) {
   });
 
   module.on_start([&] {
+    run_before_programs();
     line.emplace(*pan, *tilt, static_cast<std::uint64_t>(*seed));
     hc::value_or_end(line->plug(!*unplugged));
     send_device();
