@@ -64,8 +64,10 @@ web::Reply reply_with_recording(const std::string& folder, const std::string& pa
     if (path != "/recordings")
       return recorded_file(folder, path.substr(std::string_view("/recordings/").size()));
     auto list = nlohmann::json::array();
-    for (const auto& [name, bytes, streams] : list_recordings(folder))
+    for (const auto& [name, bytes, streams, problem] : list_recordings(folder)) {
       list.push_back({{"name", name}, {"bytes", bytes}, {"streams", streams}});
+      if (!problem.empty()) list.back()["problem"] = problem;
+    }
     return made_of(200, {{"Cache-Control", "no-store"}}, "application/json", text(dump(list)));
   };
   return reply;

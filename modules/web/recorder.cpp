@@ -34,13 +34,19 @@ std::vector<Recorded> list_recordings(const std::string& folder) {
   std::error_code failed;
   fs::directory_iterator each(folder, failed);
   for (; !failed && each != fs::directory_iterator(); each.increment(failed)) {
-    Recorded recorded{each->path().stem().string(), 0, {}};
+    Recorded recorded{each->path().stem().string(), 0, {}, ""};
     if (each->path().extension() != kEnding || !is_recording_name(recorded.name)) continue;
     auto reader = hc::mcap::Reader::open(each->path());
-    if (!reader) continue;
-    recorded.bytes = reader->size();
-    for (const auto& stream : hc::record::streams_of(reader->summary()))
-      recorded.streams.push_back(stream.name);
+    if (reader) {
+      recorded.bytes = reader->size();
+      for (const auto& stream : hc::record::streams_of(reader->summary()))
+        recorded.streams.push_back(stream.name);
+    } else {
+      std::error_code no_file;
+      recorded.bytes = fs::file_size(each->path(), no_file);
+      if (no_file) continue;
+      recorded.problem = reader.error().detail;
+    }
     all.push_back(std::move(recorded));
   }
   std::ranges::sort(all, hc::natural_less, &Recorded::name);

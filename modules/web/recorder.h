@@ -21,6 +21,7 @@ struct Recorded {
   std::string name;  ///< 1 to 40 letters, digits, `-` and `_`
   std::uintmax_t bytes = 0;
   std::vector<std::string> streams;  ///< MODULE.PORT
+  std::string problem;               ///< why it cannot be read; empty: it can
 };
 
 // Functions that wait for the disk must not run on the server's thread, which also handles stops.

@@ -44,9 +44,13 @@ class Recordings(Page):
         (folder / "four.mcap").symlink_to("four.mcap")
         (folder / "five.mcap").mkdir()
         os.mkfifo(folder / "three.mcap")
+        (folder / "seven.mcap").write_bytes(b"not a recording")
         graph = self.socket("/graph", cookie)
         listed = json.loads(get(self.port, "/recordings", Cookie=cookie)[2])
-        self.assertEqual(listed, [{"name": "one", "bytes": size, "streams": ["messages"]}])
+        self.assertEqual(listed[0], {"name": "one", "bytes": size, "streams": ["messages"]})
+        self.assertEqual([each["name"] for each in listed], ["one", "seven"])
+        self.assertEqual([listed[1]["bytes"], listed[1]["streams"]], [15, []])
+        self.assertIn("MCAP", listed[1]["problem"])
         for name in ("two", "three", "four", "five", "six"):
             path = "/recordings/%s.mcap" % name
             self.assertEqual(get(self.port, path, Cookie=cookie)[0], 404)
@@ -70,7 +74,7 @@ class Recordings(Page):
         ):
             self.assertNotEqual(self.command(graph, command), ["ok"], command)
         self.assertEqual((folder / "one.mcap").stat().st_size, size)
-        self.assertEqual(len(os.listdir(folder)), 5)  # nothing was left there
+        self.assertEqual(len(os.listdir(folder)), 6)  # nothing was left there
 
     def record(self, graph):
         """Begins a recording, of which something is on the disk then."""

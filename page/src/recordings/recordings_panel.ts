@@ -210,7 +210,7 @@ class RecordingsPanel {
     }
   }
 
-  private item({ name, bytes, streams }: Recording): HTMLElement {
+  private item({ name, bytes, streams, problem }: Recording): HTMLElement {
     return h(
       "li",
       {},
@@ -218,16 +218,17 @@ class RecordingsPanel {
       h(
         "span",
         { class: "muted", title: streams.join("\n") },
-        `${bytesText(bytes)}, ${streams.length} streams`,
+        `${bytesText(bytes)}, ${problem ?? `${streams.length} streams`}`,
       ),
-      h(
-        "button",
-        {
-          "aria-label": `Open ${name}`,
-          onclick: () => this.host.openPanel({ kind: "replay", name }),
-        },
-        "Open",
-      ),
+      problem === undefined &&
+        h(
+          "button",
+          {
+            "aria-label": `Open ${name}`,
+            onclick: () => this.host.openPanel({ kind: "replay", name }),
+          },
+          "Open",
+        ),
       h("a", { href: `/recordings/${name}.mcap`, download: `${name}.mcap` }, "Download"),
     );
   }

@@ -127,6 +127,8 @@ export interface Recording {
   readonly name: string;
   readonly bytes: number;
   readonly streams: readonly string[];
+  /** Why it cannot be read. */
+  readonly problem?: string;
 }
 
 /** The connection to the server. */
