@@ -80,7 +80,7 @@ void Ssh::read_errors() {
 
 std::string Ssh::reason_of(const std::string& observed) {
   read_errors();
-  const std::string error = last_line(errors_);
+  std::string error = last_line(errors_);
   const auto contains = [&](std::string_view words) { return error.find(words) != error.npos; };
   const bool has_ssh = !error.starts_with("exec(");  // otherwise ssh is missing here
   if (!is_greeted_ && has_ssh && (contains("not found") || contains("No such file")))

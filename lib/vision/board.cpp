@@ -23,7 +23,8 @@ constexpr int kAprilTags = 587;  // of the family 36h11
 /// The room around a corner; see room_around().
 float room_of(const Corners& corners, const Board& board, int row, int column) {
   const auto at = [&](int r, int c) {
-    return corners[static_cast<std::size_t>(r * board.columns + c)];
+    const int number = r * board.columns + c;
+    return corners[static_cast<std::size_t>(number)];
   };
   const cv::Point2f p = at(row, column);
   float room = std::numeric_limits<float>::infinity();
@@ -40,6 +41,7 @@ float room_of(const Corners& corners, const Board& board, int row, int column) {
 double contrast(const cv::Mat& grey, const cv::Matx33d& H, cv::Point2d at, cv::Point2d step,
                 int squares) {
   std::vector<cv::Point2d> middles;
+  middles.reserve(static_cast<std::size_t>(squares));
   for (int i = 0; i < squares; ++i) middles.push_back(at + i * step);
   cv::perspectiveTransform(middles, middles, H);
   const cv::Rect image(cv::Point(), grey.size());

@@ -17,7 +17,8 @@ Parts parts_of(const std::vector<cv::Point2f>& corners, cv::Size size) {
   for (const auto& corner : corners) {
     const int column = std::clamp(static_cast<int>(3.0 * corner.x / size.width), 0, 2);
     const int row = std::clamp(static_cast<int>(3.0 * corner.y / size.height), 0, 2);
-    parts[static_cast<std::size_t>(3 * row + column)] = true;
+    const int part = 3 * row + column;
+    parts[static_cast<std::size_t>(part)] = true;
   }
   return parts;
 }

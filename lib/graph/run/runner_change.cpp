@@ -79,6 +79,7 @@ std::vector<std::string> Runner::notices() const {
   for (const auto& notice : log_.notices())
     if (modules_.find(notice.module) != nullptr) last[notice.module] = notice.line();
   std::vector<std::string> lines;
+  lines.reserve(last.size());
   for (const auto& [module, line] : last) lines.push_back(line);
   return lines;
 }

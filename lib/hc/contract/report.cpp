@@ -96,6 +96,7 @@ std::vector<LinkEnd> read_links(const Message& message) {
 
 Message make_parameters(const std::map<std::string, std::string>& values) {
   std::vector<std::string> rows;
+  rows.reserve(values.size());
   for (const auto& [name, value] : values) rows.push_back(name + "=" + value);
   return make_rows(rows);
 }
