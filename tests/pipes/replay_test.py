@@ -272,6 +272,12 @@ class Replay(Graphs):
         self.assertIn("nothing to compare", self.err)
         self.shell("hc replay kept --out again --graph g.toml")
         self.assertEqual(self.read("again/second.out.mtp"), self.read("kept/second.out.mtp"))
+        # A module may be killed before it has begun.
+        self.shell(": >kept/second.out.mtp; : >kept/second.trace.mtp")
+        self.assertIn(
+            "second: not run: it sent nothing while it was recorded",
+            self.shell("hc replay kept --except last" + OPTIONS, 1),
+        )
 
 
 if __name__ == "__main__":

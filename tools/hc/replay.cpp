@@ -166,6 +166,16 @@ class Replay {
     return ports;
   }
 
+  /// Whether a module sent a message that was recorded: one may be killed before it has begun.
+  [[nodiscard]] bool has_sent(const hc::PlannedModule& module) const {
+    return std::ranges::any_of(recorded_outputs(module), [&](const std::string& port) {
+      const auto output = module.name + "." + port;
+      const auto source = recording_.open(output);
+      hc::Message message;
+      return recording_.receive(*source, message, output);
+    });
+  }
+
   [[nodiscard]] bool is_excepted(const std::string& name) const {
     return std::ranges::find(options_.except, name) != options_.except.end();
   }
@@ -217,6 +227,7 @@ class Replay {
     }
     if (links.empty()) return "a sensor: its outputs come from the recording";
     if (recorded_outputs(module).empty()) return "none of its outputs was recorded";
+    if (trace.events.empty() && !has_sent(module)) return "it sent nothing while it was recorded";
     if (module.control_uri.empty()) return "its program has no --clock";
     if (trace.was_restarted) return "it was restarted while it was recorded";
     for (const auto& event : trace.events) {
