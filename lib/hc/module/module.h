@@ -261,7 +261,7 @@ class Module {
   void log_once(const std::string& kind, std::string_view line, std::int64_t count = 1);
 
   /// Wall clock, for messages that begin here: the machine's, or with `--clock messages` that of
-  /// the messages which come.
+  /// the messages which come. Like all functions, only for the module's thread.
   [[nodiscard]] Time now() const;
   /// The same clock for periods and time-outs, which never goes back. What is done in the time of
   /// messages goes by this; what talks to a device at the machine's pace has a clock of its own.
