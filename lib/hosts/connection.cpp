@@ -12,7 +12,7 @@
 #include <graph/held_port.h>
 #include <hc/base/clock.h>
 #include <hc/base/format.h>
-#include <hosts/connection_module.h>
+#include <hosts/remote_module.h>
 
 namespace hc::hosts {
 namespace {
@@ -131,8 +131,8 @@ Result<std::shared_ptr<const HeldPort>> Connection::spare_port() {
 
 std::unique_ptr<ModuleProcess> Connection::make_process(const PlannedModule& module,
                                                         ModuleCallbacks callbacks) {
-  return std::make_unique<Module>(shared_from_this(), ++last_number_, module.manage_uri,
-                                  std::move(callbacks));
+  return std::make_unique<RemoteModule>(shared_from_this(), modules_, ++last_number_,
+                                        module.manage_uri, std::move(callbacks));
 }
 
 std::shared_ptr<void> Connection::read_in_place(const std::string& reader_uri) {

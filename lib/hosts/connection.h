@@ -18,6 +18,8 @@
 
 namespace hc::hosts {
 
+class RemoteModule;
+
 /// The connection to a host; reconnects when it is lost. Used on the thread of a loop, except for
 /// the functions of Host for planning.
 class Connection final : public Host, public std::enable_shared_from_this<Connection> {
@@ -44,6 +46,12 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
 
   [[nodiscard]] bool is_of(const GraphHost& declared) const;
 
+  /// Sends to the agent, if connected.
+  void send(const Json& order) { forward(make_order(order)); }
+  void forward(const Message& message) {
+    if (ssh_) ssh_->send(message);
+  }
+
   Result<std::string> find_program(const std::string& name, int stop) override {
     return ask_text("find", name, stop);
   }
@@ -63,14 +71,8 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   [[nodiscard]] std::chrono::nanoseconds wall_offset() const override { return wall_offset_; }
 
  private:
-  class Module;
   using Answered = std::function<void(Result<Json>)>;
 
-  /// Sends to the agent, if connected.
-  void send(const Json& order) { forward(make_order(order)); }
-  void forward(const Message& message) {
-    if (ssh_) ssh_->send(message);
-  }
   void ask(Json question, Answered answered);
   /// Reserves a port there; number 0: any.
   void ask_for_port(bool of_all, std::uint16_t number, Give<std::uint16_t> give);
@@ -111,7 +113,7 @@ class Connection final : public Host, public std::enable_shared_from_this<Connec
   std::int64_t last_question_ = 0, last_number_ = 0;
   std::map<std::int64_t, Answered> questions_;
   std::map<std::string, Json> answers_;  // to questions of ask_text()
-  std::map<std::int64_t, Module*> modules_;
+  std::map<std::int64_t, RemoteModule*> modules_;
   std::map<std::int64_t, std::string> readers_;  // URIs of readers that replace ended modules
   std::map<std::uint16_t, bool> ports_;          // reserved; true: of all addresses
 };

@@ -3,6 +3,7 @@
 // The processes of a module on another host. Internal.
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -15,27 +16,29 @@
 namespace hc::hosts {
 
 /// Runs the processes of a module on that host.
-class Connection::Module final : public ModuleProcess {
+class RemoteModule final : public ModuleProcess {
  public:
+  /// @param modules  the host's; lists this one while it exists.
   /// @param number  identifies the module in messages.
-  Module(std::shared_ptr<Connection> host, std::int64_t number, std::string manage_uri,
-         ModuleCallbacks callbacks)
+  RemoteModule(std::shared_ptr<Connection> host, std::map<std::int64_t, RemoteModule*>& modules,
+               std::int64_t number, std::string manage_uri, ModuleCallbacks callbacks)
       : host_(std::move(host)),
+        modules_(modules),
         number_(number),
         manage_uri_(std::move(manage_uri)),
         callbacks_(std::move(callbacks)) {
-    host_->modules_[number_] = this;
+    modules_[number_] = this;
   }
-  Module(const Module&) = delete;
-  Module& operator=(const Module&) = delete;
-  ~Module() override {
+  RemoteModule(const RemoteModule&) = delete;
+  RemoteModule& operator=(const RemoteModule&) = delete;
+  ~RemoteModule() override {
     send("kill");
     send("over");
-    host_->modules_.erase(number_);
+    modules_.erase(number_);
   }
 
   Status start(const std::vector<std::string>& command, const std::string& control_uri) override {
-    if (!host_->state_.is_connected) return Error{Code::Closed, "its host is not connected"};
+    if (!host_->state().is_connected) return Error{Code::Closed, "its host is not connected"};
     runs_ = true;
     host_->send({{"what", "start"},
                  {"number", number_},
@@ -76,7 +79,7 @@ class Connection::Module final : public ModuleProcess {
     }
     if (what != "ended") return;
     if (order.contains("error")) wrote(order.at("error").get<std::string>() + "\n");
-    ended(std::clamp(order.at("status").get<int>(), 0, kHostLost - 1));
+    ended(std::clamp(order.at("status").get<int>(), 0, Host::kHostLost - 1));
   }
   void used(const UsageRow& row) {
     process_ = static_cast<pid_t>(row[1]);
@@ -94,6 +97,7 @@ class Connection::Module final : public ModuleProcess {
   void send(const char* what) const { host_->send({{"what", what}, {"number", number_}}); }
 
   const std::shared_ptr<Connection> host_;
+  std::map<std::int64_t, RemoteModule*>& modules_;
   const std::int64_t number_;
   const std::string manage_uri_;
   const ModuleCallbacks callbacks_;
