@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "common.h"
@@ -13,7 +12,6 @@ namespace tool {
 namespace {
 
 namespace fs = std::filesystem;
-using Key = std::tuple<std::int32_t, std::int64_t, hc::Time>;  // src, seq, time
 using What = hc::TraceEvent::What;
 
 constexpr std::size_t kStepsAtOnce = 1000;  // per message
@@ -81,16 +79,15 @@ void Feed::write_handled(const GraphRecording& recording, std::vector<hc::TraceE
   const auto is_of_link = [&](const auto& step) {
     return step.what == What::Began && step.port == port && step.number == number;
   };
-  std::set<Key> handled, found;
+  std::set<hc::MessageKey> handled, found;
   for (const auto& step : steps)
-    if (is_of_link(step)) handled.insert({step.src, step.seq, step.time});
+    if (is_of_link(step)) handled.insert(step.key());
   write(recording, to, [&](const hc::Header& header) {
-    const Key key{header.src, header.seq, header.time};
+    const auto key = hc::MessageKey::of(header);
     return handled.contains(key) && found.insert(key).second;
   });
-  std::erase_if(steps, [&](const auto& step) {
-    return is_of_link(step) && !found.contains({step.src, step.seq, step.time});
-  });
+  std::erase_if(steps,
+                [&](const auto& step) { return is_of_link(step) && !found.contains(step.key()); });
 }
 
 void write_steps(const std::vector<hc::TraceEvent>& steps, const fs::path& to) {

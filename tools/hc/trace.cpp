@@ -14,6 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "chrome_trace.h"
 #include "common.h"
 #include "graph.h"
 #include "graph_recording.h"

@@ -4,37 +4,29 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
-#include <set>
 #include <tuple>
 #include <utility>
-
-#include <nlohmann/json.hpp>
 
 namespace tool {
 namespace {
 
 using What = hc::TraceEvent::What;
-using Key = std::tuple<std::int32_t, std::int64_t, hc::Time>;  // src, seq, time
 
 constexpr std::size_t kMostSteps = 64;
 constexpr std::chrono::seconds kMaxAge{1};  // older messages do not affect a new one
 constexpr int kMostVisited = 10'000;        // outputs, for one message
 
-Key key_of(const hc::TraceEvent& event) {
-  return {event.src, event.seq, event.time};
-}
-
 /// A message at an input.
 struct Visit {
   std::string port;
-  Key key;
+  hc::MessageKey key;
   hc::Time took;
   std::optional<hc::Time> began, ended;
 };
 
 struct Sending {
   std::string module, port;
-  Key key;
+  hc::MessageKey key;
   hc::Time moment;
 };
 
@@ -59,16 +51,17 @@ struct Module {
 /// set, or the trace is forged) counts as none.
 Module read_module(const std::vector<hc::TraceEvent>& events) {
   Module module;
-  std::map<std::pair<std::string, Key>, std::size_t> open;  // the newest visit of each message
+  std::map<std::pair<std::string, hc::MessageKey>, std::size_t>
+      open;  // the newest visit of each message
   hc::Time begin;
   int depth = 0;  // synchronised messages are handled together
   for (const auto& event : events) {
-    const auto name = std::pair(event.port, key_of(event));
+    const auto name = std::pair(event.port, event.key());
     const auto known = open.find(name);
     Visit* visit = known == open.end() ? nullptr : &module.visits[known->second];
     if (event.what == What::Took) {
       open[name] = module.visits.size();
-      module.visits.push_back({event.port, key_of(event), event.moment, {}, {}});
+      module.visits.push_back({event.port, event.key(), event.moment, {}, {}});
     } else if (event.what == What::Began) {
       if (depth++ == 0) begin = event.moment;
       if (visit != nullptr && event.moment >= visit->took) visit->began = event.moment;
@@ -82,7 +75,7 @@ Module read_module(const std::vector<hc::TraceEvent>& events) {
     }
   }
   for (const auto& visit : module.visits) {
-    const auto time = std::get<2>(visit.key);
+    const auto time = visit.key.time;
     module.at_time.emplace(time, &visit);
     if (visit.began && time != hc::Time()) module.handled[visit.port].push_back(&visit);
   }
@@ -98,7 +91,7 @@ class PathFinder {
       modules_[name] = read_module(events);
       for (const auto& event : events)
         if (event.what == What::Sent) {
-          const Sending sending{name, event.port, key_of(event), event.moment};
+          const Sending sending{name, event.port, event.key(), event.moment};
           sent_[sending.key].push_back(sending);
           sent_at_time_[event.time].push_back(sending);
         }
@@ -112,8 +105,8 @@ class PathFinder {
     if (module == modules_.end()) return {};
     may_renew_at_ = 1;
     for (const auto& visit : module->second.visits)
-      if (visit.port == at && std::get<2>(visit.key) != hc::Time())
-        collect([&] { arrive(name, visit); }, visit.took, std::get<2>(visit.key));
+      if (visit.port == at && visit.key.time != hc::Time())
+        collect([&] { arrive(name, visit); }, visit.took, visit.key.time);
     if (!found_.empty()) return std::move(found_);
     may_renew_at_ = 0;
     for (const auto& [time, sendings] : sent_at_time_)
@@ -215,7 +208,7 @@ class PathFinder {
                {},
                {}};
     back_.push_back(std::move(step));
-    const auto time = std::get<2>(visit.key);
+    const auto time = visit.key.time;
     std::map<std::string, const Sending*> inputs;  // last message sent to each input of the module
     const auto same = sent_at_time_.find(time);
     for (const auto& link : links_) {
@@ -246,7 +239,7 @@ class PathFinder {
   void leave(const Sending& sending) {
     if (found_.size() - first_ == kMostPaths || ++visited_ > kMostVisited) return;
     const auto& module = modules_.at(sending.module);
-    const auto time = std::get<2>(sending.key);
+    const auto time = sending.key.time;
     std::map<std::string, const Visit*> inputs;  // last message at each
     const auto [begin, end] = module.at_time.equal_range(time);
     for (auto each = begin; each != end; ++each)
@@ -280,8 +273,7 @@ class PathFinder {
     const auto& module = modules_.at(sending.module);
     const Visit* last = inputs.begin()->second;
     for (const auto& [port, visit] : inputs)
-      if (renews ? std::get<2>(visit->key) < std::get<2>(last->key) : visit->took > last->took)
-        last = visit;
+      if (renews ? visit->key.time < last->key.time : visit->took > last->took) last = visit;
     for (const auto& [port, visit] : inputs) {
       Step step{sending.module, port, sending.port, false, {}, {}, {}, renews};
       // A handler that is still running counts up to the moment of sending.
@@ -296,7 +288,7 @@ class PathFinder {
 
   std::vector<std::pair<std::string, std::string>> links_;
   std::map<std::string, Module> modules_;
-  std::map<Key, std::vector<Sending>> sent_;
+  std::map<hc::MessageKey, std::vector<Sending>> sent_;
   std::map<hc::Time, std::vector<Sending>> sent_at_time_;
   std::vector<MessagePath> found_;
   std::vector<Step> back_;
@@ -362,97 +354,6 @@ std::vector<PathSummary> summarise(const std::vector<MessagePath>& paths) {
     return std::tie(a.critical, a.messages) > std::tie(b.critical, b.messages);
   });
   return summaries;
-}
-
-namespace {
-
-/// Events in the JSON of Chrome's trace viewer; a process for each module.
-class ChromeTrace {
- public:
-  explicit ChromeTrace(const Traced& traced) {
-    int process = 0;
-    for (const auto& [name, events] : traced.events) {
-      ++process;
-      for (const auto& event : events) {
-        first_ = std::min(first_, event.moment);
-        if (event.what == What::Sent) senders_[key_of(event)].push_back({process, event.moment});
-      }
-    }
-  }
-
-  void add_module(const std::string& name, const std::vector<hc::TraceEvent>& events) {
-    ++process_;
-    write("M", process_, "process_name", first_, {{"args", {{"name", name}}}});
-    depth_ = 0;
-    for (const auto& event : events) add(event);
-  }
-
-  [[nodiscard]] std::string text() && {
-    if (text_.back() == ',') text_.pop_back();
-    return std::move(text_) + "\n]}\n";
-  }
-
- private:
-  using json = nlohmann::json;
-  struct Sender {
-    int process;
-    hc::Time moment;
-  };
-
-  void add(const hc::TraceEvent& event) {
-    const json header = {
-        {"src", event.src}, {"seq", event.seq}, {"time", hc::unix_nanoseconds(event.time)}};
-    if (event.what == What::Began && event.port.empty()) {
-      write("B", process_, "timer", event.moment, json::object());
-      ++depth_;
-    } else if (event.what == What::Began) {
-      write("B", process_, event.port, event.moment, {{"args", header}});
-      ++depth_;
-      add_arrow(event);
-    } else if (event.what == What::Ended && depth_ > 0) {
-      write("E", process_, event.port, event.moment, json::object());
-      --depth_;
-    } else if (event.what == What::Took || event.what == What::Sent) {
-      write("i", process_, (event.what == What::Took ? "took " : "sent ") + event.port,
-            event.moment, {{"s", "t"}, {"args", header}});
-    }
-  }
-
-  /// From the last sender of a message to its handler.
-  void add_arrow(const hc::TraceEvent& event) {
-    const Sender* last = nullptr;
-    for (const auto& sender : senders_[key_of(event)])
-      if (sender.moment <= event.moment && sender.process != process_ &&
-          (last == nullptr || sender.moment > last->moment))
-        last = &sender;
-    if (last == nullptr) return;
-    write("s", last->process, "message", last->moment, {{"id", ++arrows_}});
-    write("f", process_, "message", event.moment, {{"id", arrows_}, {"bp", "e"}});
-  }
-
-  void write(const char* kind, int process, const std::string& what, hc::Time moment, json more) {
-    more.update({{"ph", kind},
-                 {"pid", process},
-                 {"tid", 1},
-                 {"cat", "message"},
-                 {"name", what},
-                 {"ts", static_cast<double>((moment - first_).count()) * 1e-3}});  // [µs]
-    text_ += "\n" + more.dump() + ",";
-  }
-
-  std::string text_ = R"({"displayTimeUnit":"ms","traceEvents":[)";
-  std::map<Key, std::vector<Sender>> senders_;
-  hc::Time first_ = hc::Time::max();
-  int process_ = 0, arrows_ = 0;
-  int depth_ = 0;  // of handlers; the trace may begin within one
-};
-
-}  // namespace
-
-std::string to_chrome_trace(const Traced& traced) {
-  ChromeTrace trace(traced);
-  for (const auto& [name, events] : traced.events) trace.add_module(name, events);
-  return std::move(trace).text();
 }
 
 }  // namespace tool

@@ -81,8 +81,4 @@ struct PathSummary {
 /// Summaries, sorted by number of critical messages.
 std::vector<PathSummary> summarise(const std::vector<MessagePath>& paths);
 
-/// All events in Chrome's JSON trace format, which Perfetto opens: a process for each module, a
-/// slice for each handler, an arrow for each message.
-std::string to_chrome_trace(const Traced& traced);
-
 }  // namespace tool

@@ -5,8 +5,6 @@
 
 #include <limits>
 
-#include <nlohmann/json.hpp>
-
 namespace tool {
 namespace {
 
@@ -249,22 +247,6 @@ TEST(Spread, IsOfAllDurations) {
   for (int i = 0; i <= 200; ++i) all.emplace_back(200 - i);
   EXPECT_EQ(spread_of(all).median, 100ns);
   EXPECT_EQ(spread_of(all).p99, 198ns);
-}
-
-TEST_F(Chain, IsWrittenForPerfetto) {
-  of("eye").sent("left", 1, 100);
-  of("blob").took("image", 1, 130).handled("image", 1, 1135, 1190);
-  const auto json = nlohmann::json::parse(to_chrome_trace(traced));
-  std::map<std::string, int> kinds;
-  for (const auto& event : json["traceEvents"]) ++kinds[event["ph"].get<std::string>()];
-  EXPECT_EQ(kinds, (std::map<std::string, int>{
-                       {"M", 2}, {"B", 1}, {"E", 1}, {"i", 2}, {"s", 1}, {"f", 1}}));
-  for (const auto& event : json["traceEvents"]) {
-    if (event["ph"] == "B") {
-      EXPECT_EQ(event["ts"], 1.035);
-    }
-  }
-  EXPECT_EQ(nlohmann::json::parse(to_chrome_trace({}))["traceEvents"].size(), 0U);
 }
 
 }  // namespace

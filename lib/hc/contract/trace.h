@@ -3,6 +3,7 @@
 // Trace of a module's messages, sent over its output `trace` (spec/module.md): rows of text,
 // formatted and parsed only here. Pure.
 
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -14,6 +15,15 @@ namespace hc {
 
 /// The implicit output of every module with `control`.
 inline constexpr const char* kTracePort = "trace";
+
+/// Identifies a message in traces, by its header.
+struct MessageKey {
+  std::int32_t src = 0;
+  std::int64_t seq = 0;
+  Time time;
+  static MessageKey of(const Header& header) { return {header.src, header.seq, header.time}; }
+  auto operator<=>(const MessageKey&) const = default;
+};
 
 /// An event in the life of a message, a change of a parameter, or a reading of the clock.
 struct TraceEvent {
@@ -37,6 +47,7 @@ struct TraceEvent {
   std::int32_t number = 0;
   static constexpr std::int32_t kGenerator = -1;
   std::string value = {};  ///< of a parameter, as text
+  [[nodiscard]] MessageKey key() const { return {src, seq, time}; }
   bool operator==(const TraceEvent&) const = default;
 };
 
