@@ -252,11 +252,8 @@ class Examples(Pipes):
 
     @unittest.skipUnless(HAS_PYTHON, "the Python package was not built")
     def test_modules_of_the_documents_in_python(self):
-        modules = {
-            name: text
-            for name, text in self.scripts_of("python.md").items()
-            if "hc.Module(" in text
-        }
+        scripts = {**self.scripts_of("python.md"), **self.scripts_of("tasks.md")}
+        modules = {name: text for name, text in scripts.items() if "hc.Module(" in text}
         fragments = []
         for path, _, text in extract.blocks("python"):
             if "hc.Module(" in text:
@@ -328,10 +325,8 @@ class Examples(Pipes):
         self.check_language("java")
 
     def test_scripts_without_the_library(self):
-        self.write("mean.py", self.scripts_of("modules.md")["mean.py"])
+        self.write("mean.py", self.scripts_of("languages.md")["mean.py"])
         self.check_script(["python3", "mean.py"])
-        self.write("finder.py", self.scripts_of("tasks.md")["finder.py"])
-        self.check_script(["python3", "finder.py"])
         self.check_script(["awk", "-f", str(ROOT / "modules/brightness/brightness.awk")], TEXT)
 
 

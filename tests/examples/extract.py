@@ -40,6 +40,8 @@ COPIES = {
     "modules_1": "templates/module/main.cpp",
 }
 BUILT_ELSEWHERE = ["api_beside_others_1"]
+# Documents whose fragments are pieces of files in these folders.
+QUOTED = {"adding_a_device": ("drivers/pan_tilt", "modules/pan_tilt", "modules/joystick")}
 
 
 def blocks(language):
@@ -69,6 +71,12 @@ def extracted():
             if copy and text != without_comments((ROOT / copy).read_text(encoding="utf8")):
                 raise ValueError("%s:%d is not %s" % (path, line, copy))
             programs[name] = marked
+            continue
+        if path.stem in QUOTED:
+            folders = QUOTED[path.stem]
+            files = [each for name in folders for each in (ROOT / name).iterdir()]
+            if not any(text in each.read_text(encoding="utf8") for each in files):
+                raise ValueError("%s:%d is in no file of %s" % (path, line, ", ".join(folders)))
             continue
         around = [each for words, each in AROUND.items() if text.startswith(words)]
         if not around:
