@@ -54,7 +54,7 @@ class Problems {
   }
 
   /// Each as "FILE:LINE: WHAT", "--set: WHAT" or "WHAT", sorted by file and line, those without a
-  /// file first; control characters are escaped (\x0a).
+  /// file first; control characters are escaped (`\x0a`).
   [[nodiscard]] std::vector<std::string> lines() const { return lines_of(found_); }
   [[nodiscard]] std::vector<std::string> warnings() const { return lines_of(warnings_); }
 

@@ -116,11 +116,11 @@ class Module(_hypercolumn.Module):
     def on(self, inputs: Union[Input, Together]) -> Callable[[Handler], Handler]:
         """Calls a function with each message of an input, or with synchronised messages of several:
 
-        @module.on(image)
-        def look(message): ...
+            @module.on(image)
+            def look(message): ...
 
-        @module.on(hc.together(left, right))
-        def compare(left_message, right_message): ...
+            @module.on(hc.together(left, right))
+            def compare(left_message, right_message): ...
         """
         ports = inputs.inputs if isinstance(inputs, Together) else [inputs]
         for port in ports:
@@ -150,11 +150,11 @@ class Module(_hypercolumn.Module):
     def after(self, seconds: float) -> Callable[[Callable[[], Any]], Timeout]:
         """Calls a function once, `seconds` after the start, and again after each restart():
 
-        @module.after(3)
-        def silence():
-            module.log("no packets for 3 s")
+            @module.after(3)
+            def silence():
+                module.log("no packets for 3 s")
 
-        silence.restart()
+            silence.restart()
         """
         return lambda handler: self._after(seconds, handler)
 

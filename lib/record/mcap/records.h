@@ -17,7 +17,7 @@
 namespace hc::mcap {
 
 /// The first and last bytes of a file.
-inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
+inline constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
 /// The head of each record: opcode and length. [byte]
 inline constexpr std::size_t kRecordHead = 9;
 
