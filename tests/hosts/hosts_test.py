@@ -17,6 +17,8 @@ import unittest
 from hosts import BRIGHTNESS, BUILD, CAMERA, HC, HostsTest, ROOT, WATCHDOG
 from recordings import read_messages
 
+# Begins an expression for sed, in quotes, that replaces the version that an agent tells.
+VERSION = '\'s/"version":"[^"]*"/"version":'
 # What one module sends passes both hosts, there and back.
 DELAYS = """
 [modules.source]
@@ -234,11 +236,11 @@ class Hosts(HostsTest):
         camera = CAMERA.replace("HappyFish", "no_such") % "h1"
         unreachable = self.tables(host).replace(host.address, "10.9.0.99")
         other = self.write_program(
-            "other_hc", "#!/bin/sh\nexec %s agent | sed -u s/0.1.0/9.9.9/" % HC
+            "other_hc", '#!/bin/sh\nexec %s agent | sed -u %s"9.9.9"/\'\n' % (HC, VERSION)
         )
         noisy = self.write_program("noisy_hc", "#!/bin/sh\necho Welcome!\nexec %s agent\n" % HC)
         liar = self.write_program(
-            "liar_hc", "#!/bin/sh\n%s agent | sed -u 's/\"0.1.0\"/1234567/'\n" % HC
+            "liar_hc", "#!/bin/sh\n%s agent | sed -u %s1234567/'\n" % (HC, VERSION)
         )
         for text, words in (
             (

@@ -4,11 +4,12 @@
 
 import json
 import os
+import re
 import signal
 import time
 import unittest
 
-from harness import DATA, PYTHON, Pipes, WATCHDOG, free_port, listens, wait_until
+from harness import BUILD, DATA, PYTHON, Pipes, ROOT, WATCHDOG, free_port, listens, wait_until
 
 
 class Tool(Pipes):
@@ -100,6 +101,29 @@ class Tool(Pipes):
                     uri,
                 )
                 self.assertEqual(self.err, line)
+
+    def test_version_commit_and_features(self):
+        cmake = (ROOT / "CMakeLists.txt").read_text()
+        version = re.search(r"VERSION ([\d.]+) LANG", cmake)[1]
+        first, *features = self.shell("hc --version").splitlines()
+        self.assertRegex(first, r"^hc %s, commit ([0-9a-f]{12}(-modified)?|unknown)$" % version)
+        self.assertRegex(
+            features[0], r"^features:( zstd)?( jpeg)?( tls)?( dds)?( python)?( head)?$"
+        )
+        said = " ".join(features).replace("features:", "").replace("not built:", "").split()
+        self.assertEqual(sorted(said), sorted("zstd jpeg tls dds python head".split()))
+
+    def test_features_are_those_that_work(self):
+        features = set(self.shell("hc --version").splitlines()[1].split()[1:])
+        self.shell("hc cat pigeon:x", 2)
+        works = set(re.findall(r"\b(?:tls|dds)\b(?!-)", self.err))
+        self.shell("hc send --encoding zstd 1 || true")
+        works |= set() if "Unsupported" in self.err else {"zstd"}
+        self.shell("hc send --encoding jpeg --type intensity_image --scalar u8 1 || true")
+        works |= set() if "Unsupported" in self.err else {"jpeg"}
+        works |= {"python"} if list(BUILD.glob("python/hypercolumn/_hypercolumn*.so")) else set()
+        works |= {"head"} if (BUILD / "libexec/hypercolumn/camera").exists() else set()
+        self.assertEqual(features, works)
 
     def test_help_lists_all_links(self):
         self.assertIn("shm:NAME", self.shell("hc --help"))

@@ -20,9 +20,21 @@
 #include "verbs.h"
 #include "words.h"
 
+namespace tool {
+extern const char kCommit[];  // written by cmake/commit.cmake
+}
+
 namespace {
 
 constexpr int kUsage = 2;
+
+std::string version() {
+  std::string text =
+      hc::format("hc {}, commit {}\nfeatures:{}", HC_VERSION, tool::kCommit, HC_FEATURES);
+  if (constexpr std::string_view lacking = HC_LACKING; !lacking.empty())
+    text += hc::format("\nnot built:{}", lacking);
+  return text;
+}
 
 std::string footer() {
   std::string text = "Modules (hc NAME --help):";
@@ -150,7 +162,7 @@ int main(int argc, char** argv) {
   hc::prepare_program();
   hc::add_all_transports();
   CLI::App app{"Runs and inspects graphs of modules that send each other matrices.", "hc"};
-  app.set_version_flag("--version", "hc " HC_VERSION);
+  app.set_version_flag("--version", version, "version, commit, and what depends on this build");
   app.require_subcommand(1);
   app.footer(footer);
   using namespace tool;

@@ -16,7 +16,7 @@ Result<File> File::create(const std::string& path) {
   File file(std::move(begun->path), std::move(begun->descriptor));
   RecordWriter out;
   out.append(std::as_bytes(std::span(kMagic)));
-  out.add(Opcode::Header, "ros2", "hypercolumn 0.1");
+  out.add(Opcode::Header, "ros2", "hypercolumn " HC_VERSION);
   if (auto written = file.write(out.bytes); !written) return written.error();
   return file;
 }
