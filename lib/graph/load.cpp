@@ -54,20 +54,11 @@ Result<std::string> read_file(const std::string& name) {
   return read_text(path);
 }
 
-/// @param path  of `program`, if it has a slash.
-std::string why_no_program(const std::string& program, const std::string& path) {
-  std::error_code missing;
-  if (path.find('/') == std::string::npos) return no_program(program);
-  if (fs::is_directory(path, missing)) return path + " is a folder, not a program";
-  if (fs::exists(path, missing)) return path + " is not executable";
-  return "no program \"" + program + "\"";
-}
-
-/// Finds a program. @param path  as above. Errors: NotFound, Stopped.
+/// Finds a program. @param path  of it, if its name has a slash. Errors: NotFound, Stopped.
 Result<std::string> path_of(const std::string& program, const std::string& path, int stop) {
   return unless_stopped(stop, [=]() -> Result<std::string> {
     auto found = find_program(path);
-    if (found.empty()) return Error{Code::NotFound, why_no_program(program, path)};
+    if (found.empty()) return Error{Code::NotFound, no_program(program, path)};
     return found;
   });
 }

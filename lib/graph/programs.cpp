@@ -102,11 +102,16 @@ std::string find_program(const std::string& name) {
   return "";
 }
 
-std::string no_program(const std::string& name) {
+std::string no_program(const std::string& name, const std::string& path) {
   const std::string text = "no program \"" + name + "\"";
+  std::error_code missing;
+  if (path.find('/') != std::string::npos) {
+    if (fs::is_directory(path, missing)) return path + " is a folder, not a program";
+    if (fs::exists(path, missing)) return path + " is not executable";
+    return text;
+  }
   // In a build tree, some modules may not be built yet.
   const auto build = module_folder().parent_path().parent_path();
-  std::error_code missing;
   if (fs::exists(build / "CMakeCache.txt", missing) &&
       fs::is_directory(build.parent_path() / "modules" / name, missing))
     return text + ": it is not built; ./dev build builds all modules";

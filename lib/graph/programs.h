@@ -23,7 +23,11 @@ std::filesystem::path graph_folder();
 std::string find_program(const std::string& name);
 
 /// An error message for a name that find_program() does not find, with what to do.
-std::string no_program(const std::string& name);
+/// @param path  of the program, if its name has a slash.
+std::string no_program(const std::string& name, const std::string& path);
+inline std::string no_program(const std::string& name) {
+  return no_program(name, name);
+}
 
 /// The output of `program --describe`, at most 1 MiB, within 10 s.
 ///

@@ -287,7 +287,7 @@ Result<std::unique_ptr<Sink>> open_sink(const Place& place, const LinkOptions& o
   auto writer = Writer::open(place, writer_options);
   if (!writer) return writer.error();
   if (const auto& now = (*writer)->written().place; now != place.path && options.log)
-    options.log(Level::Warning, place.text() + ": the file stays as it is; continuing in " + now);
+    options.log(Level::Notice, place.text() + ": the file stays as it is; continuing in " + now);
   return std::unique_ptr<Sink>(new RecordingSink(std::move(*writer)));
 }
 

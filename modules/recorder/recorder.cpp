@@ -102,7 +102,7 @@ void StreamRecorder::start() {
   const auto place = parameters_.place(options);
   recording_ = hc::value_or_end(hc::record::Writer::open(place, options));
   if (const auto& now = recording_->written().place; now != place.path)
-    module_.log("recording continues in " + now);
+    module_.log("recording continues in " + now, hc::Level::Notice);
   const bool is_folder = place.kind == hc::record::Place::Kind::Folder;
   if (const auto own = hc::own_graph(); own && !is_folder)
     metadata_.emplace(graph_.emplace(*loop_, *own), *recording_);

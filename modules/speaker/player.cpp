@@ -64,7 +64,7 @@ void Player::save(std::span<const std::int16_t> samples) {
   if (!writer_ || is_full) {
     auto begun = hc::audio::WavWriter::create(options_.file, *format_);
     if (begun && begun->path() != options_.file)
-      log_(hc::Level::Info, "continuing in " + begun->path());
+      log_(hc::Level::Notice, "continuing in " + begun->path());
     written = begun ? begun->write(samples) : begun.error();
     if (begun) writer_.emplace(std::move(*begun));
   }

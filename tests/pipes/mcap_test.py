@@ -176,6 +176,7 @@ class Recordings(Graphs):
             out = self.shell("hc run g.toml --record %s --quiet" % place)
             self.assertRegex(out, said % second)
             self.assertIn("%s stays as it is; recording to %s\n" % (place, second), self.err)
+            self.assertIn("the file stays as it is; continuing in mean_", self.err)
             after = self.shell("cat %s | md5sum" % ("kept/*" if place == "kept" else place))
             self.assertEqual(before, after)
         # So do links to files, and what verbs write.

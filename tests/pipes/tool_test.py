@@ -63,7 +63,11 @@ class Tool(Pipes):
                 2,
                 'hc: unknown command or module "rnu", did you mean "run"?; see hc --help',
             ),
-            ("hc describe camra", 1, 'hc describe: NotFound: no module "camra", did you mean'),
+            ("hc describe camra", 1, 'hc describe: NotFound: no program "camra", did you mean'),
+            ("touch gauge; hc ./gauge", 2, "hc: ./gauge is not executable"),
+            ("hc describe ./gauge", 1, "hc describe: NotFound: ./gauge is not executable"),
+            ("hc ./none", 2, 'hc: no program "./none"'),
+            ("hc ./", 2, "hc: ./ is a folder, not a program"),
             ("hc send", 2, "hc send: Invalid: nothing to send"),
             ("hc send --text a 1", 2, "hc send: Invalid: --text and numbers exclude each other"),
             (
@@ -317,6 +321,8 @@ class Tool(Pipes):
         whole = self.read("r.mtp").splitlines(True)
         whole[4] = whole[4].replace("10390", "99999")
         self.write("bad.mtp", "".join(whole))
+        self.shell("mkdir bad; cp bad.mtp bad/bad.mtp; hc info bad", 1)
+        self.assertIn("18 messages", self.shell("hc info --skip bad"))
         out = self.shell("hc cat --json --skip bad.mtp")
         self.assertEqual(out.count("\n"), 18)
         self.assertIn("R20 info", self.err)

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include <graph/run.h>
-#include <hc/base/suggestion.h>
 
 #include "common.h"
 #include "verbs.h"
@@ -17,9 +16,7 @@ void add_describe(CLI::App& app) {
       ->required();
   verb->callback([name] {
     std::string program = find_program(*name);
-    if (program.empty())
-      throw Failure(hc::Code::NotFound,
-                    "no module \"" + *name + "\"" + hc::suggestion(*name, module_names()));
+    if (program.empty()) throw Failure(hc::Code::NotFound, hc::no_program(*name));
     auto text = value_or_fail(hc::describe_program(program), *name);
     auto json = nlohmann::ordered_json::parse(text, nullptr, false);
     if (json.is_discarded())

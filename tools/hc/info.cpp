@@ -144,8 +144,8 @@ void print_mcap(const std::string& path) {
 void run(const InfoOptions& options) {
   using Kind = hc::record::Place::Kind;
   const auto place = hc::record::place_of(options.uri);
-  const bool is_whole =
-      place.stream.empty() && options.count == 0 && !graph_of_port(options.uri, options.of);
+  const bool is_whole = place.stream.empty() && options.count == 0 && !options.skip &&
+                        !graph_of_port(options.uri, options.of);
   if (is_whole && place.kind == Kind::Mcap) return print_mcap(place.path);
   if (is_whole && place.kind == Kind::Folder) return print_folder(place, options.limit);
   auto source = open_named(options.uri, options.of, options.limit);

@@ -197,6 +197,10 @@ int main(int argc, char** argv) {
     }
     if (!is_verb && !first.empty() && first[0] != '-') {
       become_module(first, argv + 1);
+      if (first.find('/') != std::string::npos) {
+        say("hc: " + hc::no_program(first));
+        return kUsage;
+      }
       auto known = module_names();
       for (const auto* verb : verbs) known.push_back(verb->get_name());
       const auto hint = meant_command(first);

@@ -56,7 +56,7 @@ Result<Descriptor> open_for_writing(const Uri& uri, bool appends, const LinkOpti
   }
   auto file = HC_TRY(begin_file(uri.rest));
   if (file.path != uri.rest && options.log)
-    options.log(Level::Warning, "the file stays as it is; continuing in " + file.path);
+    options.log(Level::Notice, "the file stays as it is; continuing in " + file.path);
   return std::move(file.descriptor);
 }
 
