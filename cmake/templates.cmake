@@ -20,8 +20,8 @@ endfunction()
 # hc_write_templates(FILE): the source file behind tools/hc/templates.h.
 function(hc_write_templates output)
   hc_embed(text cpp_template CMakeLists.txt outside/CMakeLists.txt README.md outside/README.md
-           main.cpp module/main.cpp cases/doubles/in module/cases/doubles/in
-           cases/doubles/out module/cases/doubles/out)
+           main.cpp module/main.cpp cases/multiplies/in module/cases/multiplies/in
+           cases/multiplies/out module/cases/multiplies/out)
   hc_embed(text python_template @NAME@ python/module @NAME@_test.py python/test.py
            README.md python/README.md)
   file(WRITE ${output}.new "#include \"templates.h\"\n\nnamespace tool {\n${text}}  // namespace tool\n")

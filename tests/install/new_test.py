@@ -8,6 +8,7 @@ and in a graph.
 
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -84,6 +85,30 @@ class New(unittest.TestCase):
         self.assertIn("no problems found", self.shell("hc check g.toml"))
         self.shell("hc run g.toml")
         self.assertIn('"elements":[[20,50]]', self.shell("hc cat --json out.mtp"))
+
+    def test_another_python_first_in_path(self):
+        self.shell("mkdir other; ln -s /bin/false other/python3")
+        self.environment = dict(
+            self.environment, PATH="%s/other:%s" % (self.folder.name, self.environment["PATH"])
+        )
+        self.begin("second --python")
+
+    def test_the_commands_of_the_readme_work(self):
+        for arguments in ("python_one --python", "cpp_one"):
+            self.shell("hc new module " + arguments)
+            name = arguments.split()[0]
+            text = pathlib.Path(self.folder.name, name, "README.md").read_text()
+            (commands,) = re.findall(r"```sh\n(.*?)```", text, re.S)
+            self.assertIn("\n  10 25\n", self.shell("cd %s\n%s" % (name, commands)))
+
+    def test_why_no_python_has_the_package_is_told(self):
+        self.shell(
+            "mkdir broken; echo 'raise ImportError(\"broken on purpose\")' >broken/hypercolumn.py"
+        )
+        self.shell("PYTHONPATH=broken hc new module third --python")
+        self.assertRegex(
+            self.err, r"no Python has .*: python3: ImportError: broken on purpose; /usr"
+        )
 
     def test_names_that_are_wrong_or_there_are_refused_in_one_line(self):
         self.shell("mkdir there")

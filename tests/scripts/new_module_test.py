@@ -81,7 +81,7 @@ class NewModule(unittest.TestCase):
         (build / "bin").mkdir()
         shutil.copy(BUILD / "bin/hc", build / "bin")
         self.compile(modules / NAME)
-        case = self.module / "cases/doubles"
+        case = self.module / "cases/multiplies"
         self.succeed("scripts/run_case", str(build), str(case), cwd=self.root)
         (case / "out").write_text("something else\n")
         status, _ = self.run_command("scripts/run_case", str(build), str(case), cwd=self.root)

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc new: creates a module outside this project, from templates built into this program.
 
-#include <cstdlib>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <utility>
@@ -55,12 +58,29 @@ void write_file(const fs::path& path, const std::string& text) {
                     fs::perm_options::add);
 }
 
+/// Why a Python cannot import the package hypercolumn: its last line; empty if it can.
+std::string why_not_importable(const std::string& python) {
+  FILE* pipe = ::popen((python + " -c 'import hypercolumn' 2>&1").c_str(), "r");
+  if (pipe == nullptr) return std::strerror(errno);
+  std::string last;
+  std::array<char, 1000> line{};
+  while (std::fgets(line.data(), line.size(), pipe) != nullptr) last = line.data();
+  const bool has_failed = ::pclose(pipe) != 0;
+  while (last.ends_with('\n')) last.pop_back();
+  return !has_failed ? "" : last.empty() ? "failed" : last;
+}
+
 /// The Python that has the package hypercolumn, with its libraries: not always the first in PATH.
 std::string python() {
   const std::string first = "python3", of_system = "/usr/bin/python3";
-  for (const auto& each : {first, of_system})
-    if (std::system((each + " -c 'import hypercolumn' >/dev/null 2>&1").c_str()) == 0) return each;
-  say("hc new: no Python has the package hypercolumn and NumPy (doc/python.md)");
+  std::vector<std::string> reasons;
+  for (const auto& each : {first, of_system}) {
+    const auto why = why_not_importable(each);
+    if (why.empty()) return each;
+    reasons.push_back(each + ": " + why);
+  }
+  say("hc new: no Python has the package hypercolumn and NumPy (doc/python.md): " +
+      joined(reasons, "; "));
   return first;
 }
 
@@ -92,17 +112,18 @@ void begin(const NewOptions& options) {
   fs::create_directories(folder, error);
   if (error) throw Failure(hc::Code::System, folder.string() + ": " + error.message());
   const std::string interpreter = options.is_python ? python() : "";
+  const std::string build = options.is_python ? "" : build_commands();
   for (const auto& file : options.is_python ? python_template() : cpp_template()) {
     std::string path(file.path), text(file.text);
     replace_all(path, "@NAME@", options.name);
     replace_all(text, "@NAME@", options.name);
+    replace_all(text, "@BUILD@", build);
     if (interpreter.starts_with('/'))
       replace_all(text, "#!/usr/bin/env python3", "#!" + interpreter);
     remove_licence(text);
     write_file(folder / path, text);
   }
-  const std::string test =
-      options.is_python ? interpreter + " " + options.name + "_test.py" : build_commands();
+  const std::string test = options.is_python ? "./" + options.name + "_test.py" : build;
   print(hc::format("created {}/; next: cd {} && {}\n", folder.string(), folder.string(), test));
 }
 
