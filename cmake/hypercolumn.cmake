@@ -327,6 +327,8 @@ function(hc_install_package)
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/hypercolumn)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/graphs ${PROJECT_BINARY_DIR}/share/hypercolumn/graphs SYMBOLIC)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/graphs DESTINATION ${CMAKE_INSTALL_DATADIR}/hypercolumn)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/debian_copyright RENAME copyright
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/hypercolumn)
   install(FILES ${PROJECT_SOURCE_DIR}/spec/mtp-1.md ${PROJECT_SOURCE_DIR}/spec/message.idl
           DESTINATION ${CMAKE_INSTALL_DATADIR}/hypercolumn/spec)
 endfunction()
@@ -342,6 +344,8 @@ function(hc_package_deb)
   set(CPACK_STRIP_FILES ON)
   set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+  # What `hc new` and find_package() want beside the package: a compiler, and the headers of our headers.
+  set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, make, libeigen3-dev")
   # What no library says that it needs: voices, a dictionary of letters, drawing without a GPU, arrays in
   # Python.
   set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "espeak-ng-data, tesseract-ocr-eng, libgl1-mesa-dri, fonts-dejavu-core, python3-numpy")
