@@ -123,7 +123,8 @@ void begin(const NewOptions& options) {
     remove_licence(text);
     write_file(folder / path, text);
   }
-  const std::string test = options.is_python ? "./" + options.name + "_test.py" : build;
+  const std::string test =
+      options.is_python ? interpreter + " " + options.name + "_test.py" : build;
   print(hc::format("created {}/; next: cd {} && {}\n", folder.string(), folder.string(), test));
 }
 
