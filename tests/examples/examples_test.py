@@ -260,10 +260,13 @@ class Examples(Pipes):
                 modules[path.stem] = text
             else:
                 fragments.append(text)
-        self.assertEqual(set(modules), {"redness", "reddest", "find_ball", "api_beside_others"})
+        self.assertEqual(
+            set(modules), {"README", "redness", "reddest", "find_ball", "api_beside_others"}
+        )
         for name, text in modules.items():
             # One has its answer at the end, without a time.
-            self.check_module([self.write_program(name, text)], IMAGE, answers=name != "reddest")
+            kind = TABLE if name == "README" else IMAGE
+            self.check_module([self.write_program(name, text)], kind, answers=name != "reddest")
         edges = (ROOT / "python/examples/edges").read_text()
         for text in fragments:
             for line in text.splitlines():

@@ -111,11 +111,12 @@ class Documents(Pipes):
         return [block for block in blocks if "./dev" not in block]
 
     def run_document(self, name):
-        pathlib.Path(self.path("graphs")).symlink_to(ROOT / "graphs")
-        pathlib.Path(self.path("modules")).symlink_to(ROOT / "modules")
-        pathlib.Path(self.path("templates")).symlink_to(ROOT / "templates")
-        pathlib.Path(self.path("python")).symlink_to(ROOT / "python")
+        for folder in ("graphs", "modules", "templates", "python"):
+            pathlib.Path(self.path(folder)).symlink_to(ROOT / folder)
         pathlib.Path(self.path("data")).symlink_to(DATA)
+        self.run_blocks(name)
+
+    def run_blocks(self, name):
         for block in self.commands(name):
             with self.subTest(block):
                 wrong = Documents.run_block(self, block)
@@ -137,7 +138,7 @@ class Documents(Pipes):
         return ""
 
     def test_readme(self):
-        self.run_document("README.md")
+        self.run_blocks("README.md")  # in an empty folder
 
     def test_tutorial(self):
         self.run_document("doc/tutorial.md")

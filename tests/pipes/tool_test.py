@@ -109,6 +109,8 @@ class Tool(Pipes):
     def test_version_commit_and_features(self):
         cmake = (ROOT / "CMakeLists.txt").read_text()
         version = re.search(r"VERSION ([\d.]+) LANG", cmake)[1]
+        self.assertIn("\nversion: %s\n" % version, (ROOT / "CITATION.cff").read_text())
+        self.assertIn("\n## %s (" % version, (ROOT / "CHANGELOG.md").read_text())
         first, *features = self.shell("hc --version").splitlines()
         self.assertRegex(first, r"^hc %s, commit ([0-9a-f]{12}(-modified)?|unknown)$" % version)
         self.assertRegex(
