@@ -2,6 +2,7 @@
 # cmake -D SOURCE=FOLDER -D OUTPUT=FILE -P commit.cmake: writes the commit of a source tree as C++, with
 # "-modified" where files differ from it, or "unknown" outside git. A file that would stay the same is
 # left alone, so that only another commit builds anything again.
+cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND git rev-parse --show-cdup WORKING_DIRECTORY ${SOURCE}
                 OUTPUT_VARIABLE up RESULT_VARIABLE failed ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
 set(commit unknown)

@@ -100,7 +100,9 @@ class Compatibility(Pipes):
     def test_traces(self):
         def check(_):
             for recording in ("recording", "recording.mcap"):
-                command = "hc trace brightness.image --json --graph run.toml --recording " + recording
+                command = (
+                    "hc trace brightness.image --json --graph run.toml --recording " + recording
+                )
                 path = json.loads(self.shell(command))["paths"][0]
                 names = [step["module"] for step in path["steps"]]
                 self.assertEqual(names, ["camera", "invert", "brightness"])

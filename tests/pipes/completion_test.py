@@ -42,7 +42,9 @@ class Completion(Pipes):
         self.shown = ""
         process = self.start("exec zsh -f -i", stdin=other, stdout=other, stderr=other)
         os.close(other)
-        os.write(self.terminal, b"unsetopt zle_bracketed_paste; %s; echo re''ady\n" % setup.encode())
+        os.write(
+            self.terminal, b"unsetopt zle_bracketed_paste; %s; echo re''ady\n" % setup.encode()
+        )
         self.read_until(r"\nready\n")
         for typed, expected in LINES.items():
             with self.subTest(typed):
