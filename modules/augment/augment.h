@@ -59,9 +59,10 @@ struct AugmentOutputs {
       module.output("right", hc::rgb_image(), "the right image, augmented");
   hc::Output<hc::TableKind<double>> corners =
       module.output("corners", hc::table(),
-                    "8 rows an object, the corners of the box around it: x, y in the "
-                    "left and x, y in the right image [px], NaN behind the eye",
-                    {.on_demand = true});
+                    "8 rows an object, the corners of the box around it in both images, NaN "
+                    "behind the eye",
+                    {.on_demand = true,
+                     .columns = {"left x [px]", "left y [px]", "right x [px]", "right y [px]"}});
   hc::Output<hc::IntensityImageKind<std::uint8_t>> mask = module.output(
       "mask", hc::intensity_image(), "of the left image: 255 where an object is visible, else 0",
       {.on_demand = true});

@@ -20,9 +20,10 @@ int main(int argc, char** argv) {
       "x, y in the next image of its coordinate system [px]: its colour is searched from then on, "
       "until the parameter hue changes");
   auto target = module.output("target", hc::position(),
-                              "x, y of the blob's middle, its radius [px], in the coordinate "
-                              "system of the image; nothing while there is none");
-  auto area = module.output("area", hc::table(), "area of the blob [px²]");
+                              "the blob's middle and its radius, in the coordinate system of the "
+                              "image; nothing while there is none",
+                              {.columns = {"x [px]", "y [px]", "radius [px]"}});
+  auto area = module.output("area", hc::table(), "of the blob", {.columns = {"area [px²]"}});
   auto hue = module.parameter("hue", 0.0, "", "0 red, 0.33 green, 0.67 blue", {.min = 0, .max = 1});
   auto hue_width = module.parameter("hue_width", 0.05, "", "maximum difference of a pixel's hue",
                                     {.min = 0, .max = 0.5});

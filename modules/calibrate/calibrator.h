@@ -93,12 +93,13 @@ class Calibrator {
       module_.output("command", hc::rotation().in(hc::Coord::kGaze),
                      "commanded head orientation: roll 0, tilt, pan [rad]");
   hc::Output<hc::TableKind<double>> bid_ =
-      module_.output("bid", hc::table(), "salience while it looks, else 0");
-  hc::Output<hc::TableKind<double>> result_ =
-      module_.output("result", hc::table().of(1, 7),
-                     "eyes swapped 0/1, pan and tilt of the left eye with the unit "
-                     "at 0, roll, pitch, yaw of the right eye to the left one [rad], "
-                     "distance from epipolar lines, RMS [px]; once a second");
+      module_.output("bid", hc::table(), "while it looks, else 0", {.columns = {"salience"}});
+  hc::Output<hc::TableKind<double>> result_ = module_.output(
+      "result", hc::table().of(1, 7),
+      "whether the eyes are swapped, the left eye with the unit at 0, the right eye "
+      "to the left one, RMS of the distance from epipolar lines; once a second",
+      {.columns = {"swapped", "left pan [rad]", "left tilt [rad]", "right roll [rad]",
+                   "right pitch [rad]", "right yaw [rad]", "RMS [px]"}});
   const CalibratorParameters parameters_{module_};
   hc::ModuleFrames frames_{module_};
 

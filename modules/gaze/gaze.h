@@ -69,8 +69,8 @@ class Gaze {
   hc::Output<hc::RotationKind<double>> command_ =
       module_.output("command", hc::rotation().in(hc::Coord::kGaze),
                      "commanded head orientation: roll 0, tilt, pan [rad]");
-  hc::Output<hc::TableKind<double>> bid_ =
-      module_.output("bid", hc::table(), "salience while there is a target, else idle_salience");
+  hc::Output<hc::TableKind<double>> bid_ = module_.output(
+      "bid", hc::table(), "while there is a target, else idle_salience", {.columns = {"salience"}});
   hc::ModuleFrames frames_{module_};
   const GazeParameters parameters_{module_};
 

@@ -13,7 +13,8 @@ int main(int argc, char** argv) {
   hc::Module module{"hearing", "Measures the level and the direction of stereo sound."};
   auto sound = module.input("sound", hc::sound(2), "left and right ear", {.keep = 64});
   auto level = module.output("level", hc::table(),
-                             "root of the mean square of each message, 1 is full scale");
+                             "root of the mean square of each message, 1 is full scale",
+                             {.columns = {"level"}});
   auto direction = module.output("direction", hc::rotation().in(hc::Coord::kHead),
                                  "roll 0, tilt 0, pan [rad], > 0 to the left; nothing while it is "
                                  "too quiet or comes from several sides");

@@ -13,7 +13,8 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"joystick", "Sends a game controller's sticks and buttons."};
   auto stick = module.output("stick", hc::table().of(1, 2),
-                             "left > 0, down > 0, each -1 to 1, of the left stick");
+                             "left > 0, down > 0, each -1 to 1, of the left stick",
+                             {.columns = {"left", "down"}});
   auto axes =
       module.output("axes", hc::table(),
                     "raw, -1 to 1: left x, y, right x, y, left and right trigger; without a "

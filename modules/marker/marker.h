@@ -97,9 +97,13 @@ class MarkerSearch {
                      "frame of the marker, 0 where it has none");
   hc::Output<hc::TableKind<double>> markers_ = module_.output(
       "markers", hc::table().of(0, hc::vision::kMarkerColumns),
-      "13 columns, a row each: kind (0 aruco, 1 apriltag, 2 colour), id (hue [degree] of colour), "
-      "side [m], x y z [m] and qx qy qz qw in the eye, which is coord, reprojection error, mean "
-      "side [px], ambiguity [rad]: the angle to another rotation that fits about as well, else 0");
+      "a row each, in the eye, which is coord; kind: 0 aruco, 1 apriltag, 2 colour; id: hue "
+      "[degree] "
+      "of colour; size: mean side; ambiguity: the angle to another rotation that fits about as "
+      "well, "
+      "else 0",
+      {.columns = {"kind", "id", "side [m]", "x [m]", "y [m]", "z [m]", "qx", "qy", "qz", "qw",
+                   "reprojection error [px]", "size [px]", "ambiguity [rad]"}});
   const MarkerParameters parameters_{module_};
 
   hc::vision::AssumedCameras assumed_{module_, "distances have no true scale",

@@ -15,9 +15,11 @@ int main(int argc, char** argv) {
   auto text = module.output("text", hc::string().in(hc::Coord::kText),
                             "the text, once it is certain, and when it changes");
   auto confidence =
-      module.output("confidence", hc::table(), "of each reading, certain or not, 0 to 1");
-  auto target = module.output("target", hc::position(),
-                              "x, y, width of the lines [px], in the image's coordinate system");
+      module.output("confidence", hc::table(), "of each reading, certain or not, 0 to 1",
+                    {.columns = {"confidence"}});
+  auto target =
+      module.output("target", hc::position(), "the lines, in the image's coordinate system",
+                    {.columns = {"x [px]", "y [px]", "width [px]"}});
   auto language = module.parameter("language", "eng", "", "Tesseract's name: eng, deu, eng+deu",
                                    {.fixed = true});
   auto upper_case = module.parameter("upper_case", true, "",

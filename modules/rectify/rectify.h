@@ -62,8 +62,8 @@ class Rectify {
       "right", hc::rgb_image().in(hc::Coord::kRightRectified), "rectified image of the right eye");
   hc::Output<hc::TableKind<double>> intrinsics_ =
       module_.output("intrinsics", hc::table().of(1, 5).in(hc::Coord::kLeftRectified),
-                     "fx, fy, cx, cy [px], baseline [m] of the rectified pair, with "
-                     "the first image and then once a second");
+                     "of the rectified pair, with the first image and then once a second",
+                     {.columns = {"fx [px]", "fy [px]", "cx [px]", "cy [px]", "baseline [m]"}});
   hc::Output<hc::TransformationKind<double>> cameras_ = module_.output(
       "cameras", hc::transformation(),
       "with the intrinsics: T_head_left_eye as calibrated (coord 3004), and from the left camera "

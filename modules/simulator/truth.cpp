@@ -51,11 +51,12 @@ Truth::Truth(hc::Module& module)
       ball_(module.output("ball", hc::position(6).in(Coord::kWorld),
                           "truth: the ball's middle [m] and velocity [m/s]")),
       ball_seen_(module.output("ball_seen", hc::table().of(1, 4),
-                               "truth: u, v, radius of the ball in the left image [px], "
-                               "visible share")),
+                               "truth: the ball in the left image, and its visible share",
+                               {.columns = {"x [px]", "y [px]", "radius [px]", "visible"}})),
       markers_(module.output("markers", hc::table(),
-                             "truth, a row each: kind (0 aruco, 1 apriltag, 2 colour), id, side "
-                             "[m], x y z [m] and qx qy qz qw in the world")),
+                             "truth, a row each in the world; kind: 0 aruco, 1 apriltag, 2 colour",
+                             {.columns = {"kind", "id", "side [m]", "x [m]", "y [m]", "z [m]", "qx",
+                                          "qy", "qz", "qw"}})),
       board_(module.output("board", hc::string(), "truth: text on the board")) {}
 
 void Truth::send_poses(hc::Time time, const Eigen::Isometry3d& T_world_head,

@@ -15,9 +15,9 @@ struct DriverOutputs {
 
   hc::Module& module;
 
-  hc::Output<hc::TableKind<double>> stick =
-      module.output("stick", hc::table().of(1, 2),
-                    "left > 0, down > 0, each -1 to 1, from the driver", {.keep = 1});
+  hc::Output<hc::TableKind<double>> stick = module.output(
+      "stick", hc::table().of(1, 2), "left > 0, down > 0, each -1 to 1, from the driver",
+      {.keep = 1, .columns = {"left", "down"}});
   hc::Output<hc::RotationKind<double>> rotation =
       module.output("rotation", hc::rotation().in(hc::Coord::kSupervisor),
                     "roll, pitch, yaw of the driver's head [rad]", {.keep = 1});
@@ -27,7 +27,8 @@ struct DriverOutputs {
   hc::Output<hc::StringKind> text =
       module.output("text", hc::string(), "to speak", {.keep = kTexts});
   hc::Output<hc::TableKind<double>> bid =
-      module.output("bid", hc::table(), "for the task chosen by the driver", {.keep = kBids});
+      module.output("bid", hc::table(), "for the task chosen by the driver",
+                    {.keep = kBids, .columns = {"salience"}});
 
   void send(const Order& order) {
     switch (order.control) {

@@ -92,9 +92,9 @@ class Program {
   hc::Output<hc::TableKind<std::int32_t>> focus_ =
       module_.output("focus", hc::table<std::int32_t>().of(1, 1),
                      "number of the mode in focus, 0 none; each period");
-  hc::Output<hc::TableKind<double>> standings_ = module_.output(
-      "standings", hc::table(),
-      "a row for each mode with a bid: mode, salience, age [s], in focus 0/1, a person's 0/1");
+  hc::Output<hc::TableKind<double>> standings_ =
+      module_.output("standings", hc::table(), "a row for each mode with a bid",
+                     {.columns = {"mode", "salience", "age [s]", "in focus", "of a person"}});
   hc::Output<hc::TableKind<std::uint8_t>> stopped_ =
       module_.output("stopped", hc::table<std::uint8_t>().of(1, 1),
                      "1 while it is stopped, else 0; at each change, and ten times a second");

@@ -118,7 +118,13 @@ class Module:
     ) -> None: ...
     def _input(self, name: str, kind: Kind, doc: str, actor: bool, keep: int) -> Input: ...
     def _output(
-        self, name: str, kind: Kind, doc: str, on_demand: bool, keep: int
+        self,
+        name: str,
+        kind: Kind,
+        doc: str,
+        on_demand: bool,
+        keep: int,
+        columns: Sequence[str],
     ) -> Output: ...
     def _parameter(
         self,

@@ -79,15 +79,23 @@ class Module(_hypercolumn.Module):
         return port
 
     def output(
-        self, name: str, kind: Kind, doc: str, *, on_demand: bool = False, keep: int = 0
+        self,
+        name: str,
+        kind: Kind,
+        doc: str,
+        *,
+        on_demand: bool = False,
+        keep: int = 0,
+        columns: Sequence[str] = (),
     ) -> Output:
         """Declares an output, of one kind.
 
         One `on_demand` is sent only by a link to it alone, and has no part in the standard output
         that outputs share. With `keep`, sending never waits: for a slow reader so many of the
-        newest messages wait, and without a reader a message is lost.
+        newest messages wait, and without a reader a message is lost. `columns` are names of the
+        numbers in a row, with their units: "age [s]".
         """
-        return self._output(name, kind, doc, on_demand, keep)
+        return self._output(name, kind, doc, on_demand, keep, list(columns))
 
     def parameter(
         self,

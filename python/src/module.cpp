@@ -126,10 +126,12 @@ PyInput add_input(Program& program, const std::string& name, const Kind& kind,
 }
 
 py::object add_output(const py::object& self, const std::string& name, const Kind& kind,
-                      const std::string& doc, bool on_demand, std::uint32_t keep) {
+                      const std::string& doc, bool on_demand, std::uint32_t keep,
+                      std::vector<std::string> columns) {
   auto& program = self.cast<Program&>();
   auto& module = program.module();
-  module.output(name, hc::AnyKind{{kind.only("an output")}}, doc, {on_demand, keep});
+  module.output(name, hc::AnyKind{{kind.only("an output")}}, doc,
+                {on_demand, keep, std::move(columns)});
   return make_output(program, hc::ModuleAccess::outputs(module).back(), self);
 }
 

@@ -84,8 +84,7 @@ std::string as_table(const std::vector<Described>& all) {
     if (const auto description = hc::parse_description(each.text))
       each_port(each.module, *description, [&](auto& prefix, std::string kind, auto& port, auto) {
         rows.push_back({prefix + port.name, kind == "input" ? "in" : "out",
-                        hc::in_words(port.types) + (port.actor ? ", moves something" : ""),
-                        port.doc});
+                        hc::in_words(port) + (port.actor ? ", moves something" : ""), port.doc});
         widest = std::max(widest, rows.back()[0].size());
       });
   std::string text;

@@ -39,6 +39,7 @@ Json to_json(const PortDescription& port, bool is_output) {
   if (port.actor) json["actor"] = true;
   if (port.keep != 0) json["keep"] = port.keep;
   if (is_output && !port.types.empty()) json["encoding"] = name(port.types.front().info.encoding);
+  if (!port.columns.empty()) json["columns"] = port.columns;
   json["doc"] = port.doc;
   return json;
 }
@@ -129,6 +130,7 @@ class Reader {
                           .read("doc", port.doc)
                           .read("actor", port.actor)
                           .read("keep", port.keep)
+                          .read("columns", port.columns)
                           .read("encoding", encoding)
                           .good();
     for (auto& type : port.types) type.info.encoding = encoding;
@@ -185,6 +187,13 @@ const PortDescription* implicit(const Description& description, const PortDescri
 bool Description::knows(std::string_view transport) const {
   if (!transports) return transport != "shm" && transport != "inproc";
   return std::find(transports->begin(), transports->end(), transport) != transports->end();
+}
+
+std::string in_words(const PortDescription& port) {
+  std::string text = in_words(port.types);
+  for (const auto& column : port.columns)
+    text.append(&column == &port.columns.front() ? ": " : ", ").append(column);
+  return text;
 }
 
 std::string to_json(const Description& description) {

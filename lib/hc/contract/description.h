@@ -20,6 +20,8 @@ struct PortDescription {
   bool actor = false;           ///< an input that moves something: it takes one writer at a time
   /// Of an input: default of `keep` for its links; 0: no preference.
   std::uint32_t keep = 0;
+  /// Of an output: names of the numbers in a row, with their units; empty: none.
+  std::vector<std::string> columns;
 };
 
 struct Description {
@@ -34,6 +36,9 @@ struct Description {
   /// Whether --in and --out take URIs of this scheme.
   [[nodiscard]] bool knows(std::string_view transport) const;
 };
+
+/// What a port sends or takes: "table of 1 x f64: mode, salience, age [s]".
+std::string in_words(const PortDescription& port);
 
 /// One line of JSON.
 std::string to_json(const Description& description);

@@ -17,7 +17,9 @@ TEST(Description, ComesBackAsItWasWritten) {
                          16},
                         {"any", "", {}}};
   description.outputs = {
-      {"pose", "", {{{MatrixType::Transformation, 1, Scalar::F64, Encoding::Binary}, 4, 4, 0}}}};
+      {"pose", "", {{{MatrixType::Transformation, 1, Scalar::F64, Encoding::Binary}, 4, 4, 0}}},
+      {"bids", "", {{{MatrixType::Table, 1, Scalar::F64, Encoding::Text}, 2, 0, 0}}}};
+  description.outputs[1].columns = {"mode", "age [s]"};
   description.together = {{"image", "any"}};
   ParameterState rate{"rate", "Hz", "how often", {}, 0.5, 0.5};
   rate.options.min = 0;
@@ -35,6 +37,7 @@ TEST(Description, ComesBackAsItWasWritten) {
   EXPECT_EQ(to_json(*parsed), json);
   EXPECT_EQ(parsed->inputs[0].keep, 16U);
   EXPECT_EQ(parsed->inputs[1].keep, 0U);
+  EXPECT_EQ(in_words(parsed->outputs[1]), "table 2 x any of 1 x f64: mode, age [s]");
   EXPECT_EQ(std::get<double>(parsed->parameters[0].default_value), 0.5);
   EXPECT_TRUE(std::get<bool>(parsed->parameters[3].default_value));
   EXPECT_TRUE(parsed->knows("tcp"));

@@ -13,8 +13,7 @@ std::string line(const std::string& left, const std::string& right) {
 
 std::string lines(const std::string& title, const std::vector<PortDescription>& ports) {
   std::string text = ports.empty() ? "" : "\n" + title + ":\n";
-  for (const auto& port : ports)
-    text += line(port.name, port.doc + " (" + in_words(port.types) + ")");
+  for (const auto& port : ports) text += line(port.name, port.doc + " (" + in_words(port) + ")");
   return text;
 }
 
@@ -41,7 +40,8 @@ Description description_of(const Module& module) {
     description.inputs.push_back(
         {port->name, port->doc, port->types, port->options.actor, port->options.keep});
   for (const auto& port : ModuleAccess::outputs(module))
-    description.outputs.push_back({port->name, port->doc, port->types});
+    description.outputs.push_back(
+        {port->name, port->doc, port->types, false, 0, port->options.columns});
   for (const auto& together : ModuleAccess::together(module)) {
     auto& names = description.together.emplace_back();
     for (const auto& port : together->inputs) names.push_back(port->name);

@@ -43,6 +43,8 @@ struct OutputOptions {
   /// > 0: sending never waits, whatever its links say. Without a reader a message is lost, and for
   /// a slow reader so many of the newest wait. For a module that has other work to do in time.
   std::uint32_t keep = 0;
+  /// Names of the numbers in a row, with their units: "age [s]". The next numbers repeat them.
+  std::vector<std::string> columns;
 };
 
 namespace internal {
