@@ -327,13 +327,22 @@ Rows Page::invite(const Rows& words) {
 std::optional<Rows> Page::record(const Asked& asked, const Rows& words) {
   if (!recording_job_.expired())
     return Rows{"a recording is being started or ended; try again in a moment"};
+  if (words.size() == 3 && words[1] == "delete") {
+    if (recorder_ && recorder_->name() == words[2]) return Rows{words[2] + " is being recorded"};
+    return record_aside([this, asked, name = words[2]] {
+      const auto deleted = delete_recording(options_.recordings, name);
+      return [this, asked, said = Rows{deleted ? "ok" : deleted.error().detail}] {
+        answer(asked, said);
+      };
+    });
+  }
   if (words.size() == 2 && words[1] == "end") {
     if (!recorder_) return Rows{"nothing is being recorded"};
     return end_recording([this, asked] { answer(asked, {"ok"}); });
   }
   if (recorder_) return Rows{"already recording: " + recorder_->name()};
   if (words.size() < 3)
-    return Rows{"record is followed by a name and outputs, MODULE.PORT, or by end"};
+    return Rows{"record is followed by a name and outputs, MODULE.PORT, by end, or delete NAME"};
   return record_aside([this, asked, words] {
     auto begun =
         Recorder::begin(options_.graph, {options_.recordings, options_.frames, callbacks_.log},

@@ -89,12 +89,12 @@ class Page final : public web::Site {
   /// Stops the robot, or clears the stop.
   std::optional<std::vector<std::string>> stop(const Asked& asked,
                                                const std::vector<std::string>& words);
-  /// Starts or ends a recording.
+  /// Starts, ends or deletes a recording.
   std::optional<std::vector<std::string>> record(const Asked& asked,
                                                  const std::vector<std::string>& words);
   /// Ends the recording, and then calls back.
   std::optional<std::vector<std::string>> end_recording(const std::function<void()>& ended);
-  /// As Server::aside(), to start or end a recording.
+  /// As Server::aside(), to start, end or delete a recording.
   std::optional<std::vector<std::string>> record_aside(web::Work work);
   void answer(const Asked& asked, const std::vector<std::string>& rows);
   void tick();
@@ -114,7 +114,7 @@ class Page final : public web::Site {
   std::shared_ptr<web::WebSocket> driver_socket_;
   Driver driver_;
   std::shared_ptr<Recorder> recorder_;
-  std::weak_ptr<web::Work> recording_job_;  // starts or ends the recording
+  std::weak_ptr<web::Work> recording_job_;  // starts, ends or deletes a recording
   web::Bytes state_;                        // latest
   std::set<std::int32_t> modes_;            // of the graph
   std::deque<web::Bytes> log_;              // last lines

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kMaxName = 40, kMaxPorts = 64;
+constexpr std::size_t kMaxName = 40, kMaxPorts = 256;
 constexpr std::string_view kEnding = ".mcap";
 
 bool is_recording_name(std::string_view name) {
@@ -68,6 +68,16 @@ web::Reply recorded_file(const std::string& folder, const std::string& file) {
   return reply;
 }
 
+hc::Status delete_recording(const std::string& folder, const std::string& name) {
+  const fs::path path = folder + "/" + name + std::string(kEnding);
+  std::error_code failed;
+  if (!is_recording_name(name) || fs::symlink_status(path, failed).type() != fs::file_type::regular)
+    return hc::Error{hc::Code::Invalid, "no recording " + name};
+  if (fs::remove(path, failed); failed)
+    return hc::Error{hc::Code::System, path.string() + ": " + failed.message()};
+  return {};
+}
+
 hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& graph,
                                                       const Options& options,
                                                       const std::string& name,
@@ -78,7 +88,7 @@ hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& gr
                      "the name of a recording must have 1 to 40 letters, digits, - and _"};
   if (ports.empty() || ports.size() > kMaxPorts ||
       std::set<std::string>(ports.begin(), ports.end()).size() < ports.size())
-    return hc::Error{Code::Invalid, "give 1 to 64 different outputs MODULE.PORT"};
+    return hc::Error{Code::Invalid, "give 1 to 256 different outputs MODULE.PORT"};
   for (const auto& port : ports)
     if (!hc::is_port_name(port))
       return hc::Error{Code::Invalid, "\"" + port + "\" is not MODULE.PORT"};

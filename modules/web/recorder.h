@@ -32,6 +32,9 @@ std::vector<Recorded> list_recordings(const std::string& folder);
 /// The recording in a file NAME.mcap, in its current length; 404 if there is none.
 web::Reply recorded_file(const std::string& folder, const std::string& file);
 
+/// Deletes a recording. Errors: Invalid (there is none), System.
+hc::Status delete_recording(const std::string& folder, const std::string& name);
+
 /// A running recording, until end(). A write error, e.g. on a full disk, ends it; the file keeps
 /// all before. Its destructor may wait for the disk, unless it has ended.
 class Recorder {

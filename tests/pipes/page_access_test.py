@@ -99,6 +99,7 @@ class Access(Page):
             "invite operate",
             "record one camera.left",
             "record end",
+            "record delete one",
             "notices",
             "nonsense",
         )

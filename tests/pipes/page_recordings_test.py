@@ -154,6 +154,7 @@ class Recordings(Page):
         self.record(graph)
         self.assertIn("already", self.command(graph, "record two camera.left")[0])
         self.hear(graph, 3, lambda text: json.loads(text)["recording"]["bytes"] > 9999)
+        self.assertIn("being recorded", self.command(graph, "record delete one")[0])
         self.assertEqual(self.command(graph, "record end"), ["ok"])
         self.assertIn("already", self.command(graph, "record one camera.left")[0])
         self.assertIn("nothing", self.command(graph, "record end")[0])
@@ -165,6 +166,10 @@ class Recordings(Page):
         out = self.shell("hc info copy.mcap")
         self.assertRegex(out, r"camera\.left +\d+ .* sensor_msgs/msg/CompressedImage\n")
         self.assertEqual(get(self.port, "/recordings/two.mcap", Cookie=cookie)[0], 404)
+        for name in ("two", "../copy", "one.mcap"):
+            self.assertIn("no recording", self.command(graph, "record delete " + name)[0])
+        self.assertEqual(self.command(graph, "record delete one"), ["ok"])
+        self.assertEqual(json.loads(get(self.port, "/recordings", Cookie=cookie)[2]), [])
         self.stop(process)
 
 
