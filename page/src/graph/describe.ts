@@ -16,6 +16,8 @@ export interface PortDescription {
   readonly name: string;
   readonly types: readonly PortType[];
   readonly doc?: string;
+  /** Of an output: names of the numbers in a row, "age [s]". */
+  readonly columns?: readonly string[];
   readonly actor?: boolean;
 }
 
