@@ -81,6 +81,7 @@ class Replay {
       session: host.server.session,
       ready: () => Promise.resolve(),
       open: (port) => player.open(port) ?? missing(port),
+      outputsBeside: () => Promise.resolve([]),
     };
     const play = h("button", {
       class: "primary",
@@ -106,7 +107,9 @@ class Replay {
       "div",
       { class: "replay" },
       h("div", { class: "timeline" }, play, speed, this.scrub, this.clock),
-      h("fieldset", { class: "replay-streams" }, h("legend", {}, "Streams"), boxes),
+      h("details", { class: "replay-choice" }, h("summary", {}, `${tracks.length} streams`), [
+        h("div", { class: "replay-streams" }, boxes),
+      ]),
       this.room,
     );
     for (const { port } of tracks) if (chosen.includes(port)) this.open(port);

@@ -50,3 +50,12 @@ test("both eyes of a time have one range, which follows slowly", () => {
   assert.deepEqual(range.update(gridOf([9, 9]), 1n), [1, 1]);
   assert.deepEqual(range.update(gridOf([6, 6]), 2n), [2, 2]);
 });
+
+test("a fixed range stays, once there is one", () => {
+  const range = new SlowRange();
+  range.isFixed = true;
+  assert.deepEqual(range.update(gridOf([1, 2])), [1, 1]);
+  assert.deepEqual(range.update(gridOf([6, 6])), [1, 1]);
+  range.isFixed = false;
+  assert.deepEqual(range.update(gridOf([6, 6])), [2, 2]);
+});

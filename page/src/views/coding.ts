@@ -45,6 +45,8 @@ export function usualRange({ values, isZeroUnknown }: Grid): Range | undefined {
 /** A range that follows the values slowly, so that colours do not flicker. */
 export class SlowRange {
   range?: Range;
+  /** Keeps the range, once there is one. */
+  isFixed = false;
   private time?: bigint;
 
   /**
@@ -52,6 +54,7 @@ export class SlowRange {
    * @returns  undefined until a value is known.
    */
   update(grid: Grid, time?: bigint): Range | undefined {
+    if (this.isFixed && this.range) return this.range;
     const usual = time !== undefined && time === this.time ? undefined : usualRange(grid);
     if (usual) {
       const [least, most] = this.range ?? usual;

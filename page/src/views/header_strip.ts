@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+import { durationText, rateText } from "../graph/words";
 import { coordName, headerFields, type Header, type HeaderField } from "../mtp";
 import type { Arrival } from "../server";
-import { fill, h } from "../shell/h";
+import { button, h, setText } from "../shell/h";
 
 const meanings: Record<HeaderField, string> = {
   version: "version of the protocol",
@@ -19,37 +20,46 @@ const meanings: Record<HeaderField, string> = {
 
 const period = 2; // window of measured rates [s]
 
-/** The header as on the wire, with field names; rate, latency, loss. */
+/** The rate and the age of the messages; on demand, the header as on the wire. */
 export class HeaderStrip {
-  private readonly fields = headerFields.map((name) => {
-    const value = h("span.value");
-    const element = h("span.field", { title: `${name}: ${meanings[name]}` });
-    element.append(h("span.name", name), " ", value);
-    return { name, element, value };
-  });
-  private readonly summary = h("span.summary.wrap");
-  readonly element = h(
-    "div.header-strip.muted",
-    { tabindex: 0, role: "group", "aria-label": "Header and figures" },
-    [
-      this.summary,
-      h(
-        "div.fields.wrap.mono",
-        this.fields.map(({ element }) => element),
+  private readonly values = headerFields.map(() => h("dd.value.mono"));
+  private readonly rate = h("span.figure", { title: "Messages shown here, a second" });
+  private readonly age = h("span.figure", { title: "From sensing to arrival in this page" });
+  private readonly doc = h("p");
+  private readonly about = h("p");
+  private readonly details = h("div.details", { hidden: true, tabindex: 0 }, [
+    this.doc,
+    this.about,
+    h(
+      "dl.fields.wrap",
+      headerFields.map((name, i) =>
+        h("div", { title: meanings[name] }, [h("dt", name), this.values[i]]),
       ),
-    ],
-  );
+    ),
+  ]);
+  private readonly more = button("Header", () => this.toggle(), {
+    "aria-expanded": "false",
+    title: "The type of the messages, and the header as on the wire",
+  });
+  readonly element = h("div.header-strip.muted", [
+    h("div.summary.row", [this.rate, this.age, this.more]),
+    this.details,
+  ]);
   private readonly times: number[] = []; // of arrivals, by performance.now() [ms]
   private latency?: number; // [s]
   private lastSeq?: bigint;
   private lost = 0n;
   private sent?: Header;
-  private drawn = 0;
+
+  /** Takes the description of the output. */
+  setDoc(text: string): void {
+    setText(this.doc, text);
+  }
 
   /** Takes the original header line. */
   setLine(line: string): void {
     const words = line.trim().split(/ +/);
-    this.fields.forEach(({ value }, i) => (value.textContent = words[i] ?? ""));
+    this.values.forEach((value, i) => setText(value, words[i] ?? ""));
   }
 
   /** Counts a message. */
@@ -63,27 +73,26 @@ export class HeaderStrip {
       this.lost += seq - this.lastSeq - 1n;
     this.lastSeq = seq;
     if (time > 0n && !isReplay) this.latency = arrival.at / 1000 - Number(time) / 1e9;
-    if (now - this.drawn > 250) this.draw();
   }
 
-  /** Shows the figures; also called periodically, so that the rate falls without messages. */
+  /** Shows the figures; called once a second. */
   draw(): void {
-    this.drawn = performance.now();
-    const { sent, times } = this;
+    const { sent, times, latency } = this;
     if (!sent) return;
-    const recent = times.filter((time) => time > this.drawn - period * 1000);
+    const recent = times.filter((time) => time > performance.now() - period * 1000);
+    setText(this.rate, rateText(recent.length / period) || "0/s");
+    const isKnown = latency !== undefined && latency >= 0 && latency < 3600;
+    setText(this.age, isKnown ? `${durationText(latency)} old` : "");
+    if (this.details.hidden) return;
     const size = `${sent.width} × ${sent.height} of ${sent.components} × ${sent.scalar}`;
-    const parts = [
-      `${sent.type} ${size}, ${coordName(sent.coord)}`,
-      `${(recent.length / period).toFixed(1)}/s`,
-      this.latency !== undefined && Math.abs(this.latency) < 3600
-        ? `${(this.latency * 1000).toFixed(0)} ms old`
-        : "",
-      this.lost > 0n ? `${this.lost} not shown` : "",
-    ];
-    fill(this.summary, ...parts.filter(Boolean).map((part) => h("span", part)));
-    this.summary.title =
-      "Type and size; messages a second here; time from sensing to arrival; gaps of seq: messages that " +
-      "this page skipped for newer ones";
+    const skipped = this.lost > 0n ? `; ${this.lost} skipped for newer ones` : "";
+    setText(this.about, `${sent.type} ${size}, ${coordName(sent.coord)}${skipped}`);
+  }
+
+  private toggle(): void {
+    const isOpen = this.details.hidden;
+    this.details.hidden = !isOpen;
+    this.more.setAttribute("aria-expanded", String(isOpen));
+    this.draw();
   }
 }

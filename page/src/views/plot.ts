@@ -5,6 +5,7 @@ import { numbersOf, type Header } from "../mtp";
 import type { Arrival } from "../server";
 import { button, fill, h, setText } from "../shell/h";
 import { colour, onTheme } from "../shell/theme";
+import { columnsOf, quantityText, shown } from "./columns";
 import { Sight } from "./room";
 import { Series } from "./series";
 import type { View, ViewKind } from "./view";
@@ -12,28 +13,15 @@ import type { View, ViewKind } from "./view";
 const mostColumns = 24;
 const colours = 6;
 
-const axes: Partial<Record<Header["type"], readonly string[]>> = {
-  position: ["x", "y", "z", "vx", "vy", "vz", "ax", "ay", "az"],
-  rotation: ["", " rate", " acceleration"].flatMap((what) =>
-    ["roll", "pitch", "yaw"].map((axis) => axis + what),
-  ),
-};
-
-/** Names of the numbers of a message, up to mostColumns. */
-function columnNames({ type, width, height, components }: Header): string[] {
-  return Array.from({ length: Math.min(mostColumns, width * height * components) }, (_, at) => {
-    const element = Math.floor(at / components);
-    const places = [height > 1 && Math.floor(element / width), width > 1 && element % width];
-    const place = places.filter((each) => each !== false).join(",");
-    const axis = axes[type]?.[at % components] ?? (components > 1 ? `[${at % components}]` : "");
-    return `${place} ${axis}`.trim() || "value";
+/** The numbers of a message, up to mostColumns: their names, and units in which they are shown. */
+function numbersIn(header: Header, declared: readonly string[]): ReturnType<typeof shown>[] {
+  const row = columnsOf(header, declared);
+  const count = Math.min(mostColumns, row.length * header.height);
+  return Array.from({ length: count }, (_, i) => {
+    const { name, unit } = row[i % row.length]!;
+    const place = header.height > 1 ? `${Math.floor(i / row.length)} ` : "";
+    return shown({ name: place + name, unit });
   });
-}
-
-function unitOf(header: Header): string {
-  if (header.coord >= 7 && header.coord <= 10) return "px";
-  if (header.type === "rotation" || header.coord === 13) return "rad";
-  return header.type === "position" ? "m" : "";
 }
 
 export class PlotView implements View {
@@ -59,7 +47,7 @@ export class PlotView implements View {
   });
   private readonly ends: readonly (() => void)[];
   private series?: Series;
-  private names: string[] = [];
+  private columns: ReturnType<typeof shown>[] = [];
   private shape = "";
   private chosen = new Set<number>();
   private plot?: uPlot;
@@ -67,9 +55,9 @@ export class PlotView implements View {
   private isNew = false;
   private values: HTMLElement[] = [];
   private last: ArrayLike<number> = [];
-  private unit = "";
 
-  constructor() {
+  /** @param declared  columns. */
+  constructor(private readonly declared: readonly string[]) {
     this.element = h("div.stack", [this.buttons, this.room, this.slider]);
     this.tools = [this.span];
     const sight = new Sight(this.element);
@@ -92,11 +80,11 @@ export class PlotView implements View {
     if (numbers.length === 0) return;
     const shape = `${header.type} ${header.width}x${header.height}x${header.components}`;
     const isCloud = header.width * header.height > 1 && header.type === "position";
-    if (shape !== this.shape && !(isCloud && this.series)) this.start(header, shape);
-    this.unit = unitOf(sent);
+    if (shape !== this.shape && !(isCloud && this.series))
+      this.start({ ...header, coord: sent.coord }, shape);
     const time = header.time > 0n ? Number(header.time) / 1e9 : arrival.at / 1000;
-    this.series!.push(time, numbers);
-    this.last = numbers;
+    this.last = this.columns.map(({ factor }, i) => factor * numbers[i]!);
+    this.series!.push(time, this.last);
     this.isNew = true;
   }
 
@@ -114,11 +102,11 @@ export class PlotView implements View {
 
   private start(header: Header, shape: string): void {
     this.shape = shape;
-    this.names = columnNames(header);
-    this.series = new Series(this.names.length);
-    this.chosen = new Set(this.names.slice(0, 3).keys());
-    this.values = this.names.map(() => h("span.mono"));
-    const buttons = this.names.map((name, i) => {
+    this.columns = numbersIn(header, this.declared);
+    this.series = new Series(this.columns.length);
+    this.chosen = new Set(this.columns.slice(0, 3).keys());
+    this.values = this.columns.map(() => h("span.mono"));
+    const buttons = this.columns.map(({ name }, i) => {
       const pressed = String(this.chosen.has(i));
       const one = button([name, " ", this.values[i]], () => this.choose(i, one), {
         class: "series-button",
@@ -141,7 +129,9 @@ export class PlotView implements View {
   private build(): void {
     if (!this.series) return;
     this.plot?.destroy();
+    const size = 0.8 * parseFloat(getComputedStyle(this.room).fontSize); // of labels [px]
     const axis = {
+      font: `${size}px system-ui, sans-serif`,
       stroke: colour("muted"),
       grid: { stroke: colour("line"), width: 1 },
       ticks: { show: false },
@@ -153,17 +143,18 @@ export class PlotView implements View {
       cursor: { y: false },
       scales: { x: { time: true } },
       axes: [
-        { ...axis, values: (_, ticks) => ticks.map(clock) },
+        { ...axis, size: 2.6 * size, space: 7 * size, values: (_, ticks) => ticks.map(clock) },
         {
           ...axis,
-          size: 60,
+          size: 5 * size,
+          space: 4 * size,
           values: (_, ticks) => ticks.map((tick) => String(Number(tick.toPrecision(6)))),
         },
       ],
       series: [
         {},
         ...[...this.chosen].map((i) => ({
-          label: this.names[i]!,
+          label: this.columns[i]!.name,
           stroke: colour(`series-${(i % colours) + 1}`),
           width: 1.5,
           points: { show: false },
@@ -203,9 +194,8 @@ export class PlotView implements View {
       const at = chosen.indexOf(i) + 1;
       const value =
         index !== null && index !== undefined && at > 0 ? plot.data[at]?.[index] : this.last[i];
-      const text =
-        value === null || value === undefined ? "" : `${Number(value.toPrecision(4))} ${this.unit}`;
-      setText(element, text);
+      const isKnown = value !== null && value !== undefined;
+      setText(element, isKnown ? quantityText(value, this.columns[i]!.unit) : "");
     });
   }
 }
@@ -220,5 +210,5 @@ const never = ["string", "rgb_image", "intensity_image", "vector_field", "map", 
 export const plotView: ViewKind = {
   name: "plot",
   fits: (sent) => !never.includes(sent.type) && sent.width * sent.height * sent.components > 0,
-  make: () => new PlotView(),
+  make: ({ about }) => new PlotView(about.columns),
 };

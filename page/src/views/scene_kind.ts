@@ -25,5 +25,5 @@ export const sceneView: ViewKind = {
 /** The default view of a point cloud. */
 export const cloudView: ViewKind = {
   ...sceneView,
-  fits: (sent) => sent.type === "vector_field" && sceneView.fits(sent),
+  fits: (sent, about) => sent.type === "vector_field" && sceneView.fits(sent, about),
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A stream with its header, shown by its type.
 import { sentHeader, type Header } from "../mtp";
+import type { Output } from "../outputs";
 import type { Arrival } from "../server";
 import { h } from "../shell/h";
 import { HeaderStrip } from "./header_strip";
@@ -8,7 +9,7 @@ import { kindsFor } from "./kinds";
 import { Past } from "./past";
 import { isVideo } from "./picture";
 import { Sight } from "./room";
-import type { Source, Surroundings, View, ViewKind } from "./view";
+import type { About, Source, Surroundings, View, ViewKind } from "./view";
 
 export interface StreamViewHost {
   readonly surroundings: Surroundings;
@@ -46,6 +47,7 @@ export class StreamView {
   private view?: View;
   private kind?: ViewKind;
   private making?: Promise<void>;
+  private about: About = { columns: [], outputs: [] };
   private sent?: Header;
   private isPaused = false;
   private held: (() => void)[] = [];
@@ -81,6 +83,7 @@ export class StreamView {
     });
     source.on("message", (arrival) => this.receive(arrival));
     this.timer = window.setInterval(() => this.strip.draw(), 1000);
+    void host.surroundings.outputsBeside(source.port).then((outputs) => this.describe(outputs));
   }
 
   close(): void {
@@ -94,6 +97,16 @@ export class StreamView {
   private setHeader(line: string): void {
     this.strip.setLine(line);
     this.sent = sentHeader(line) ?? this.sent;
+  }
+
+  /** Takes the description, which may come later than the first message. */
+  private describe(outputs: readonly Output[]): void {
+    const own = outputs.find(({ port }) => port === this.source.port);
+    if (!own) return;
+    this.strip.setDoc(own.doc);
+    this.about = { columns: own.columns, outputs };
+    this.kind = undefined;
+    if (this.sent) void this.choose(this.sent).then(() => this.showAgain());
   }
 
   private async receive(arrival: Arrival): Promise<void> {
@@ -127,7 +140,7 @@ export class StreamView {
   /** Creates the matching view, if it has changed. */
   private async choose(sent: Header): Promise<void> {
     await this.making;
-    const fitting = kindsFor(sent);
+    const fitting = kindsFor(sent, this.about);
     const kind = fitting.find(({ name }) => name === this.wanted) ?? fitting[0];
     if (kind === this.kind || !kind) return;
     this.kind = kind;
@@ -143,9 +156,14 @@ export class StreamView {
 
   private async make(kind: ViewKind): Promise<void> {
     this.view?.close?.();
-    const { source, host } = this;
+    const { source, host, about } = this;
     const { surroundings } = host;
-    const view = await kind.make({ source, surroundings, say: (text) => host.say(text) });
+    const view = await kind.make({
+      source,
+      surroundings,
+      about,
+      say: (text) => host.say(text),
+    });
     this.view = view;
     this.body.replaceChildren(view.element);
     this.viewTools.replaceChildren(...(view.tools ?? []));

@@ -3,6 +3,7 @@
 import { numberText, type Header } from "../mtp";
 import type { Arrival } from "../server";
 import { fill, h, setText } from "../shell/h";
+import { columnsOf } from "./columns";
 import { Sight } from "./room";
 import type { View, ViewKind } from "./view";
 
@@ -18,6 +19,9 @@ export class TableView implements View {
   private timer?: number;
   private cells: HTMLTableCellElement[] = [];
   private shape = "";
+
+  /** @param declared  columns. */
+  constructor(private readonly declared: readonly string[]) {}
 
   show(arrival: Arrival): void {
     clearTimeout(this.timer);
@@ -36,27 +40,31 @@ export class TableView implements View {
     const { header, elements } = message;
     const shape = `${header.width} ${header.height} ${header.components}`;
     if (shape !== this.shape) this.build(header, shape);
-    const { components, width } = header;
-    const columns = Math.min(width, mostColumns);
+    const inRow = header.width * header.components;
+    const columns = Math.min(inRow, mostColumns);
     this.cells.forEach((cell, i) => {
-      const first = (Math.floor(i / columns) * width + (i % columns)) * components;
-      const numbers = Array.from({ length: components }, (_, k) => elements[first + k]!);
-      const text = numbers.map((each) => shortText(each, header)).join("  ");
-      setText(cell, text);
+      const number = elements[Math.floor(i / columns) * inRow + (i % columns)]!;
+      setText(cell, shortText(number, header));
     });
   }
 
   private build(header: Header, shape: string): void {
     this.shape = shape;
-    const { width, height } = header;
+    const { width, height, components } = header;
     const rows = width === 0 ? 0 : Math.min(height, mostRows);
-    const columns = Math.min(width, mostColumns);
+    const columns = Math.min(width * components, mostColumns);
     this.cells = Array.from({ length: rows * columns }, () => h("td"));
+    const names = columnsOf(header, this.declared).slice(0, columns);
     fill(
       this.table,
       h(
         "thead",
-        h("tr", [h("td"), Array.from({ length: columns }, (_, i) => h("th", { scope: "col" }, i))]),
+        h("tr", [
+          h("td"),
+          names.map(({ name, unit }) =>
+            h("th", { scope: "col" }, [name, unit && h("span.unit", ` ${unit}`)]),
+          ),
+        ]),
       ),
       h(
         "tbody",
@@ -71,8 +79,8 @@ export class TableView implements View {
     this.more.textContent =
       rows === 0
         ? "Empty: no rows or no elements."
-        : rows < height || columns < width
-          ? `The first ${rows} × ${columns} of ${height} rows × ${width} columns.`
+        : rows < height || columns < width * components
+          ? `The first ${rows} × ${columns} of ${height} rows × ${width * components} columns.`
           : "";
   }
 }
@@ -86,10 +94,10 @@ function shortText(value: number | bigint, header: Header): string {
 export const tableView: ViewKind = {
   name: "table",
   fits: (sent) => sent.type !== "string" && sent.encoding !== "jpeg",
-  make: () => new TableView(),
+  make: ({ about }) => new TableView(about.columns),
 };
 
-/** The default view of tables with several elements and of transformations. */
+/** The default view of tables with several elements and of other transformations than poses. */
 export const matrixView: ViewKind = {
   ...tableView,
   fits: ({ type, width, height }) =>

@@ -31,20 +31,23 @@ export class ValuesView implements View {
   private readonly holePart = h("span.hole-part");
   private readonly probe: Probe;
   private readonly endRoom: () => void;
-  private range = new SlowRange();
   private image?: ImageData;
   private shown?: { arrival: Arrival; sent: Header; values: Numbers };
 
-  constructor(host: ViewHost) {
+  /** @param range  of the colours, which views of both eyes share. */
+  constructor(
+    host: ViewHost,
+    private readonly range = new SlowRange(),
+  ) {
     this.canvas.setAttribute("aria-label", `Values of ${host.source.port} in colours`);
     this.probe = new Probe(this.canvas, (spot) => this.words(spot));
     this.fixed.textContent = "Fix colours";
     this.fixed.onclick = () => {
-      const isFixed = this.fixed.getAttribute("aria-pressed") !== "true";
-      this.fixed.setAttribute("aria-pressed", String(isFixed));
+      this.range.isFixed = !this.range.isFixed;
+      this.fixed.setAttribute("aria-pressed", String(this.range.isFixed));
     };
     this.component.onchange = () => {
-      this.range = new SlowRange();
+      this.range.range = undefined;
       if (this.shown) this.show(this.shown.arrival, this.shown.sent);
     };
     this.tools = [this.component, this.fixed];
@@ -100,8 +103,7 @@ export class ValuesView implements View {
             (_, i) => all[i * components + which]!,
           );
     const grid = { values, width: this.image!.width, isZeroUnknown };
-    const isFixed = this.fixed.getAttribute("aria-pressed") === "true";
-    const range = (isFixed && this.range.range) || this.range.update(grid);
+    const range = this.range.update(grid, this.shown?.arrival.message.header.time || undefined);
     if (range) this.label(range);
     const pixels = new Uint32Array(this.image!.data.buffer);
     const unknown = code(grid, range, "colours", stripes, pixels);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Header } from "../mtp";
+import type { Output } from "../outputs";
 import type { Arrival, GraphState, Session, Unsubscribe } from "../server";
 
 /** A source of messages: a stream of the server, or a recording. */
@@ -26,11 +27,22 @@ export interface Surroundings {
   ready(): Promise<void>;
   /** Opens another source: live, or of the same recording. */
   open(port: string): Source;
+  /** All outputs of the module of an output, as it describes them; none if unknown. */
+  outputsBeside(port: string): Promise<readonly Output[]>;
+}
+
+/** What the module of a stream says about it. */
+export interface About {
+  /** Names of the numbers in a row. */
+  readonly columns: readonly string[];
+  /** All outputs of the module. */
+  readonly outputs: readonly Output[];
 }
 
 export interface ViewHost {
   readonly source: Source;
   readonly surroundings: Surroundings;
+  readonly about: About;
   say(sentence: string): void;
 }
 
@@ -60,6 +72,6 @@ export interface View {
 /** A way to show streams. */
 export interface ViewKind {
   readonly name: string;
-  fits(sent: Header): boolean;
+  fits(sent: Header, about: About): boolean;
   make(host: ViewHost): View | Promise<View>;
 }
