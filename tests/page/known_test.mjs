@@ -106,7 +106,8 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     const [x, y, ...colour] = (await wordsAt(".picture", 0.25, 0.25)).match(/[\d.]+/g).map(Number);
     assert.ok(Math.abs(x - 40) <= 1 && Math.abs(y - 30) <= 1, `${x}, ${y}`);
     assertColours([colour], [colours[0]]);
-    const header = await page.locator(".header-strip .value").allTextContents();
+    await page.getByRole("button", { name: "Header" }).click();
+    const header = await page.locator(".header-strip .value:visible").allTextContents();
     assert.match(header.join(" "), /^1 \d+ 0 \d+ 8 \d{19} 30301 0 7 160 120$/);
   });
 
@@ -208,6 +209,8 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
 
   test("a recording that was made in the page is replayed", async () => {
     await show("recordings");
+    await page.getByLabel("Poses and commands").check(); // none of the streams below
+    await page.getByLabel("My choice").check();
     for (const port of ["known.image", "known.number"]) await page.getByLabel(port).check();
     await page.getByRole("button", { name: "Start recording" }).click();
     await page.locator(".running-words", { hasText: /: [1-9]\d* s,/ }).waitFor();
@@ -225,6 +228,28 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
       assertColours(await pixels(".replay .picture", quarters), colours);
     }
     await page.locator(".replay .series-button", { hasText: "42.5" }).waitFor();
+  });
+
+  test("a recording is deleted after a question", async () => {
+    await show("recordings");
+    const item = page.locator(".recording-list li", { hasText: "2 streams" });
+    await item.getByRole("button", { name: /^Delete/ }).click();
+    await page.getByRole("button", { name: "Keep" }).click();
+    await item.getByRole("button", { name: /^Delete/ }).click();
+    await page.getByRole("button", { name: "Delete", exact: true }).click();
+    await page.getByText("No recordings yet.").waitFor();
+  });
+
+  test("streams are found by their type and their description", async () => {
+    await page.getByRole("button", { name: "Open…" }).click();
+    const dialog = page.getByRole("dialog", { name: "Open a panel" });
+    await dialog.getByRole("button", { name: "Sound" }).click();
+    await dialog.getByRole("button", { name: /^known\.sound/ }).waitFor();
+    assert.equal(await dialog.getByRole("button", { name: /^known\.image/ }).count(), 0);
+    await dialog.getByRole("button", { name: "Sound", exact: true }).click();
+    await dialog.getByRole("searchbox").fill("a row for each mode");
+    await page.keyboard.press("Enter");
+    await page.locator(".bars-view .bar-row", { hasText: "look" }).waitFor();
   });
 
   test("a second page takes the seat from the first", async () => {

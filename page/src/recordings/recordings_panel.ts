@@ -1,77 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records streams, lists recordings, opens them: {kind: "recordings"}.
-import { CommandError, mayOperate, type GraphState, type Recording, type Session } from "../server";
-import { outputsOf, type Output } from "../outputs";
-import { fill, h, type PanelHost, type PanelKind } from "../shell";
+// Records streams, lists recordings, opens and deletes them: {kind: "recordings"}.
+import { bytesText } from "../graph/words";
+import { CommandError, mayOperate, type Recording, type Session } from "../server";
+import { button, fill, h, type PanelHost, type PanelKind } from "../shell";
 import { giveFiles } from "./local";
-
-export function bytesText(bytes: number): string {
-  const units = ["B", "kB", "MB", "GB", "TB"];
-  let unit = 0;
-  while (bytes >= 1000 && unit < units.length - 1) {
-    bytes /= 1000;
-    unit += 1;
-  }
-  return `${unit === 0 ? bytes : bytes.toFixed(bytes < 10 ? 1 : 0)} ${units[unit]}`;
-}
-
-/** A name for a new recording: the time, such as 20261122-210705. */
-export function nameOfNow(now: Date): string {
-  const two = (value: number) => String(value).padStart(2, "0");
-  const day = `${now.getFullYear()}${two(now.getMonth() + 1)}${two(now.getDate())}`;
-  return `${day}-${two(now.getHours())}${two(now.getMinutes())}${two(now.getSeconds())}`;
-}
+import { RecordForm } from "./record_form";
 
 export const recordingsPanel: PanelKind = (_args, host) => {
   host.setTitle("Recordings");
-  const panel = new RecordingsPanel(host);
-  return { element: panel.element, close: () => panel.close() };
+  return new RecordingsPanel(host);
 };
 
 class RecordingsPanel {
   readonly element: HTMLElement;
-  private readonly list = h("ul", { class: "recording-list" });
-  private readonly problem = h("p", { class: "problem", role: "alert", hidden: true });
-  private readonly begin: HTMLFormElement;
-  private readonly running = h("div", { class: "running", hidden: true });
-  private readonly streams = h("div", { class: "stream-choice" });
-  private readonly name = h("input", {
-    "aria-label": "Name of the recording",
-    pattern: "[A-Za-z0-9_\\-]{1,40}",
-    title: "Letters, digits, - and _, at most 40",
-    required: true,
-  });
-  private readonly start = h("button", { class: "primary" }, "Start recording");
+  private readonly list = h("ul.recording-list");
+  private readonly problem = h("p.problem", { role: "alert", hidden: true });
+  private readonly dialog = h("dialog.confirm.box", { "aria-labelledby": "confirm-words" });
   private readonly ends: (() => void)[];
-  private readonly chosen = new Set<string>();
-  private modules = "";
-  private wasRecording?: string;
+  private isRecording?: boolean;
 
   constructor(private readonly host: PanelHost) {
     const { server } = host;
-    this.name.value = nameOfNow(new Date());
-    this.begin = h(
-      "form",
-      {
-        class: "record-form",
-        onsubmit: (event) => {
-          event.preventDefault();
-          void this.record();
-        },
-      },
-      h("div", { class: "row" }, this.name, this.start),
-      h(
-        "fieldset",
-        {},
-        h("legend", {}, "Streams"),
-        h(
-          "div",
-          { class: "row" },
-          h("button", { type: "button", onclick: () => this.chooseAll(true) }, "All"),
-          h("button", { type: "button", onclick: () => this.chooseAll(false) }, "None"),
-        ),
-        this.streams,
-      ),
+    const form = new RecordForm(
+      host,
+      (text) => this.command(text),
+      (text) => this.showProblem(text),
     );
     const files = h("input", {
       type: "file",
@@ -81,30 +34,33 @@ class RecordingsPanel {
       onchange: () => this.openFiles(files.files ?? []),
     });
     this.element = h(
-      "div",
+      "div.recordings",
       {
-        class: "recordings",
         ondragover: (event) => event.preventDefault(),
         ondrop: (event) => {
           event.preventDefault();
           this.openFiles(event.dataTransfer?.files ?? []);
         },
       },
-      this.problem,
-      h("h3", {}, "Record"),
-      this.running,
-      this.begin,
-      h("h3", {}, "On the server"),
-      this.list,
-      h("h3", {}, "Files"),
-      h("p", { class: "muted" }, "Choose .mcap or .mtp files, or drop them here."),
-      files,
+      [
+        this.problem,
+        h("h3", "Record"),
+        form.element,
+        h("h3", "On the server"),
+        this.list,
+        h("h3", "From this computer"),
+        h("p.muted", "Choose .mcap or .mtp files, also those of hc record, or drop them here."),
+        files,
+        this.dialog,
+      ],
     );
     this.ends = [
-      server.onState((state) => this.updateStreams(state)),
-      server.onSession((session) => this.showSession(session)),
+      server.onState((state) => form.showState(state)),
+      server.onSession((session) => {
+        form.showSession(session);
+        this.showSession(session);
+      }),
     ];
-    void this.refresh();
   }
 
   close(): void {
@@ -128,72 +84,10 @@ class RecordingsPanel {
     }
   }
 
-  private async record(): Promise<void> {
-    if (this.chosen.size === 0) return this.showProblem("Choose at least one stream.");
-    const name = this.name.value;
-    if (!(await this.command(["record", name, ...this.chosen].join(" ")))) return;
-    this.host.say(`Recording ${name}.`);
-    this.name.value = nameOfNow(new Date(Date.now() + 1000));
-  }
-
-  /** Updates the outputs when modules have been added or removed. */
-  private updateStreams(state: GraphState): void {
-    const modules = state.modules.map(({ name }) => name).join();
-    if (modules === this.modules) return;
-    this.modules = modules;
-    void outputsOf(this.host.server).then((outputs) => this.showStreams(outputs));
-  }
-
-  private showStreams(outputs: readonly Output[]): void {
-    fill(
-      this.streams,
-      outputs.map(({ port, type, doc }) => {
-        const box = h("input", {
-          type: "checkbox",
-          value: port,
-          onchange: () => (box.checked ? this.chosen.add(port) : this.chosen.delete(port)),
-        });
-        box.checked = this.chosen.has(port);
-        return h("label", { title: [type, doc].filter(Boolean).join(": ") }, box, port);
-      }),
-    );
-  }
-
-  private chooseAll(all: boolean): void {
-    for (const box of this.streams.querySelectorAll("input")) {
-      box.checked = all;
-      if (all) this.chosen.add(box.value);
-      else this.chosen.delete(box.value);
-    }
-  }
-
-  private showSession(session: Session): void {
-    const { recording } = session;
-    const may = mayOperate(session);
-    this.begin.hidden = recording !== null;
-    this.running.hidden = recording === null;
-    this.start.disabled = !may;
-    this.start.title = may
-      ? ""
-      : "This page may not record. Ask for a URL with the right to operate.";
-    if (this.wasRecording !== undefined && recording === null) void this.refresh();
-    if (recording && this.wasRecording !== recording.name) {
-      fill(
-        this.running,
-        h("span", { class: "running-words" }),
-        may &&
-          h(
-            "button",
-            { class: "primary", onclick: () => void this.command("record end") },
-            "End recording",
-          ),
-      );
-    }
-    this.wasRecording = recording?.name;
-    if (!recording) return;
-    this.running.querySelector(".running-words")!.textContent =
-      `● ${recording.name}: ${recording.seconds.toFixed(0)} s, ${bytesText(recording.bytes)}, ` +
-      `${recording.streams.length} streams`;
+  private showSession({ recording }: Session): void {
+    const isRecording = recording !== null;
+    if (!isRecording && this.isRecording !== isRecording) void this.refresh();
+    this.isRecording = isRecording;
   }
 
   private async refresh(): Promise<void> {
@@ -202,35 +96,59 @@ class RecordingsPanel {
       fill(
         this.list,
         recordings.map((recording) => this.item(recording)),
+        recordings.length === 0 && h("li.muted", "No recordings yet."),
       );
-      if (recordings.length === 0)
-        fill(this.list, h("li", { class: "muted" }, "No recordings yet."));
     } catch (error) {
-      fill(this.list, h("li", { class: "muted" }, error instanceof Error ? error.message : ""));
+      fill(this.list, h("li.muted", error instanceof Error ? error.message : ""));
     }
   }
 
-  private item({ name, bytes, streams, problem }: Recording): HTMLElement {
-    return h(
-      "li",
-      {},
-      h("strong", {}, name),
-      h(
-        "span",
-        { class: "muted", title: streams.join("\n") },
-        `${bytesText(bytes)}, ${problem ?? `${streams.length} streams`}`,
-      ),
-      problem === undefined &&
+  private item(recording: Recording): HTMLElement {
+    const { name, bytes, streams, problem } = recording;
+    const count = `${streams.length} ${streams.length === 1 ? "stream" : "streams"}`;
+    const open = () => this.host.openPanel({ kind: "replay", name });
+    return h("li", [
+      h("strong", name),
+      h("span.muted.mono", bytesText(bytes)),
+      h("span.muted", { title: streams.join("\n") }, problem ?? count),
+      h("span.recording-actions", [
+        problem === undefined && button("Open", open, { "aria-label": `Open ${name}` }),
         h(
-          "button",
+          "a",
           {
-            "aria-label": `Open ${name}`,
-            onclick: () => this.host.openPanel({ kind: "replay", name }),
+            href: `/recordings/${name}.mcap`,
+            download: `${name}.mcap`,
+            "aria-label": `Download ${name}`,
           },
-          "Open",
+          "Download",
         ),
-      h("a", { href: `/recordings/${name}.mcap`, download: `${name}.mcap` }, "Download"),
+        mayOperate(this.host.server.session) &&
+          button("Delete…", () => this.ask(recording), { "aria-label": `Delete ${name}` }),
+      ]),
+    ]);
+  }
+
+  /** Deletes a recording after a confirmation. */
+  private ask({ name, bytes }: Recording): void {
+    const remove = async () => {
+      this.dialog.close();
+      if (!(await this.command(`record delete ${name}`))) return;
+      this.host.say(`Deleted ${name}.`);
+      await this.refresh();
+    };
+    fill(
+      this.dialog,
+      h(
+        "p",
+        { id: "confirm-words" },
+        `Delete ${name} (${bytesText(bytes)}) from the server for good?`,
+      ),
+      h("div.row", [
+        button("Keep", () => this.dialog.close(), { autofocus: true }),
+        button("Delete", () => void remove(), { class: "danger" }),
+      ]),
     );
+    this.dialog.showModal();
   }
 
   private openFiles(files: Iterable<File>): void {
