@@ -309,7 +309,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     await bar.waitFor();
     await viewer.locator(".stop-note").waitFor();
     assert.ok(await viewer.getByRole("button", { name: "Let it move" }).isHidden());
-    await bar.getByLabel("nobody is in its way").check();
+    await bar.getByLabel("its way is clear").check();
     await bar.getByRole("button", { name: "Let it move" }).click();
     await viewer.locator(".stopped-bar").waitFor({ state: "hidden" });
     await other.close();
@@ -318,7 +318,6 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
   test("a stop that is not confirmed is told in large letters, and nothing moves", async () => {
     await show("seat");
     await page.locator(".seat-who", { hasText: "The robot decides: no task." }).waitFor();
-    await page.locator(".seat-latency", { hasText: "Motion" }).waitFor();
     const boxes = () =>
       page.evaluate(() =>
         [...document.querySelectorAll(".bar > *, .board, .seat *, .status-line")].map((element) => {
@@ -330,7 +329,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     const alarm = page.locator(".not-stopped");
     for (const [name, words] of [
       ["workspace", "the workspace does not answer"],
-      ["web", "The server of the page does not answer."],
+      ["web", "There is no answer yet."],
     ]) {
       const pid = graph.pid(name);
       process.kill(pid, "SIGSTOP");
@@ -354,7 +353,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
       await bar.waitFor();
       await page.locator(".seat-who", { hasText: "Stopped." }).waitFor();
       assert.deepEqual(await boxes(), before);
-      await bar.getByLabel("nobody is in its way").check();
+      await bar.getByLabel("its way is clear").check();
       await bar.getByRole("button", { name: "Let it move" }).click();
       await bar.waitFor({ state: "hidden" });
     }
@@ -386,7 +385,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     await alone.locator(".not-stopped").waitFor({ state: "hidden" });
     const bar = alone.locator(".stopped-bar");
     await bar.waitFor();
-    await bar.getByLabel("nobody is in its way").check();
+    await bar.getByLabel("its way is clear").check();
     await bar.getByRole("button", { name: "Let it move" }).click();
     await bar.waitFor({ state: "hidden" });
     await alone.close();
@@ -397,7 +396,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     const bar = page.locator(".stopped-bar");
     const alarm = page.locator(".not-stopped");
     const clear = async () => {
-      await bar.getByLabel("nobody is in its way").check();
+      await bar.getByLabel("its way is clear").check();
       await bar.getByRole("button", { name: "Let it move" }).click();
       await bar.waitFor({ state: "hidden" });
     };

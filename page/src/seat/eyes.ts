@@ -24,10 +24,18 @@ export interface EyePair {
   readonly images?: readonly (string | undefined)[];
 }
 
-/** The name of a pair for a person. */
-export function nameOf({ module, augmented, coding }: EyePair): string {
-  if (coding) return `${module} (${coding})`;
-  return augmented ? `${module} (augmented)` : module;
+/** Names of the modules of pairs, for a person. */
+export function labelsOf(pairs: readonly EyePair[]): Map<string, string> {
+  const labels = new Map(pairs.map((pair) => [pair.module, sortOf(pair)]));
+  const all = [...labels.values()];
+  for (const [module, label] of labels) {
+    if (all.filter((each) => each === label).length > 1) labels.set(module, module);
+  }
+  return labels;
+}
+
+function sortOf({ module, raw, augmented, coding }: EyePair): string {
+  return coding ? "Depth" : augmented ? "Virtual" : raw ? "Camera" : module;
 }
 
 /** The pairs of depths in a graph, in each coding: in fog if their images are known. */

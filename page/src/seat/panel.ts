@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The supervisor's seat: the robot's images, and the controls to move it.
 import { mayDrive, modesInFocus, type DriveOutput, type GraphState } from "../server";
-import { button, fill, h, setText, type PanelHost, type PanelKind } from "../shell";
+import { button, h, meanings, setText, type PanelHost, type PanelKind } from "../shell";
 import { Ears } from "./ears";
 import { earsOf } from "./eyes";
 import { GazeHistory, headOutput } from "./gaze";
 import { dragSteers, gamepadsSteer, keysSteer } from "./hands";
 import { Seat, type SeatState } from "./holder";
+import { Hud } from "./hud";
 import { Latency } from "./latency";
+import { TaskButtons } from "./tasks";
 import { PhoneTracker } from "./telepresence";
 import { modeName } from "../graph/workspace";
 import { SeatView } from "./view";
@@ -31,16 +33,20 @@ class SeatPanel {
   private readonly latency = new Latency();
   private readonly seat: Seat;
   private readonly view: SeatView;
+  private readonly hud: Hud;
+  private readonly tasks: TaskButtons;
   private readonly phone: PhoneTracker;
   private xr?: XrView;
   private gaze?: GazeHistory;
   private ears?: Ears;
   private readonly ends: (() => void)[] = [];
 
-  private readonly who = h("p.seat-who.row", { role: "status" });
-  private readonly takeButton = button("Take the seat", () => this.take(), { class: "take" });
+  private readonly who = h("p.seat-who", { role: "status" });
+  private readonly takeButton = button("Take the seat", () => this.take(), {
+    class: "primary",
+    title: meanings.seat,
+  });
   private readonly leaveButton = button("Leave the seat", () => this.seat.leave());
-  private readonly tasks = h("div.tasks.wrap", { role: "group", "aria-label": "Tasks" });
   private readonly knob = h("div.knob");
   private readonly pad = h(
     "div.pad",
@@ -63,7 +69,6 @@ class SeatPanel {
   private readonly listenButton = button("Listen", () => this.toggleEars(), {
     "aria-pressed": "false",
   });
-  private readonly delay = h("p.seat-latency.muted.small");
   readonly element: HTMLElement;
 
   constructor(private readonly host: PanelHost) {
@@ -78,12 +83,20 @@ class SeatPanel {
       (at) => this.latency.command(at),
     );
     this.view = new SeatView(server, this.latency);
-    this.phone = new PhoneTracker((angles) => this.seat.turn(angles));
+    this.hud = new Hud(server, this.latency);
+    this.view.element.append(this.hud.element);
+    this.tasks = new TaskButtons(server, this.seat, () => this.seat.isHeld && this.has("bid"));
+    this.phone = new PhoneTracker(
+      (angles) => this.seat.turn(angles),
+      (why) => {
+        this.showPhone();
+        host.say(why);
+      },
+    );
     window.hypercolumn = { latency: this.latency };
-    host.tools.append(this.view.tools);
 
     const speak = h(
-      "form.speak.row.wrap",
+      "form.speak.row",
       {
         onsubmit: (event: SubmitEvent) => {
           event.preventDefault();
@@ -97,24 +110,30 @@ class SeatPanel {
       [h("label", { for: "seat-text" }, "Say"), this.text, this.speakButton],
     );
     this.element = h(
-      "div.seat.stack",
+      "div.seat",
       {
         tabindex: 0,
         role: "group",
         "aria-label": "Seat: arrow keys or W A S D turn the head while you have the seat",
       },
       [
-        h("div.seat-bar.row.wrap", [this.who, this.takeButton, this.leaveButton]),
-        h("div.seat-body.stack", [
+        h("div.seat-grid", [
           this.view.element,
-          h("div.seat-controls.wrap", [
-            this.pad,
-            h("div.seat-column", [
-              this.tasks,
-              h("div.telepresence.wrap", [this.phoneButton, this.xrButton, this.zeroButton]),
-              speak,
-              h("div.listen.wrap", this.listenButton),
-              this.delay,
+          h("div.seat-hands", [
+            h("div.seat-hold", [this.who, this.takeButton, this.leaveButton]),
+            h("div.pad-place", [
+              this.pad,
+              h("p.pad-hint.muted.small", "drag · arrow keys · gamepad · click in the image"),
+            ]),
+          ]),
+          h("div.seat-choices", [
+            this.tasks.element,
+            speak,
+            h("div.seat-more.wrap", [
+              this.phoneButton,
+              this.xrButton,
+              this.zeroButton,
+              this.listenButton,
             ]),
           ]),
         ]),
@@ -124,16 +143,20 @@ class SeatPanel {
     this.bindHands();
     this.ends.push(
       this.seat.onState((state) => this.showSeat(state)),
-      this.seat.onTask(() => server.state && this.showTasks(server.state)),
+      this.seat.onTask(() => server.state && this.tasks.update(server.state)),
       server.onState((state) => this.showState(state)),
-      server.onSession(() => this.showWho()),
+      server.onSession((session) => {
+        this.hud.update(session);
+        this.showWho();
+      }),
+      server.onConnection(() => this.showWho()),
     );
     void navigator.xr?.isSessionSupported("immersive-vr").then(
       (supported) => (this.xrButton.hidden = !supported),
       () => {},
     );
     const timer = window.setInterval(() => {
-      this.showLatency();
+      this.hud.showLatency();
       this.showWho();
     }, 500);
     this.ends.push(() => clearInterval(timer));
@@ -141,10 +164,13 @@ class SeatPanel {
 
   close(): void {
     for (const end of this.ends) end();
+    if (this.seat.isHeld) this.host.say("You have left the seat.");
     this.phone.stop();
     this.xr?.leave();
     this.ears?.close();
     this.gaze?.close();
+    this.hud.close();
+    this.tasks.close();
     this.view.close();
     this.seat.close();
   }
@@ -155,7 +181,8 @@ class SeatPanel {
     const show = ({ left, down }: { left: number; down: number }): void => {
       const pushed = left !== 0 || down !== 0;
       if (pushed && !this.seat.isHeld) return this.host.say("Take the seat first, then steer.");
-      this.knob.style.transform = `translate(${-left * 40}px, ${down * 40}px)`;
+      const reach = this.pad.clientWidth * 0.3;
+      this.knob.style.transform = `translate(${-left * reach}px, ${down * reach}px)`;
     };
     dragSteers(this.pad, stick, "pad", () => this.pad.clientWidth / 2, show);
     const reach = (): number => Math.min(canvas.clientWidth, canvas.clientHeight) / 3;
@@ -193,6 +220,10 @@ class SeatPanel {
         this.host.say(error instanceof Error ? error.message : String(error));
       }
     }
+    this.showPhone();
+  }
+
+  private showPhone(): void {
     this.phoneButton.setAttribute("aria-pressed", String(this.phone.isOn));
   }
 
@@ -236,26 +267,27 @@ class SeatPanel {
   private showSeat(state: SeatState): void {
     if (state.is !== "held") {
       this.phone.stop();
-      this.phoneButton.setAttribute("aria-pressed", "false");
+      this.showPhone();
       this.xr?.leave();
     }
     this.element.classList.toggle("held", state.is === "held");
     this.showWho();
-    if (this.host.server.state) this.showTasks(this.host.server.state);
+    if (this.host.server.state) this.tasks.update(this.host.server.state);
   }
 
   private showState(state: GraphState): void {
     this.view.update(state);
     this.listenButton.disabled = earsOf(state) === undefined;
-    this.showTasks(state);
+    this.tasks.update(state);
     this.showWho();
   }
 
   /** Shows which task has the head, and the choices. */
   private showWho(): void {
-    const { session, state } = this.host.server;
+    const { session, state, connection } = this.host.server;
     const { seat } = this;
     const text = whoText({
+      connection,
       session,
       seat: seat.state.is,
       lost: seat.state.is === "lost" ? seat.state.why : "",
@@ -267,7 +299,9 @@ class SeatPanel {
     });
     setText(this.who, text);
     this.who.title = text; // in case it does not fit
-    this.takeButton.hidden = !mayDrive(session) || seat.isHeld || seat.state.is === "waiting";
+    const canTake =
+      mayDrive(session) && seat.state.is !== "waiting" && connection.status === "open";
+    this.takeButton.hidden = !canTake || seat.isHeld;
     const take = session?.driver === "other" ? "Take the seat from them" : "Take the seat";
     setText(this.takeButton, take);
     this.leaveButton.hidden = !seat.isHeld;
@@ -277,51 +311,5 @@ class SeatPanel {
     this.zeroButton.disabled = free;
     this.speakButton.disabled = free || !this.has("text");
     this.pad.classList.toggle("disabled", free || !this.has("stick"));
-  }
-
-  private showTasks(state: GraphState): void {
-    const names = Object.entries(state.modes).sort((a, b) => a[1] - b[1]);
-    const can = this.seat.isHeld && this.has("bid");
-    const inFocus = modesInFocus(state).map((focus) => focus.number);
-    const key = JSON.stringify([names, can, this.seat.task, inFocus]);
-    if (this.tasks.dataset.key === key) return;
-    this.tasks.dataset.key = key;
-    const focused = this.tasks.contains(document.activeElement)
-      ? (document.activeElement as HTMLElement).dataset.task
-      : undefined;
-    const draw = (name: string, number: number, text: string, title: string): HTMLElement => {
-      const chosen = this.seat.task === number;
-      return button(
-        text,
-        () => (chosen || number === 0 ? this.seat.release() : this.seat.choose(number)),
-        {
-          "data-task": name,
-          class: inFocus.includes(number) ? "task-button in-focus" : "task-button",
-          "aria-pressed": String(chosen && (can || number !== 0)),
-          disabled: !can,
-          title,
-        },
-      );
-    };
-    const none = "Releases the head and keeps the seat";
-    fill(
-      this.tasks,
-      names.length > 0 && draw("", 0, "Let the robot decide", none),
-      names.map(([name, number]) =>
-        draw(name, number, name, `${this.seat.task === number ? "Release" : "Choose"} ${name}`),
-      ),
-    );
-    if (focused) {
-      this.tasks.querySelector<HTMLElement>(`[data-task="${CSS.escape(focused)}"]`)?.focus();
-    }
-  }
-
-  private showLatency(): void {
-    const { median, p99, measurements } = this.latency;
-    const text =
-      median === undefined || p99 === undefined
-        ? "Motion to photon: not measured yet."
-        : `Motion to photon: ${Math.round(median)} ms, p99 ${Math.round(p99)} ms (${measurements.length}).`;
-    setText(this.delay, text);
   }
 }

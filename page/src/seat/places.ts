@@ -4,6 +4,13 @@ import type { Side } from "./eyes";
 
 export const ways = ["left", "right", "side by side", "red/cyan"] as const;
 export type Way = (typeof ways)[number];
+/** Their names for a person. */
+export const wayNames: Record<Way, string> = {
+  left: "Left eye",
+  right: "Right eye",
+  "side by side": "Both, side by side",
+  "red/cyan": "Both, red/cyan",
+};
 
 /** A part of a canvas that shows an eye [px]. */
 export interface Place {

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { sentHeader } from "../mtp";
 import type { GraphState } from "../server";
-import { eyePairs, nameOf } from "./eyes";
+import { eyePairs, labelsOf } from "./eyes";
 import { headOutput } from "./gaze";
 import { Latency } from "./latency";
 import { anglesOfDevice, anglesOfHeadset, anglesOfPose, since, type Angles } from "./orientation";
@@ -152,10 +152,18 @@ test("depths of both eyes are a pair in each coding", () => {
     links: [link("eyes.left", "depth.left"), link("eyes.right", "depth.right")],
   } as unknown as GraphState;
   const pairs = eyePairs(state);
-  assert.deepEqual(pairs.map(nameOf), ["eyes", "depth (colours)", "depth (relief)", "depth (fog)"]);
+  const codings = (of: typeof pairs) => of.flatMap(({ coding }) => coding ?? []);
+  assert.deepEqual(codings(pairs), ["colours", "relief", "fog"]);
+  assert.deepEqual(
+    [...labelsOf(pairs)],
+    [
+      ["eyes", "Camera"],
+      ["depth", "Depth"],
+    ],
+  );
   const { left, right, raw, images } = pairs.at(-1)!;
   assert.deepEqual([left, right, raw], ["depth.depth", "depth.right_depth", false]);
   assert.deepEqual(images, ["eyes.left", "eyes.right"]);
   const alone = { ...state, links: state.links.slice(0, 1) };
-  assert.deepEqual(eyePairs(alone).map(nameOf).slice(1), ["depth (colours)", "depth (relief)"]);
+  assert.deepEqual(codings(eyePairs(alone)), ["colours", "relief"]);
 });

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stop: always visible, one press, also for viewers. Clearing it takes two other controls.
 import { CommandError, mayDrive, type Session } from "../server";
-import { button, h, setText, type Shell } from "../shell";
-import { Stopping } from "./stopping";
+import { button, h, meanings, setText, type Shell } from "../shell";
+import { patience, Stopping } from "./stopping";
 
 /** Two presses of Escape within this time stop the robot [ms]. */
 const twice = 600;
@@ -10,8 +10,8 @@ const twice = 600;
 const period = 200;
 
 /**
- * Adds the stop button to the header, a red bar while the robot is stopped, and a large warning over
- * everything while a stop is not confirmed. They do not move other elements.
+ * Adds the stop to the bar, the words that the robot is stopped, and a large warning over everything
+ * while a stop is not confirmed. They do not move other elements.
  */
 export function addStop(shell: Shell): void {
   const { server } = shell;
@@ -37,6 +37,7 @@ export function addStop(shell: Shell): void {
     stopping.press(true, performance.now());
     void order(true);
     show();
+    setTimeout(show, patience + 10); // a timer may be early
   };
   const look = (): void => {
     const isOpen = server.connection.status === "open";
@@ -52,7 +53,7 @@ export function addStop(shell: Shell): void {
 
   const stopButton = button("Stop", stop, {
     class: "stop",
-    title: "Stop the robot (Escape twice)",
+    title: `Stop the robot (Escape twice). ${meanings.stop}`,
   });
   const { bar, showBar } = stoppedBar(() => {
     stopping.press(false, performance.now());
@@ -62,13 +63,17 @@ export function addStop(shell: Shell): void {
   const alarm = h("div.not-stopped", { role: "alert", hidden: true }, [
     h("strong", "NOT STOPPED"),
     why,
-    h("p", "The stop is being repeated. If the robot moves, switch it off at the robot."),
+    h("p", "If the robot moves, switch it off at the robot."),
   ]);
-  shell.headerSlot.append(stopButton);
-  shell.element.append(bar, alarm);
+  shell.stopSlot.append(stopButton);
+  shell.words.append(bar);
+  shell.stage.append(alarm);
 
   const show = (): void => {
-    const text = stopping.alarm(performance.now());
+    const { connection } = server;
+    const hasEnded = connection.status === "lost" && connection.ended;
+    const alarmed = stopping.alarm(performance.now());
+    const text = alarmed && hasEnded ? endedWords : alarmed;
     alarm.hidden = text === "";
     if (text !== "") setText(why, text);
   };
@@ -85,26 +90,28 @@ export function addStop(shell: Shell): void {
   server.onSession((session: Session) => {
     stopping.heard(session.stopped);
     const stopped = session.stopped === true;
-    stopButton.textContent = stopped ? "STOPPED" : "Stop";
+    setText(stopButton, stopped ? "Stopped" : "Stop");
     stopButton.setAttribute("aria-pressed", String(stopped));
     showBar(stopped, mayDrive(session));
     show();
   });
 }
 
-/** The bar shown while the robot is stopped. @param clear  lets the robot move. */
+const endedWords = "The graph has ended: no program takes the stop.";
+
+/** The words in the bar while the robot is stopped. @param clear  lets the robot move. */
 function stoppedBar(clear: () => void) {
   const confirm = h("input", { type: "checkbox", id: "stop-confirm" });
   const clearButton = button("Let it move", clear, { class: "stop-clear", disabled: true });
   confirm.onchange = () => (clearButton.disabled = !confirm.checked);
-  const controls = h("span.stop-controls.row.wrap", [
-    h("label.row", { for: "stop-confirm" }, [confirm, "nobody is in its way"]),
+  const controls = h("span.stop-controls.row", [
+    h("label.row", { for: "stop-confirm" }, [confirm, "its way is clear"]),
     clearButton,
   ]);
   const note = h("span.stop-note", "Clearing this stop needs the right to drive.");
-  const bar = h("div.stopped-bar.row.wrap", { role: "alert", hidden: true }, [
+  const bar = h("div.stopped-bar.row", { role: "alert", hidden: true }, [
     h("strong", "STOPPED"),
-    h("span", "The robot is stopped: no task has the focus."),
+    h("span.stopped-words", "No task has the focus."),
     controls,
     note,
   ]);

@@ -7,8 +7,8 @@ test("a stop that is pressed alarms until it is confirmed", () => {
   const stopping = new Stopping();
   stopping.connected(true);
   stopping.press(true, 1000);
-  assert.equal(stopping.alarm(1800), "");
-  assert.match(stopping.alarm(1801), /does not answer/);
+  assert.equal(stopping.alarm(1249), "");
+  assert.match(stopping.alarm(1250), /no answer yet/i);
   stopping.answered(true, "stop NOT confirmed: the workspace does not answer");
   assert.match(stopping.alarm(1100), /workspace/);
   stopping.heard(false);

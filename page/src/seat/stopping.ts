@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tracks a press of the stop until it is confirmed. Pure; times come from the caller [ms].
 
-/** Timeout of the server's answer; the server's for the workspace is 500 ms. */
-const patience = 800;
+/** How long an order may be unanswered before the page says so [ms]. */
+export const patience = 250;
 
 /** A person's order, until it is confirmed. */
 export class Stopping {
@@ -49,7 +49,7 @@ export class Stopping {
     if (!this.isConnected)
       return "The page has no connection to its server. The stop is sent as soon as there is one.";
     if (this.problem !== "") return this.problem;
-    return now - this.wanted.since > patience ? "The server of the page does not answer." : "";
+    return now - this.wanted.since < patience ? "" : "There is no answer yet.";
   }
 
   private settle(): void {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The images of the robot's eyes in the seat: a canvas and its streams.
 import type { GraphState, Server } from "../server";
-import { fill, h } from "../shell";
+import { button, fill, h } from "../shell";
 import { moduleOf } from "../graph/structure";
 import { SlowRange } from "../views/coding";
-import { Eye, eyePairs, nameOf, type EyePair, type Picture, type Side } from "./eyes";
+import { Eye, eyePairs, labelsOf, type EyePair, type Picture, type Side } from "./eyes";
 import type { Latency } from "./latency";
 import { drawPictures, thumbnailOf, type Pictures } from "./picture";
-import { pixelAt, placesOf, sidesOf, ways, type Way } from "./places";
+import { pixelAt, placesOf, sidesOf, wayNames, ways, type Way } from "./places";
 import type { XrView } from "./xr";
 
 /** Maximum width of requested images [px]. */
@@ -18,8 +18,14 @@ export class SeatView {
   readonly canvas = h("canvas.seat-image", { role: "img", "aria-label": "What the robot sees" });
   private readonly problem = h("p.seat-problem", { role: "status" });
   private readonly way: HTMLSelectElement;
-  private readonly source: HTMLSelectElement;
-  readonly tools: HTMLElement;
+  /** The modules whose images can be shown. */
+  private readonly sources = h("div.chips", { role: "group", "aria-label": "Whose images" });
+  private readonly coding = h("select", {
+    "aria-label": "How depth is shown",
+    onchange: () => this.choose(this.module, this.coding.value),
+  });
+  /** What has been chosen: a module, and of depths their coding. */
+  private module = "";
   readonly element: HTMLElement;
   private readonly eyes = new Map<Side, Eye>();
   private pairs: readonly EyePair[] = [];
@@ -31,15 +37,13 @@ export class SeatView {
     private readonly server: Server,
     private readonly latency: Latency,
   ) {
-    const name = (label: string) => ({ "aria-label": label, onchange: () => this.reopen() });
     this.way = h(
       "select",
-      name("How the eyes are shown"),
-      ways.map((way) => h("option", way)),
+      { "aria-label": "How the eyes are shown", onchange: () => this.reopen() },
+      ways.map((way) => h("option", { value: way }, wayNames[way])),
     );
-    this.source = h("select", name("Whose images"));
-    this.tools = h("div.seat-tools", [this.source, this.way]);
-    this.element = h("div.seat-view", [this.canvas, this.problem]);
+    const tools = h("div.seat-tools.wrap", [this.sources, this.way, this.coding]);
+    this.element = h("div.seat-view", [this.canvas, tools, this.problem]);
     this.resizing = new ResizeObserver(() => this.resize());
     this.resizing.observe(this.canvas);
   }
@@ -54,18 +58,37 @@ export class SeatView {
   update(state: GraphState): void {
     const pairs = eyePairs(state);
     if (JSON.stringify(pairs) === JSON.stringify(this.pairs)) return;
-    const chosen = this.source.value;
     this.pairs = pairs;
-    fill(
-      this.source,
-      pairs.map((pair) => h("option", nameOf(pair))),
+    const chips = [...labelsOf(pairs)].map(([module, label]) =>
+      button(label, () => this.choose(module), { "data-module": module, title: `From ${module}` }),
     );
-    if (pairs.some((pair) => nameOf(pair) === chosen)) this.source.value = chosen;
+    fill(this.sources, chips);
+    const isThere = pairs.some(({ module }) => module === this.module);
+    this.choose(isThere ? this.module : (pairs[0]?.module ?? ""), this.coding.value);
+  }
+
+  /** Shows the images of a module. */
+  private choose(module: string, coding = ""): void {
+    this.module = module;
+    for (const chip of this.sources.querySelectorAll("button"))
+      chip.setAttribute("aria-pressed", String(chip.dataset.module === module));
+    const codings = this.choices.flatMap((pair) => pair.coding ?? []);
+    fill(
+      this.coding,
+      codings.map((each) => h("option", { selected: each === coding }, each)),
+    );
+    this.coding.hidden = codings.length === 0;
     this.reopen();
   }
 
+  /** The pairs of the chosen module. */
+  private get choices(): readonly EyePair[] {
+    return this.pairs.filter(({ module }) => module === this.module);
+  }
+
   get pair(): EyePair | undefined {
-    return this.pairs.find((pair) => nameOf(pair) === this.source.value) ?? this.pairs[0];
+    const { choices } = this;
+    return choices.find(({ coding }) => coding === this.coding.value) ?? choices[0];
   }
 
   /** Focal length of the cameras, from the graph's parameters [px of the sensor]. */

@@ -36,6 +36,7 @@ const session = (more: Partial<Session> = {}): Session =>
   ({ right: "operate", driver: null, stopped: false, ...more }) as Session;
 const text = (more: Partial<Situation> = {}): string =>
   whoText({
+    connection: { status: "open" },
     session: session({ driver: "other" }),
     seat: "held",
     lost: "",
@@ -73,4 +74,11 @@ test("who does not have the seat reads who does", () => {
   );
   const lost = { ...free, seat: "lost", lost: "It was taken.", session: session() } as const;
   assert.equal(text(lost), "It was taken. The robot decides: point.");
+});
+
+test("without a graph or a connection no task has the head", () => {
+  const lost = { status: "lost", why: "", retry: 1, ended: false } as const;
+  assert.match(text({ connection: lost, seat: "free" }), /^No connection: it is unknown/);
+  const connection = { ...lost, retry: null, ended: true };
+  assert.equal(text({ connection }), "The graph has ended.");
 });

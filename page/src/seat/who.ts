@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which task has the head, as a sentence, and which tasks read the driver's outputs. Pure.
 import { moduleOf } from "../graph/structure";
-import { mayDrive, type DriveOutput, type GraphState, type Session } from "../server";
+import {
+  mayDrive,
+  type Connection,
+  type DriveOutput,
+  type GraphState,
+  type Session,
+} from "../server";
 
 /**
  * The task of the module that reads a driver's output.
@@ -19,6 +25,7 @@ export function taskOf(state: GraphState, web: string, output: DriveOutput): num
 }
 
 export interface Situation {
+  readonly connection: Connection;
   readonly session: Session | undefined;
   readonly seat: "free" | "waiting" | "held" | "lost";
   /** Why the seat was lost. */
@@ -38,13 +45,16 @@ export interface Situation {
 /** A sentence on which task has the head. */
 export function whoText(now: Situation): string {
   const { session, seat, focus, bid } = now;
+  if (now.connection.status === "lost")
+    return now.connection.ended
+      ? "The graph has ended."
+      : "No connection: it is unknown which task has the head.";
   if (!session) return "";
   if (seat === "waiting") return "Waiting for the seat…";
   const has = focus.join(", ") || "no task";
   if (seat === "held") {
     if (session.stopped) return "Stopped. You have the seat.";
-    if (now.slow)
-      return "You have the seat, but this page is too slow: commands are dropped at times. Close some panels.";
+    if (now.slow) return "To drive, this page is too slow: close other tabs.";
     if (!now.decides) return "You have the seat.";
     if (!bid) return `The robot decides: ${has}.`;
     if (focus.includes(bid)) return `You hold the head (${bid}).`;
@@ -61,5 +71,5 @@ export function whoText(now: Situation): string {
         ? `In focus: ${has}.`
         : `The robot decides: ${has}.`;
   const right = mayDrive(session) ? "" : "You may only look; to drive, ask for another URL.";
-  return [who, head, right].filter((words) => words !== "").join(" ") || "Nobody has the seat.";
+  return [who, head, right].filter((words) => words !== "").join(" ") || "The seat is free.";
 }

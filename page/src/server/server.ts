@@ -20,6 +20,8 @@ interface Waiting {
 }
 
 const logLines = 2000;
+/** Close code of the server when its graph ends. */
+const graphEnded = 1000;
 
 /** The server of this page: the graph's state, the session, the log, commands, streams. */
 export class Server {
@@ -46,9 +48,11 @@ export class Server {
       },
       binary: (bytes) => this.receive(bytes),
       lost: (code, reason, retry) => {
-        this.connections.set({ status: "lost", why: whyLost(code, reason), retry });
         const { session } = this;
         if (session) this.sessions.set({ ...session, stopped: null }); // unknown now
+        const ended = code === graphEnded;
+        if (ended) this.end();
+        this.connections.set({ status: "lost", why: whyLost(ended, reason), retry, ended });
         const lost = [...this.waiting.values()];
         this.waiting.clear();
         for (const each of lost) {
@@ -119,6 +123,19 @@ export class Server {
     this.socket.retry();
   }
 
+  /** The graph has ended: so have its modules, and no task has the focus. */
+  private end(): void {
+    const { state, session } = this;
+    if (state) {
+      const ended = { status: "ended", pid: 0, cpu: 0, detail: "", in_focus: false } as const;
+      const modules = state.modules.map((each) => ({ ...each, ...ended }));
+      const links = state.links.map((link) => ({ ...link, per_second: 0, bytes_per_second: 0 }));
+      const focus = Object.fromEntries(Object.keys(state.focus).map((name) => [name, null]));
+      this.states.set({ ...state, modules, links, focus });
+    }
+    if (session) this.sessions.set({ ...session, driver: null, recording: null, drives: [] });
+  }
+
   private receive(bytes: Uint8Array<ArrayBuffer>): void {
     const message = readMessage(bytes);
     const rows = rowsOf(message);
@@ -142,8 +159,8 @@ export class Server {
   }
 }
 
-function whyLost(code: number, reason: string): string {
-  if (code === 1000) return "The graph has ended. Restart it, then open the URL that it prints.";
-  const detail = reason && ` (${reason})`;
-  return `No connection to the server${detail}: it is unknown whether the robot is stopped. If the graph was restarted, open the URL that it prints.`;
+function whyLost(ended: boolean, reason: string): string {
+  if (ended) return "The graph has ended. Start it again, then open the URL that it prints.";
+  const detail = reason && `The server says: ${reason}. `;
+  return `${detail}It is unknown whether the robot is stopped. If the graph was restarted, open the URL that it prints.`;
 }

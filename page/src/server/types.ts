@@ -135,5 +135,10 @@ export interface Recording {
 export type Connection =
   | { readonly status: "connecting" }
   | { readonly status: "open" }
-  /** `retry`: seconds until the next try; null: only on request. */
-  | { readonly status: "lost"; readonly why: string; readonly retry: number | null };
+  /** `retry`: seconds until the next try; null: only on request. `ended`: the graph has ended. */
+  | {
+      readonly status: "lost";
+      readonly why: string;
+      readonly retry: number | null;
+      readonly ended: boolean;
+    };

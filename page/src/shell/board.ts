@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The panels on the page: columns of frames, which can be moved and resized.
 import { Frame, type Direction } from "./frame";
-import { h } from "./h";
+import { emOf, h } from "./h";
 import { sameArgs, type Column, type Layout, type Place } from "./layout";
 import type { PanelArgs, PanelHost } from "./panel";
 import { splitter } from "./splitter";
 
-export interface BoardHost extends Pick<PanelHost, "server" | "say"> {
+/** Least width of a column [em]. */
+const narrowest = 32;
+
+export interface BoardHost extends Pick<PanelHost, "server" | "say" | "openPanel"> {
   /** A person or a panel has changed the layout. */
   changed(): void;
 }
@@ -53,7 +56,8 @@ export class Board {
     const there = [...this.frames.keys()].find((place) => sameArgs(place.args, args));
     if (there) return this.frames.get(there)?.focus();
     const place: Place = { args, share: 1 };
-    const wide = Math.max(1, Math.floor(this.element.clientWidth / 480));
+    const width = this.element.clientWidth / emOf(this.element);
+    const wide = Math.max(1, Math.floor(width / narrowest));
     if (this.layout.length < wide) this.layout.push({ share: 1, places: [place] });
     else this.roomiest().places.push(place);
     this.finish(place);
@@ -195,7 +199,6 @@ export class Board {
     if (!frame) {
       const host = {
         ...this.host,
-        openPanel: (args: PanelArgs) => this.open(args),
         setArgs: (args: PanelArgs) => {
           if (sameArgs(place.args, args)) return;
           place.args = args;

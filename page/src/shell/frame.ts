@@ -66,7 +66,9 @@ export class Frame {
     this.element.remove();
   }
 
-  private setTitle(title: string): void {
+  /** Of the panel, unless its arguments give one. */
+  private setTitle(ofPanel: string): void {
+    const title = this.place.args.title ?? ofPanel;
     this.title.textContent = title;
     this.element.setAttribute("aria-label", title);
     this.menuButton.setAttribute("aria-label", `${title}: move, resize`);

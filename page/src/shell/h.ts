@@ -63,6 +63,11 @@ export function setText(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
 
+/** The size of an element's text [px]. */
+export function emOf(element: Element): number {
+  return parseFloat(getComputedStyle(element).fontSize) || 16;
+}
+
 function complete<E extends Element>(element: E, classes: readonly string[], parts: Parts): E {
   if (classes.length > 0) element.setAttribute("class", classes.join(" "));
   const [first, ...others] = parts;

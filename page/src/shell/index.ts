@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 export * from "./h";
+export { meanings } from "./help";
 export * from "./layout";
 export { standardPanels } from "./opener";
 export * from "./panel";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Server } from "../server";
 
-/** A panel's kind and its arguments, such as `port`; stored in the URL. */
+/** A panel's kind and its arguments, such as `port`; stored in the URL. `title` replaces its own. */
 export interface PanelArgs {
   readonly kind: string;
   readonly [key: string]: string | undefined;
