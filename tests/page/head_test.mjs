@@ -451,7 +451,7 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     await page.locator(".trouble", { hasText: "ENDED" }).waitFor();
     const said = await page.locator("body").innerText();
     assert.doesNotMatch(said, /has the focus|running|Take the seat|decides/);
-    await page.getByRole("button", { name: "Stop" }).click();
+    await page.getByRole("button", { name: "Stop", exact: true }).click();
     await page.locator(".not-stopped", { hasText: "The graph has ended" }).waitFor();
   });
 });

@@ -304,7 +304,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     await show("seat", viewer);
     await viewer.locator(".seat-who", { hasText: "You may only look" }).waitFor();
     assert.ok(await viewer.getByRole("button", { name: "Take the seat" }).isHidden());
-    await viewer.getByRole("button", { name: "Stop" }).click();
+    await viewer.getByRole("button", { name: "Stop", exact: true }).click();
     const bar = page.locator(".stopped-bar");
     await bar.waitFor();
     await viewer.locator(".stop-note").waitFor();
@@ -379,7 +379,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     await alone.locator(".seat-who", { hasText: "The robot decides" }).waitFor();
     await alone.evaluate(() => window.unplug());
     await alone.locator(".trouble", { hasText: "No connection" }).waitFor();
-    await alone.getByRole("button", { name: "Stop" }).click();
+    await alone.getByRole("button", { name: "Stop", exact: true }).click();
     await alone.locator(".not-stopped", { hasText: "no connection to its server" }).waitFor();
     await alone.evaluate(() => (window.unplugged = false));
     await alone.locator(".not-stopped").waitFor({ state: "hidden" });
@@ -400,7 +400,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
       await bar.getByRole("button", { name: "Let it move" }).click();
       await bar.waitFor({ state: "hidden" });
     };
-    await page.getByRole("button", { name: "Stop" }).click();
+    await page.getByRole("button", { name: "Stop", exact: true }).click();
     await bar.waitFor();
     // Whoever has no server does not know whether the robot is stopped.
     const trouble = page.locator(".trouble", { hasText: "whether the robot is stopped" });
@@ -419,7 +419,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     await clear();
     const pid = graph.pid("web");
     process.kill(pid, "SIGSTOP");
-    await page.getByRole("button", { name: "Stop" }).click();
+    await page.getByRole("button", { name: "Stop", exact: true }).click();
     await alarm.waitFor();
     process.kill(pid, "SIGKILL");
     await bar.waitFor();

@@ -64,7 +64,12 @@ class SeatPanel {
     this.xr?.zero();
     if (this.phone.isOn || this.xr) this.seat.orient();
   });
-  private readonly text = h("input", { type: "text", id: "seat-text", maxlength: 500 });
+  private readonly text = h("input", {
+    type: "text",
+    id: "seat-text",
+    maxlength: 500,
+    placeholder: "Say something",
+  });
   private readonly speakButton = h("button", { type: "submit" }, "Say it");
   private readonly listenButton = button("Listen", () => this.toggleEars(), {
     "aria-pressed": "false",
@@ -149,7 +154,7 @@ class SeatPanel {
         this.hud.update(session);
         this.showWho();
       }),
-      server.onConnection(() => this.showWho()),
+      server.onConnection(() => server.state && this.showState(server.state)),
     );
     void navigator.xr?.isSessionSupported("immersive-vr").then(
       (supported) => (this.xrButton.hidden = !supported),

@@ -25,7 +25,8 @@ export class TaskButtons {
     this.standings.follow(state);
     const modes = Object.entries(state.modes).sort((a, b) => a[1] - b[1]);
     const can = this.mayChoose();
-    const inFocus = modesInFocus(state).map(({ number }) => number);
+    const isKnown = this.server.connection.status === "open";
+    const inFocus = isKnown ? modesInFocus(state).map(({ number }) => number) : [];
     const key = JSON.stringify([modes, can, this.seat.task, inFocus]);
     if (this.key === key) return;
     this.key = key;
@@ -71,7 +72,8 @@ export class TaskButtons {
   }
 
   private showBids(): void {
-    const workspaces = Object.keys(this.server.state?.focus ?? {});
+    const { state, connection } = this.server;
+    const workspaces = connection.status === "open" ? Object.keys(state?.focus ?? {}) : [];
     const bids = workspaces.flatMap((name) => this.standings.of(name));
     for (const each of this.element.querySelectorAll<HTMLElement>("[data-number]")) {
       const bid = bids.find(({ mode }) => mode === Number(each.dataset.number));

@@ -135,8 +135,7 @@ export class Shell {
     this.trouble.title = why;
     fill(
       this.trouble,
-      h("strong", ended ? "ENDED" : "NO CONNECTION"),
-      h("span", why),
+      h("p", [h("strong", ended ? "ENDED" : "NO CONNECTION"), " ", h("span", why)]),
       retry !== null && button("Try now", () => this.server.reconnect()),
     );
   }
