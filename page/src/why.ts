@@ -3,22 +3,23 @@ import { whyText } from "./graph/bids";
 import { Standings } from "./graph/standings";
 import { modeName } from "./graph/workspace";
 import type { GraphState, Session } from "./server";
-import { h, meanings, setText, type Shell } from "./shell";
+import { fill, h, meanings, type Shell } from "./shell";
 
 const rate = 5; // [Hz]
 
 /** Shows in the bar which task has the focus, and why. */
 export function addWhy({ server, words }: Shell): void {
-  const task = h("b.focus");
-  const others = h("span");
-  words.append(h("p.bar-why", { title: meanings.focus }, [task, others]));
+  const element = h("p.bar-why", { title: meanings.focus });
+  words.append(element);
+  let shown = "";
   const show = (): void => {
     const { state, session, connection } = server;
     const isKnown = state && connection.status === "open";
     const text = isKnown ? whySentences(state, session, standings) : "";
-    const name = Object.keys(state?.modes ?? {}).find((mode) => text.startsWith(`${mode} `)) ?? "";
-    setText(task, name);
-    setText(others, text.slice(name.length));
+    if (text === shown) return;
+    shown = text;
+    const task = Object.keys(state?.modes ?? {}).find((mode) => text.startsWith(`${mode} `)) ?? "";
+    fill(element, h("span", [h("b.focus", task), text.slice(task.length)]));
   };
   const standings = new Standings(server, rate, show);
   server.onState((state) => standings.follow(state));

@@ -431,8 +431,8 @@ describe("the page", { timeout: 10 * watchdog }, () => {
       await show("drive");
       await page.locator(".seat-image").waitFor();
       for (const [selector, least] of [
-        [".seat-image", 0.4],
-        [".pad", 0.2],
+        [".seat-image", 0.33],
+        [".pad", 0.18],
         [".bar .stop", 0.05],
       ]) {
         const { x, y, width: w, height: h } = await page.locator(selector).boundingBox();

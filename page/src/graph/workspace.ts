@@ -12,6 +12,7 @@ export class WorkspaceView {
   readonly element: HTMLElement;
   private readonly history = new BidHistory();
   private readonly stream: Stream;
+  private readonly off: () => void;
   private bids: readonly Bid[] = [];
   private drawn = 0; // [ms]
 
@@ -23,6 +24,7 @@ export class WorkspaceView {
       this.why,
       this.charts,
     ]);
+    this.off = server.onConnection(({ status }) => status === "lost" && setText(this.why, ""));
     this.stream = server.stream(`${name}.standings`, { rate: 10 });
     this.stream.on("message", ({ message, at }) => {
       this.bids = bidsOf(message);
@@ -34,6 +36,7 @@ export class WorkspaceView {
   }
 
   close(): void {
+    this.off();
     this.stream.close();
   }
 

@@ -112,7 +112,7 @@ class SeatPanel {
           host.say(`Sent to the robot's voice: ${text}`);
         },
       },
-      [h("label", { for: "seat-text" }, "Say"), this.text, this.speakButton],
+      [h("label.unseen", { for: "seat-text" }, "Say"), this.text, this.speakButton],
     );
     this.element = h(
       "div.seat",

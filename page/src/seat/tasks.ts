@@ -60,12 +60,12 @@ export class TaskButtons {
     const isChosen = this.seat.task === number;
     const choose = () => (isChosen ? this.seat.release() : this.seat.choose(number));
     const what = isChosen ? "Release" : "Choose";
-    return button([h("span", name), h("span.task-bid")], choose, {
+    const words = [h("span", name), inFocus && h("span.unseen", " in focus "), h("span.task-bid")];
+    return button(words, choose, {
       "data-task": name,
       "data-number": number,
       class: inFocus ? "task-button in-focus" : "task-button",
       "aria-pressed": String(isChosen),
-      "aria-label": inFocus ? `${name}, in focus` : name,
       disabled: !can,
       title: `${what} ${name}. The number is its bid. ${meanings.bid}`,
     });

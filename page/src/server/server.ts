@@ -20,8 +20,10 @@ interface Waiting {
 }
 
 const logLines = 2000;
-/** Close code of the server when its graph ends. */
-const graphEnded = 1000;
+/** Close code of a server that leaves, because its graph ends or it is restarted. */
+const serverLeaves = 1001;
+/** A server that has left for longer is not restarted [ms]. */
+const restartTime = 3000;
 
 /** The server of this page: the graph's state, the session, the log, commands, streams. */
 export class Server {
@@ -37,6 +39,7 @@ export class Server {
   private readonly waiting = new Map<bigint, Waiting>(); // by the number of the command
   private asked = 0n; // over this connection
   private readonly logged: LogLine[] = [];
+  private leftAt = Infinity; // by performance.now() [ms]
   private readonly socket: Socket;
 
   constructor() {
@@ -44,13 +47,15 @@ export class Server {
       open: () => {
         this.logged.length = 0; // the server sends the last lines again
         this.asked = 0n;
+        this.leftAt = Infinity;
         this.connections.set({ status: "open" });
       },
       binary: (bytes) => this.receive(bytes),
       lost: (code, reason, retry) => {
         const { session } = this;
         if (session) this.sessions.set({ ...session, stopped: null }); // unknown now
-        const ended = code === graphEnded;
+        if (code === serverLeaves) this.leftAt = performance.now();
+        const ended = performance.now() - this.leftAt > restartTime;
         if (ended) this.end();
         this.connections.set({ status: "lost", why: whyLost(ended, reason), retry, ended });
         const lost = [...this.waiting.values()];
