@@ -428,6 +428,7 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     });
 
     test(`image, pad and stop are in sight together at ${width} × ${height}`, async () => {
+      await page.setViewportSize({ width, height });
       await show("drive");
       await page.locator(".seat-image").waitFor();
       for (const [selector, least] of [
