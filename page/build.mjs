@@ -16,7 +16,7 @@ import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
 
-const firstLoadLimit = 500_000; // bytes, compressed
+const firstLoadLimit = 300_000; // bytes, compressed
 const types = { html: "text/html", js: "text/javascript", css: "text/css" };
 const isAsset = (name) => name.split(".").pop() in types;
 const here = dirname(fileURLToPath(import.meta.url));
