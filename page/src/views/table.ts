@@ -3,7 +3,7 @@
 import { numberText, type Header } from "../mtp";
 import type { Arrival } from "../server";
 import { fill, h, setText } from "../shell/h";
-import { columnsOf } from "./columns";
+import { columnsOf, type Column } from "./columns";
 import { Sight } from "./room";
 import type { View, ViewKind } from "./view";
 
@@ -55,27 +55,30 @@ export class TableView implements View {
     const columns = Math.min(width * components, mostColumns);
     this.cells = Array.from({ length: rows * columns }, () => h("td"));
     const names = columnsOf(header, this.declared).slice(0, columns);
-    fill(
-      this.table,
-      h(
-        "thead",
-        h("tr", [
-          h("td"),
-          names.map(({ name, unit }) =>
-            h("th", { scope: "col" }, [name, unit && h("span.unit", ` ${unit}`)]),
-          ),
-        ]),
-      ),
-      h(
-        "tbody",
-        Array.from({ length: rows }, (_, row) =>
-          h("tr", [
-            h("th", { scope: "row" }, row),
-            this.cells.slice(row * columns, (row + 1) * columns),
-          ]),
+    const title = ({ name, unit }: Column) => [name, unit && h("span.unit", ` ${unit}`)];
+    if (rows === 1) {
+      // A single row stands upright, so that all its names are seen.
+      const upright = this.cells.map((cell, i) =>
+        h("tr", [h("th", { scope: "row" }, title(names[i]!)), cell]),
+      );
+      fill(this.table, h("tbody", upright));
+    } else
+      fill(
+        this.table,
+        h(
+          "thead",
+          h("tr", [h("td"), names.map((column) => h("th", { scope: "col" }, title(column)))]),
         ),
-      ),
-    );
+        h(
+          "tbody",
+          Array.from({ length: rows }, (_, row) =>
+            h("tr", [
+              h("th", { scope: "row" }, row),
+              this.cells.slice(row * columns, (row + 1) * columns),
+            ]),
+          ),
+        ),
+      );
     this.more.textContent =
       rows === 0
         ? "Empty: no rows or no elements."
