@@ -129,6 +129,8 @@ class Module(_hypercolumn.Module):
 
             @module.on(hc.together(left, right))
             def compare(left_message, right_message): ...
+
+        An input has one handler.
         """
         ports = inputs.inputs if isinstance(inputs, Together) else [inputs]
         for port in ports:
@@ -156,13 +158,15 @@ class Module(_hypercolumn.Module):
         return attach
 
     def after(self, seconds: float) -> Callable[[Callable[[], Any]], Timeout]:
-        """Calls a function once, `seconds` after the start, and again after each restart():
+        """Calls a function once, `seconds` after the start:
 
             @module.after(3)
             def silence():
                 module.log("no packets for 3 s")
 
             silence.restart()
+
+        After each restart() it is called again.
         """
         return lambda handler: self._after(seconds, handler)
 
