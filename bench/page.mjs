@@ -110,7 +110,7 @@ try {
   await page.reload();
   const reds = [];
   for (const name of ["left_ball", "right_ball", "view_left", "view_depth", "view_augmented"]) {
-    const node = page.locator(`[data-module="${name}"]`);
+    const node = page.locator(`[data-members~="${name}"]`);
     await node.waitFor({ timeout: watchdog });
     await node.evaluate((element) => {
       new MutationObserver(() => {

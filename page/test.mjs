@@ -31,11 +31,14 @@ try {
     logLevel: "warning",
   });
   const files = readdirSync(out, { recursive: true }).filter((name) => name.endsWith(".mjs"));
-  const vectors = join(here, "../spec/vectors");
+  const folders = {
+    HC_VECTORS: join(here, "../spec/vectors"),
+    HC_GRAPHS: join(here, "../graphs"),
+  };
   const run = spawnSync(
     process.execPath,
     ["--test", "--test-reporter=spec", ...files.map((f) => join(out, f))],
-    { stdio: "inherit", env: { HC_VECTORS: vectors, ...process.env } },
+    { stdio: "inherit", env: { ...folders, ...process.env } },
   );
   process.exitCode = run.status ?? 1;
 } finally {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { graphPanel, modulePanel } from "./graph";
+import { bidsPanel, graphPanel, modulePanel } from "./graph";
 import { logPanel } from "./log";
 import { recordingsPanel, replayPanel } from "./recordings";
 import { addStop, seatPanel } from "./seat";
@@ -12,6 +12,7 @@ Object.assign(panelKinds, {
   graph: graphPanel,
   log: logPanel,
   module: modulePanel,
+  bids: bidsPanel,
   seat: seatPanel,
   recordings: recordingsPanel,
   replay: replayPanel,
@@ -22,6 +23,11 @@ standardPanels.push(
   { label: "Recordings", detail: "record, download, replay", args: { kind: "recordings" } },
   { label: "Scene", detail: "frames, head and points in space", args: { kind: "scene" } },
   { label: "Graph", detail: "modules and links, live", args: { kind: "graph" } },
+  {
+    label: "Who wants the head",
+    detail: "each task's bid, now and before",
+    args: { kind: "bids" },
+  },
   { label: "Log", detail: "what the modules report", args: { kind: "log" } },
   { label: "Seat", detail: "steer, speak, choose a task", args: { kind: "seat" } },
 );

@@ -95,18 +95,62 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     await graph?.end();
   });
 
-  test("the graph appears, a box for each module", async () => {
-    await show("graph,show=drawing");
+  test("the graph appears, each module in one box", async () => {
+    await show("graph");
     await page.locator(".node").first().waitFor();
     const drawn = await page
       .locator(".node")
-      .evaluateAll((nodes) => nodes.map((n) => n.dataset.module));
+      .evaluateAll((nodes) => nodes.flatMap((n) => n.dataset.members.split(" ")));
     assert.deepEqual(
-      drawn,
-      graph.state().modules.map(({ name }) => name),
+      drawn.sort(),
+      graph
+        .state()
+        .modules.map(({ name }) => name)
+        .sort(),
     );
-    assert.equal(await page.locator(".group").first().textContent(), "head");
-    await page.locator(".why", { hasText: "has the focus" }).waitFor();
+    assert.equal(await page.locator(".caption").first().textContent(), "head");
+    await page.locator(".bar-why", { hasText: "has the focus" }).waitFor();
+  });
+
+  test("text in the graph has at least 10 px, also when all parts are open", async () => {
+    await page.setViewportSize({ width: 1280, height: 800 });
+    await show("watch");
+    await page.locator(".node").first().waitFor();
+    assert.ok((await smallestText()) >= 10);
+    const closed = page.locator('.node[aria-expanded="false"]');
+    assert.ok((await closed.count()) >= 4);
+    while ((await closed.count()) > 0) await closed.first().press("Enter");
+    assert.ok((await smallestText()) >= 10);
+    await page.setViewportSize({ width: 1000, height: 720 });
+  });
+
+  test("each part and each link is reached with the keyboard, and has a name", async () => {
+    await show("graph");
+    await page.locator(".node").first().waitFor();
+    await page.locator('.graph-drawing [tabindex="0"]').focus();
+    const reached = new Set();
+    for (;;) {
+      const name = await page.evaluate(() => document.activeElement.getAttribute("aria-label"));
+      assert.match(name, /\S/);
+      if (reached.has(name)) break;
+      reached.add(name);
+      await page.keyboard.press("ArrowDown");
+    }
+    const shown = await page.locator('.graph-drawing [role="button"]:visible').count();
+    assert.ok(shown > 20);
+    assert.equal(reached.size, shown);
+  });
+
+  test("a part opens into its modules with Enter, and closes again", async () => {
+    await show("graph");
+    const parts = page.locator(".node");
+    const ball = page.locator('.node[data-members="left_ball right_ball"]');
+    await ball.press("Enter");
+    await page.locator('.node[data-members="left_ball"]').waitFor();
+    await page.locator('.caption[aria-expanded="true"]').first().press("Enter");
+    await ball.waitFor();
+    assert.ok(await ball.evaluate((element) => element === document.activeElement));
+    assert.ok((await parts.count()) < graph.state().modules.length);
   });
 
   test("its rates are those of hc top", async () => {
@@ -132,8 +176,8 @@ describe("the page", { timeout: 10 * watchdog }, () => {
   });
 
   test("a module that is killed is red until it runs again", async () => {
-    await show("graph,show=drawing");
-    const node = page.locator('[data-module="left_ball"]');
+    await show("graph");
+    const node = page.locator('[data-members~="left_ball"]');
     await node.waitFor();
     await node.evaluate((element) => {
       window.seen = [];
@@ -160,8 +204,8 @@ describe("the page", { timeout: 10 * watchdog }, () => {
   });
 
   test("a module opens with Enter, and a parameter that is changed there arrives", async () => {
-    await show("graph,show=drawing");
-    const node = page.locator('[data-module="workspace"]');
+    await show("graph");
+    const node = page.locator('.node[data-members="workspace"]');
     await node.focus();
     await page.keyboard.press("Enter");
     const margin = page.getByLabel("margin", { exact: true });
@@ -271,12 +315,12 @@ describe("the page", { timeout: 10 * watchdog }, () => {
   });
 
   test("a task that is chosen has the focus until it is released", async () => {
-    await takeSeat("seat|graph");
+    await takeSeat("seat");
     const read = page.locator('[data-task="read"]');
     await read.click();
     await inFocus("read");
     assert.equal(await read.getAttribute("aria-pressed"), "true");
-    await page.locator(".why", { hasText: "read has the focus: a person's bid" }).waitFor();
+    await page.locator(".bar-why", { hasText: "read has the focus: a person's bid" }).waitFor();
     await read.click();
     assert.equal(await read.getAttribute("aria-pressed"), "false");
   });
@@ -399,7 +443,8 @@ describe("the page", { timeout: 10 * watchdog }, () => {
       ["watch", ".kind-stream canvas"],
       ["build", ".kind-stream canvas"],
       ["graph,show=tables;module,name=head_eyes|seat", ".module .parameter"],
-      ["recordings|graph,show=drawing", ".node"],
+      ["recordings|graph", ".node"],
+      ["bids", ".bid"],
     ]) {
       test(`${panels} is accessible, in ${theme}`, async () => {
         await page.emulateMedia({ colorScheme: theme });
@@ -417,9 +462,9 @@ describe("the page", { timeout: 10 * watchdog }, () => {
   ]) {
     test(`nothing is wider than the page at ${width} × ${height}`, async () => {
       await page.setViewportSize({ width, height });
-      for (const panels of ["drive", "watch", "build", "module,name=head_eyes"]) {
+      for (const panels of ["drive", "watch", "build", "bids", "module,name=head_eyes"]) {
         await show(panels);
-        await page.locator(".graph, .seat, .module").first().waitFor();
+        await page.locator(".graph, .bids, .seat, .module").first().waitFor();
         const excess = await page.evaluate(
           () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
         );
@@ -446,16 +491,31 @@ describe("the page", { timeout: 10 * watchdog }, () => {
 
   test("after the graph has ended, nothing says that it runs", async () => {
     await page.setViewportSize({ width: 1000, height: 720 });
-    await show("graph,show=tables|module,name=head_eyes|seat");
+    await show("graph,show=tables;graph;bids|module,name=head_eyes|seat");
     await page.locator(".module-status", { hasText: "running" }).waitFor();
+    await page.locator(".node.has-focus").first().waitFor();
     graph.process.kill("SIGTERM");
     await page.locator(".trouble", { hasText: "ENDED" }).waitFor();
     const said = await page.locator("body").innerText();
-    assert.doesNotMatch(said, /has the focus|running|Take the seat|decides/);
+    assert.doesNotMatch(said, /has the focus|focus:|running|works|bids 0|Take the seat|decides/);
+    assert.equal(await page.locator(".graph-drawing .in-workspace").count(), 0);
     await page.getByRole("button", { name: "Stop", exact: true }).click();
     await page.locator(".not-stopped", { hasText: "The graph has ended" }).waitFor();
   });
 });
+
+/** Of the drawing of the graph [px]. */
+function smallestText() {
+  return page
+    .locator(".graph-drawing text:visible")
+    .evaluateAll((texts) =>
+      Math.min(
+        ...texts
+          .filter((text) => text.textContent !== "")
+          .map((text) => parseFloat(getComputedStyle(text).fontSize) * text.getScreenCTM().a),
+      ),
+    );
+}
 
 async function noFocus() {
   await page.locator(".bar .focus:empty").waitFor({ state: "attached" });

@@ -70,10 +70,10 @@ interface Sample {
   readonly bids: readonly Bid[];
 }
 
-/** The bids of the last minute. */
+/** The bids of the last seconds. */
 export class BidHistory {
   private samples: Sample[] = [];
-  constructor(readonly seconds = 60) {}
+  constructor(readonly seconds: number) {}
 
   add(time: number, bids: readonly Bid[]): void {
     this.samples.push({ time, bids });

@@ -1,18 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drawing of a graph: laid out once for a structure; its texts and colours are updated.
-import type { GraphLink, GraphModule, GraphState } from "../server";
+import type { GraphLink } from "../server";
 import { arrowHead, fill, h, setText, svg } from "../shell";
-import { DropRates } from "./drops";
-import { Failures } from "./failures";
-import { layoutOf, pathThrough, type Box, type Layout, type Line, type Point } from "./layout";
-import { linkKey, portOf, structureOf, type Edge, type Structure } from "./structure";
+import { layoutOf, type Point } from "./layout";
+import { drawEdge, drawNode, shorten, type EdgeMark, type NodeMark } from "./marks";
+import { sayingOf, type Now } from "./says";
+import { isBackground, portOf } from "./parts";
+import { linkKey, structureKey, structureOf, type Edge, type Structure } from "./structure";
 import { Viewport } from "./viewport";
-import { bytesText, limitTexts, durationText, latencyText, percentText, rateText } from "./words";
+import {
+  durationText,
+  latencyText,
+  limitTexts,
+  linkCondition,
+  percentText,
+  rateText,
+} from "./words";
 
 export interface DrawingEvents {
   openModule(name: string): void;
-  /** @param at  position of the click [px of the window]. */
+  /** @param at  where the link is [px of the window]. */
   openEdge(edge: Edge, at: Point): void;
+}
+
+/** What can be reached with the keyboard: a node, a link, or what closes an open part. */
+interface Item {
+  readonly key: string;
+  readonly element: SVGGElement;
+  readonly at: Point;
 }
 
 /** As setText(), for an attribute. */
@@ -20,17 +35,13 @@ function setAttribute(element: Element, name: string, value: string): void {
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }
 
-type NodeElements = ReturnType<typeof drawNode>;
-type EdgeElements = ReturnType<typeof drawEdge>;
-
 export class Drawing {
-  private readonly groups = svg("g");
-  private readonly edges = svg("g");
-  private readonly nodes = svg("g");
-  private readonly scene = svg("g", [this.groups, this.edges, this.nodes]);
+  private readonly lines = svg("g");
+  private readonly words = svg("g");
+  private readonly boxes = svg("g");
   private readonly svg = svg(
     "svg.graph-drawing",
-    { tabindex: 0, role: "group", "aria-label": "Drawing of the graph" },
+    { role: "group", "aria-label": "Drawing of the graph" },
     [
       arrowHead("arrow", 8, {
         refX: 7,
@@ -38,217 +49,219 @@ export class Drawing {
         markerHeight: 9,
         markerUnits: "userSpaceOnUse",
       }),
-      this.scene,
+      this.lines,
+      this.words,
+      this.boxes,
     ],
   );
-  readonly element = h("div.graph-window", this.svg);
-  readonly viewport = new Viewport(this.svg, this.scene);
-  private nodeElements = new Map<string, NodeElements>();
-  private edgeElements: readonly EdgeElements[] = [];
-  private readonly drops = new DropRates();
-  private readonly failures = new Failures();
+  readonly element = h(
+    "div.graph-window",
+    { tabindex: 0, role: "region", "aria-label": "Graph; arrow keys go from one to the next" },
+    this.svg,
+  );
+  readonly viewport = new Viewport(this.element, this.svg);
+  private nodes: readonly NodeMark[] = [];
+  private edges: readonly EdgeMark[] = [];
+  private items: readonly Item[] = [];
   private structure?: Structure;
-  /** The module in the tab order; arrow keys continue from it. */
+  private structureKey = "";
+  private now?: Now;
+  /** Keys of the parts that are open. */
+  private readonly open = new Set<string>();
+  /** Key of the item in the tab order; arrow keys continue from it. */
   private current = "";
 
   constructor(private readonly events: DrawingEvents) {
-    this.svg.addEventListener("keydown", (event) => this.key(event));
+    this.element.addEventListener("keydown", (event) => this.key(event));
+    this.svg.addEventListener("focusin", ({ target }) => {
+      const reached = this.items.find(({ element }) => element === target);
+      if (reached) this.moveTo(reached);
+    });
   }
 
   close(): void {
     this.viewport.close();
   }
 
-  /** Also shows the links of the focus and of poses, which lead nearly everywhere. */
+  /** Also shows the links of the focus, of stops and of poses, which lead nearly everywhere. */
   showBackground(show: boolean): void {
     this.svg.classList.toggle("with-background", show);
   }
 
-  update(state: GraphState): void {
-    const structure = structureOf(state);
-    if (structure.key !== this.structure?.key) this.build(structure);
-    this.structure = structure;
-    this.drops.take(state);
-    this.failures.take(state);
-    for (const module of state.modules) this.updateNode(module, state);
+  update(now: Now): void {
+    this.now = now;
+    const { state } = now;
+    const key = structureKey(state, this.open);
+    if (key !== this.structureKey) this.build(structureOf(state, this.open));
+    this.structureKey = key;
     const links = new Map(state.links.map((link) => [linkKey(link), link]));
-    for (const elements of this.edgeElements) {
-      const those = elements.edge.links.flatMap((key) => links.get(key) ?? []);
-      if (those.length > 0) this.updateEdge(elements, those);
+    const loop = new Set<string>(); // keys of nodes
+    for (const mark of this.edges) {
+      const those = mark.edge.links.flatMap((each) => links.get(each) ?? []);
+      const isLoop = this.updateEdge(mark, those);
+      if (isLoop) loop.add(mark.edge.from).add(mark.edge.to);
     }
+    for (const mark of this.nodes) this.updateNode(mark, now, loop.has(mark.node.key));
+  }
+
+  /** Opens a part into its modules, or closes it; what was clicked stays where it is. */
+  private toggle(key: string): void {
+    const before = this.cornerOf(key);
+    if (!this.open.delete(key)) this.open.add(key);
+    if (this.now) this.update(this.now);
+    const now = this.cornerOf(key);
+    if (before && now) this.viewport.keep(before, now);
+    this.items.find((item) => item.key === key)?.element.focus({ preventScroll: true });
+  }
+
+  /** The upper left corner of a node, or of the first one of an open part. */
+  private cornerOf(key: string): Point | undefined {
+    const mark = this.nodes.find(({ node }) => node.key === key || node.part === key);
+    return mark && { x: mark.box.x - mark.box.width / 2, y: mark.box.y - mark.box.height / 2 };
   }
 
   private build(structure: Structure): void {
     const layout = layoutOf(structure);
-    const focused = this.nodeElements.get(this.current)?.group === document.activeElement;
-    this.groups.replaceChildren(...layout.groups.map(drawGroup));
-    this.edgeElements = structure.edges.map((edge) =>
-      drawEdge(edge, layout.edges.get(edge.key)!, (at) => this.events.openEdge(edge, at)),
+    const hadFocus = this.svg.contains(document.activeElement);
+    this.nodes = structure.nodes.map((node) =>
+      drawNode(
+        node,
+        layout.nodes.get(node.key)!,
+        () => {
+          const [only, ...others] = node.members;
+          if (others.length > 0) this.toggle(node.key);
+          else if (only !== undefined) this.events.openModule(only);
+        },
+        () => this.toggle(node.part),
+      ),
+    );
+    this.edges = structure.edges.map((edge) => {
+      const mark: EdgeMark = drawEdge(edge, layout.edges.get(edge.key)!, () =>
+        this.events.openEdge(edge, this.placeOf(mark)),
+      );
+      return mark;
+    });
+    fill(
+      this.lines,
+      this.edges.map(({ group }) => group),
     );
     fill(
-      this.edges,
-      this.edgeElements.map(({ group }) => group),
-    );
-    this.nodeElements = new Map(
-      structure.nodes.map(({ name }) => {
-        const open = () => this.events.openModule(name);
-        return [name, drawNode(name, layout.nodes.get(name)!, open, () => this.moveTo(name))];
-      }),
+      this.words,
+      this.edges.map(({ words }) => words),
     );
     fill(
-      this.nodes,
-      [...this.nodeElements.values()].map(({ group }) => group),
+      this.boxes,
+      this.nodes.map(({ element }) => element),
     );
-    if (!this.nodeElements.has(this.current)) this.current = structure.nodes[0]?.name ?? "";
-    this.nodeElements.get(this.current)?.group.setAttribute("tabindex", "0");
-    if (focused) this.nodeElements.get(this.current)?.group.focus();
-    this.viewport.setSize(layout.width, layout.height);
+    const captions = this.nodes.filter(({ node }) => node.part !== "");
+    this.items = [
+      ...captions.map(({ node, caption, box }) => ({ key: node.part, element: caption, at: box })),
+      ...this.nodes.map(({ node, group, box }) => ({ key: node.key, element: group, at: box })),
+      ...this.edges.map(({ edge, group, at }) => ({ key: edge.key, element: group, at })),
+    ].sort((a, b) => a.at.x - b.at.x || a.at.y - b.at.y);
+    const current = this.items.find(({ key }) => key === this.current) ?? this.items[0];
+    if (current) this.moveTo(current);
+    if (hadFocus) current?.element.focus({ preventScroll: true });
+    this.viewport.setSize(layout.width, layout.height, this.open.size > 0);
+    this.structure = structure;
   }
 
-  private updateNode(module: GraphModule, state: GraphState): void {
-    const elements = this.nodeElements.get(module.name);
-    if (!elements) return;
-    const { is, why } = this.failures.conditionOf(module);
-    const load = `${percentText(module.cpu)} · ${bytesText(module.memory)}`;
-    const isTask = module.mode !== "" && module.mode === state.focus[module.workspace]?.mode;
-    const classes = ["node", is];
-    if (module.in_workspace) classes.push("in-workspace");
-    if (isTask) classes.push("task");
-    if (!module.in_focus) classes.push("idle");
-    if (module.name in state.focus) classes.push("arbiter");
-    setAttribute(elements.group, "class", classes.join(" "));
-    const room = Math.floor((elements.box.width - 16) / 6.2);
-    setText(elements.detail, why ? shorten(why, room) : load);
-    setText(elements.mode, module.mode);
-    const width = (elements.box.width - 4) * Math.min(1, module.cpu);
-    setAttribute(elements.load, "width", width.toFixed(1));
-    const mode = module.mode && `, task ${module.mode}${isTask ? " has the focus" : ""}`;
-    const condition = why ? `: ${why}` : "";
-    const text = `${module.name}${mode}${condition}; ${load}`;
-    setText(elements.title, text); // also its name for screen readers
+  private updateNode(mark: NodeMark, now: Now, isLoop: boolean): void {
+    const { node, group, title, detail, box } = mark;
+    const { state } = now;
+    const members = state.modules.filter(({ name }) => node.members.includes(name));
+    const saying = sayingOf(node, this.structure?.edges ?? [], now);
+    const hasFocus = members.some(
+      ({ mode, workspace }) => mode !== "" && mode === state.focus[workspace]?.mode,
+    );
+    const classes = ["node", `kind-${node.kind}`, saying.is];
+    if (isLoop) classes.push("in-workspace");
+    if (hasFocus) classes.push("has-focus");
+    setAttribute(group, "class", classes.join(" "));
+    setText(detail, shorten(saying.text, box.width, "detail"));
+    const loads = members.map(({ name, cpu }) => `${name}, cpu ${percentText(cpu)}`);
+    const focus = hasFocus ? ", has the focus" : "";
+    setText(title, [`${node.label}${focus}: ${saying.text}`, ...loads].join("\n"));
+    setAttribute(group, "aria-label", `${node.label}${focus}: ${saying.text}`);
   }
 
-  private updateEdge(elements: EdgeElements, links: readonly GraphLink[]): void {
+  /** @returns  whether it moves the robot now: something passes it in the global workspace. */
+  private updateEdge(mark: EdgeMark, all: readonly GraphLink[]): boolean {
+    const { background, from, to } = mark.edge;
+    const links = all.filter((link) => background || !isBackground(link));
     const fastest = links.reduce((a, b) => (b.per_second > a.per_second ? b : a));
-    const broken = links.filter((link) => link.status !== "");
-    const dropped = links.reduce((sum, link) => sum + this.drops.of(link), 0);
-    const classes = ["edge"];
-    if (elements.edge.background) classes.push("background");
-    if (broken.length > 0) classes.push("broken");
-    if (links.some((link) => link.in_workspace)) classes.push("in-workspace");
-    if (links.every((link) => link.per_second === 0)) classes.push("silent");
-    setAttribute(elements.group, "class", classes.join(" "));
-    const several = links.length > 1 ? ` ×${links.length}` : "";
-    setText(elements.rate, broken[0] ? "broken" : rateText(fastest.per_second) + several);
-    setText(elements.dropped, dropped >= 0.05 ? ` −${rateText(dropped)}` : "");
-    const { age } = fastest;
-    setText(elements.latency, age ? `${durationText(age[0])} · ${durationText(age[1])}` : "");
-    setText(elements.title, links.map(linkText).join("\n"));
+    const isBroken = links.some((link) => linkCondition(link).is === "broken");
+    const isLoop = links.some((link) => link.in_workspace && link.per_second > 0) && !background;
+    const classes = [background ? "background" : "data"];
+    if (isBroken) classes.push("broken");
+    if (isLoop) classes.push("in-workspace");
+    if (fastest.per_second === 0) classes.push("silent");
+    setAttribute(mark.group, "class", ["edge", ...classes].join(" "));
+    setAttribute(mark.words, "class", ["edge-words", ...classes].join(" "));
+    const rate = isBroken ? "broken" : rateText(fastest.per_second);
+    const age = fastest.age ? durationText(fastest.age[0]) : "";
+    setText(mark.rate, rate);
+    setText(mark.age, age && ` ${age}`);
+    setText(mark.title, all.map(linkText).join("\n"));
+    const label = (key: string): string =>
+      this.nodes.find(({ node }) => node.key === key)?.node.label ?? key;
+    const facts = [rate || "nothing comes", age].filter((fact) => fact !== "").join(", ");
+    setAttribute(mark.group, "aria-label", `Link from ${label(from)} to ${label(to)}: ${facts}`);
+    return isLoop;
   }
 
-  private moveTo(name: string): void {
-    this.nodeElements.get(this.current)?.group.setAttribute("tabindex", "-1");
-    this.current = name;
-    const elements = this.nodeElements.get(name);
-    elements?.group.setAttribute("tabindex", "0");
-    if (elements) this.viewport.reveal(elements.box.x, elements.box.y);
+  /** Where the label of a link is in the window [px]. */
+  private placeOf({ at }: EdgeMark): Point {
+    const matrix = this.svg.getScreenCTM();
+    const { x, y } = new DOMPoint(at.x, at.y).matrixTransform(matrix ?? undefined);
+    return { x, y };
+  }
+
+  private moveTo(item: Item): void {
+    this.current = item.key;
+    for (const { element } of this.items) {
+      setAttribute(element, "tabindex", element === item.element ? "0" : "-1");
+    }
   }
 
   private key(event: KeyboardEvent): void {
-    const name = (event.target as Element).getAttribute("data-module");
-    if (name === null) return;
+    const at = this.items.findIndex(({ element }) => element === event.target);
+    const item = this.items[at];
+    if (!item || event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.key === "Enter" || event.key === " ") {
-      event.preventDefault();
-      return this.events.openModule(name);
+      item.element.dispatchEvent(new MouseEvent("click"));
+    } else {
+      const ways: Record<string, () => Item | undefined> = {
+        ArrowDown: () => this.shownItem(at, 1),
+        ArrowUp: () => this.shownItem(at, -1),
+        ArrowRight: () => this.neighbour(item, 1),
+        ArrowLeft: () => this.neighbour(item, -1),
+      };
+      const way = ways[event.key];
+      if (!way) return;
+      way()?.element.focus();
     }
-    const ways: Record<string, Point> = {
-      ArrowLeft: { x: -1, y: 0 },
-      ArrowRight: { x: 1, y: 0 },
-      ArrowUp: { x: 0, y: -1 },
-      ArrowDown: { x: 0, y: 1 },
-    };
-    const way = ways[event.key];
-    if (!way) return;
     event.preventDefault();
-    this.neighbour(name, way)?.group.focus();
   }
 
-  /** The nearest module in a direction; sideways distance counts double. */
-  private neighbour(name: string, way: Point): NodeElements | undefined {
-    const here = this.nodeElements.get(name)?.box;
-    if (!here) return undefined;
-    const distance = ({ box }: NodeElements): number => {
-      const along = (box.x - here.x) * way.x + (box.y - here.y) * way.y;
-      const aside = Math.abs((box.x - here.x) * way.y) + Math.abs((box.y - here.y) * way.x);
-      return along > 5 ? along + 2 * aside : Infinity;
+  /** The next or previous item that is shown, column by column. */
+  private shownItem(at: number, step: 1 | -1): Item | undefined {
+    for (let i = at + step; this.items[i]; i += step) {
+      if (getComputedStyle(this.items[i]!.element).display !== "none") return this.items[i];
+    }
+    return undefined;
+  }
+
+  /** The nearest item to the right or left; distance up and down counts double. */
+  private neighbour({ at }: Item, way: 1 | -1): Item | undefined {
+    const distance = (item: Item): number => {
+      const along = (item.at.x - at.x) * way;
+      const isShown = getComputedStyle(item.element).display !== "none";
+      return along > 5 && isShown ? along + 2 * Math.abs(item.at.y - at.y) : Infinity;
     };
-    const all = [...this.nodeElements.values()];
-    const nearest = all.reduce((a, b) => (distance(b) < distance(a) ? b : a));
+    const nearest = this.items.reduce((a, b) => (distance(b) < distance(a) ? b : a));
     return distance(nearest) < Infinity ? nearest : undefined;
   }
-}
-
-function drawNode(name: string, box: Box, open: () => void, reached: () => void) {
-  const title = svg("title");
-  const left = -box.width / 2;
-  const top = -box.height / 2;
-  const detail = svg("text.node-detail", { x: left + 10, y: top + 37 });
-  const mode = svg("text.node-mode", { x: -left - 8, y: top - 3, "text-anchor": "end" });
-  const load = svg("rect.node-load", { x: left + 2, y: -top - 5, height: 3, width: 0 });
-  const group = svg(
-    "g.node",
-    {
-      role: "button",
-      tabindex: -1,
-      "data-module": name,
-      transform: `translate(${box.x} ${box.y})`,
-      onclick: open,
-      onfocus: reached,
-    },
-    [
-      title,
-      svg("rect.node-box", { x: left, y: top, width: box.width, height: box.height, rx: 6 }),
-      svg("text.node-name", { x: left + 10, y: top + 20 }, name),
-      detail,
-      mode,
-      load,
-    ],
-  );
-  return { group, title, detail, mode, load, box };
-}
-
-function drawEdge(edge: Edge, { points, label }: Line, open: (at: Point) => void) {
-  const d = pathThrough(points);
-  const title = svg("title");
-  const rate = svg("tspan.edge-rate");
-  const dropped = svg("tspan.edge-dropped");
-  const latency = svg("text.edge-latency", { x: label.x, y: label.y + 12 });
-  const group = svg(
-    "g",
-    {
-      class: edge.background ? "edge background" : "edge",
-      "data-edge": edge.key,
-      onclick: (event: MouseEvent) => open({ x: event.clientX, y: event.clientY }),
-    },
-    [
-      title,
-      svg("path.edge-line", { d, "marker-end": "url(#arrow)" }),
-      svg("path.edge-hit", { d }),
-      svg("text.edge-label", { x: label.x, y: label.y - 2 }, [rate, dropped]),
-      latency,
-    ],
-  );
-  return { group, title, rate, dropped, latency, edge };
-}
-
-function drawGroup({ group, box }: Layout["groups"][number]): SVGGElement {
-  const x = box.x - box.width / 2;
-  const y = box.y - box.height / 2;
-  const { width, height } = box;
-  return svg("g.group", [
-    svg("rect", { x, y, width, height, rx: 10 }),
-    svg("text", { x: x + 10, y: y + 16 }, group),
-  ]);
 }
 
 /** A link in words: its ports, status, latency and drops. */
@@ -260,8 +273,4 @@ function linkText(link: GraphLink): string {
     ...limitTexts(link),
   ].filter((fact) => fact !== "");
   return `${link.from} → ${portOf(link.to)} of ${link.to.split(".")[0]}: ${facts.join("; ")}`;
-}
-
-function shorten(text: string, letters: number): string {
-  return text.length <= letters ? text : `${text.slice(0, letters - 1)}…`;
 }

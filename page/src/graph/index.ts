@@ -1,3 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
 export { graphPanel } from "./panel";
 export { modulePanel } from "./module";
+export { bidsPanel } from "./workspace";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The layout of a graph's drawing, by dagre: data flows from left to right.
-import { Graph, layout as dagreLayout } from "@dagrejs/dagre";
-import type { Edge, Structure } from "./structure";
+// The layout of a graph's drawing in columns. It depends on the structure alone. Pure.
+import { columnsOf } from "./columns";
+import type { Edge, Node, Structure } from "./structure";
 
 /** [px] of the drawing, from its top left corner. */
 export interface Point {
@@ -15,155 +15,271 @@ export interface Box extends Point {
   readonly height: number;
 }
 
+/** The points of a line, and its label, which begins or ends beside its first point. */
+export interface Line {
+  readonly points: readonly Point[];
+  readonly label: Point & { readonly anchor: "start" | "end" };
+}
+
 export interface Layout {
   readonly width: number;
   readonly height: number;
   readonly nodes: ReadonlyMap<string, Box>;
-  /** A group whose members are far apart has several boxes. */
-  readonly groups: readonly { readonly group: string; readonly box: Box }[];
-  /** Lines and their labels, by keys of edges. */
+  /** By keys of edges. */
   readonly edges: ReadonlyMap<string, Line>;
 }
 
-export const nodeHeight = 52; // [px]
-const labelSize = { width: 78, height: 26 };
+const margin = 14; // [px]
+/** Between columns, for labels and bends [px]. */
+const columnGap = 84;
+const rowGap = 14; // [px]
+const nodeSize = { width: 120, most: 184, height: 48 }; // [px]
+/** Of a letter of a node's name [px]. */
+const letterWidth = 7.8;
+/** Between lines at the side of a node, so that their labels have room [px]. */
+const lineGap = 13;
+/** Above a node for the name of its part or body [px]. */
+const captionHeight = 16;
+const passHeight = 4; // of a line that passes a column [px]
+const sweeps = 24;
 
-/** Width of a module with this name [px]. */
-function nodeWidth(name: string): number {
-  return Math.max(112, 34 + name.length * 7.6);
-}
+type Side = "left" | "right";
 
-/** The points of a line, and the position of its label. */
-export interface Line {
-  readonly points: readonly Point[];
-  readonly label: Point;
-}
-
-/** Members of a group drawn in one box. */
-interface Piece {
+/** A node, or a place where a line passes a column. */
+interface Cell {
   readonly key: string;
-  readonly group: string;
-  readonly members: readonly string[];
+  readonly column: number;
+  readonly height: number;
+  /** Keys of the cells to which lines lead. */
+  readonly neighbours: string[];
+  y: number; // of its centre
 }
 
-/** Lays out a structure; deterministic. Cost: about 100 ms for 30 modules. */
+/** Lays out a structure; deterministic. */
 export function layoutOf(structure: Structure): Layout {
-  const pieces = piecesOf(structure, place(structure, []));
-  const graph = place(structure, pieces);
-  const box = (name: string): Box => {
-    const { x, y, width, height } = graph.node(name) as Box;
-    return { x, y, width, height };
+  const columns = columnsOf(structure);
+  const flow = structure.edges.filter(({ background }) => !background);
+  const sides = (edge: Edge): [Side, Side] => {
+    const [from, to] = [columns.get(edge.from)!, columns.get(edge.to)!];
+    return from === to ? ["right", "right"] : from < to ? ["right", "left"] : ["left", "right"];
   };
-  const nodes = new Map(structure.nodes.map(({ name }) => [name, box(name)]));
-  const between = new Map<string, Line>();
-  for (const edge of structure.edges) {
-    const found = graph.edge(edge.from, edge.to) as (Point & { points: Point[] }) | undefined;
-    if (found) between.set(edge.key, { points: found.points.slice(1, -1), label: found });
-  }
-  const edges = attach(structure, nodes, between);
-  const { width = 0, height = 0 } = graph.graph() as { width?: number; height?: number };
-  const groups = pieces.map(({ key, group }) => ({ group, box: box(key) }));
-  return { width, height, nodes, groups, edges };
+  const endsAt = (key: string, side: Side): number =>
+    flow.filter((edge) => edge.from === key && sides(edge)[0] === side).length +
+    flow.filter((edge) => edge.to === key && sides(edge)[1] === side).length;
+  const heightOf = (key: string): number =>
+    Math.max(nodeSize.height, lineGap * (1 + Math.max(endsAt(key, "left"), endsAt(key, "right"))));
+
+  const cells = cellsOf(structure, columns, heightOf);
+  arrange(cells);
+
+  const tops = [...cells.values()].map((cell) => cell.y - cell.height / 2);
+  const top = margin - Math.min(...tops);
+  const widths = widthsOf(structure.nodes, columns);
+  const leftOf = (column: number): number =>
+    margin + widths.slice(0, column).reduce((sum, width) => sum + width + columnGap, 0);
+  const nodes = new Map(
+    structure.nodes.map((node) => {
+      const cell = cells.get(node.key)!;
+      const height = heightOf(node.key);
+      const caption = node.caption ? captionHeight : 0;
+      const column = columns.get(node.key)!;
+      const box = { x: leftOf(column) + widths[column]! / 2, y: cell.y + top + caption / 2 };
+      return [node.key, { ...box, width: widths[column]!, height }];
+    }),
+  );
+
+  /** Where a line passes the columns between its ends. */
+  const passes = (edge: Edge): Point[] => {
+    const [from, to] = [columns.get(edge.from)!, columns.get(edge.to)!];
+    const step = Math.sign(to - from);
+    const points: Point[] = [];
+    for (let column = from + step; step !== 0 && column !== to; column += step) {
+      const cell = cells.get(passKey(edge, column));
+      if (!cell) continue; // of the background
+      const [left, right] = [leftOf(column), leftOf(column) + widths[column]!];
+      const y = cell.y + top;
+      points.push({ x: step > 0 ? left : right, y }, { x: step > 0 ? right : left, y });
+    }
+    return points;
+  };
+  const pointAt = (key: string, side: Side, edge: Edge): Point => {
+    const { x, y, width, height } = nodes.get(key)!;
+    const toward = (each: Edge): number => {
+      const route = passes(each);
+      const next = each.from === key ? route[0] : route.at(-1);
+      return (next ?? nodes.get(each.from === key ? each.to : each.from)!).y;
+    };
+    const order = flow
+      .filter(
+        (each) =>
+          (each.from === key && sides(each)[0] === side) ||
+          (each.to === key && sides(each)[1] === side),
+      )
+      .sort((a, b) => toward(a) - toward(b));
+    const place = order.indexOf(edge);
+    const share = place < 0 ? 0.5 : (place + 1) / (order.length + 1);
+    return { x: x + (side === "left" ? -width : width) / 2, y: y + (share - 0.5) * height };
+  };
+  const edges = new Map(
+    structure.edges.map((edge) => {
+      const [leaves, comes] = sides(edge);
+      const start = pointAt(edge.from, leaves, edge);
+      const points = [start, ...passes(edge), pointAt(edge.to, comes, edge)];
+      const label =
+        leaves === "right"
+          ? ({ x: start.x + 5, y: start.y, anchor: "start" } as const)
+          : ({ x: start.x - 5, y: start.y, anchor: "end" } as const);
+      return [edge.key, { points, label }];
+    }),
+  );
+  const bottoms = [...cells.values()].map((cell) => cell.y + top + cell.height / 2);
+  const width = leftOf(widths.length) - columnGap + margin;
+  return { width, height: Math.max(...bottoms) + margin, nodes, edges };
 }
 
-/** The layout by dagre, with a box around each piece. */
-function place(structure: Structure, pieces: readonly Piece[]): InstanceType<typeof Graph> {
-  const graph = new Graph({ compound: true });
-  const margins = { marginx: 12, marginy: 12 };
-  graph.setGraph({ rankdir: "LR", nodesep: 18, edgesep: 12, ranksep: 40, ...margins });
-  for (const { name } of structure.nodes) {
-    graph.setNode(name, { width: nodeWidth(name), height: nodeHeight });
-  }
-  for (const { key, members } of pieces) {
-    graph.setNode(key, {});
-    for (const member of members) graph.setParent(member, key);
+function widthsOf(nodes: readonly Node[], columns: ReadonlyMap<string, number>): number[] {
+  const count = 1 + Math.max(0, ...columns.values());
+  return Array.from({ length: count }, (_, column) => {
+    const names = nodes.filter(({ key }) => columns.get(key) === column);
+    const longest = Math.max(...names.map(({ label }) => 26 + label.length * letterWidth));
+    return Math.min(nodeSize.most, Math.max(nodeSize.width, longest));
+  });
+}
+
+const passKey = (edge: Edge, column: number): string => `${edge.key} ${column}`;
+
+function cellsOf(
+  structure: Structure,
+  columns: ReadonlyMap<string, number>,
+  heightOf: (key: string) => number,
+): Map<string, Cell> {
+  const cells = new Map<string, Cell>();
+  const add = (key: string, column: number, height: number): void => {
+    cells.set(key, { key, column, height, neighbours: [], y: 0 });
+  };
+  for (const { key, caption } of structure.nodes) {
+    add(key, columns.get(key)!, heightOf(key) + (caption ? captionHeight : 0));
   }
   for (const edge of structure.edges) {
-    if (!edge.background && edge.from !== edge.to) {
-      graph.setEdge(edge.from, edge.to, { ...labelSize, labelpos: "c" });
+    if (edge.background) continue;
+    const [from, to] = [columns.get(edge.from)!, columns.get(edge.to)!];
+    const step = Math.sign(to - from);
+    let before = edge.from;
+    const connect = (key: string): void => {
+      cells.get(before)!.neighbours.push(key);
+      cells.get(key)!.neighbours.push(before);
+      before = key;
+    };
+    for (let column = from + step; step !== 0 && column !== to; column += step) {
+      add(passKey(edge, column), column, passHeight);
+      connect(passKey(edge, column));
+    }
+    connect(edge.to);
+  }
+  return cells;
+}
+
+/** Orders the cells of each column and places them, near their neighbours, with few crossings. */
+function arrange(cells: ReadonlyMap<string, Cell>): void {
+  const columns: Cell[][] = [];
+  for (const cell of cells.values()) (columns[cell.column] ??= []).push(cell);
+  const wanted = ({ neighbours, column, y }: Cell, side: number): number => {
+    const those = neighbours
+      .map((key) => cells.get(key)!)
+      .filter((each) => Math.sign(each.column - column) === side || side === 0);
+    return those.length === 0 ? y : those.reduce((sum, each) => sum + each.y, 0) / those.length;
+  };
+  for (const column of columns)
+    settle(
+      column,
+      column.map(() => 0),
+    );
+  let best = { crossings: Infinity, orders: columns.map((column) => [...column]) };
+  for (let sweep = 0; sweep < sweeps; ++sweep) {
+    const isForward = sweep % 2 === 0;
+    for (const column of isForward ? columns : [...columns].reverse()) {
+      const at = new Map(column.map((cell) => [cell, wanted(cell, isForward ? -1 : 1)]));
+      column.sort((a, b) => at.get(a)! - at.get(b)!);
+      settle(
+        column,
+        column.map((cell) => at.get(cell)!),
+      );
+    }
+    const crossings = crossingsOf(cells);
+    if (crossings < best.crossings) {
+      best = { crossings, orders: columns.map((column) => [...column]) };
     }
   }
-  dagreLayout(graph);
-  return graph;
+  for (const column of best.orders)
+    settle(
+      column,
+      column.map(() => 0),
+    );
+  for (let sweep = 0; sweep < sweeps; ++sweep) {
+    const side = sweep >= sweeps - 4 ? 0 : sweep % 2 === 0 ? -1 : 1;
+    for (const column of side > 0 ? [...best.orders].reverse() : best.orders) {
+      settle(
+        column,
+        column.map((cell) => wanted(cell, side)),
+      );
+    }
+  }
+}
+
+/** How many lines between neighbouring columns cross. */
+function crossingsOf(cells: ReadonlyMap<string, Cell>): number {
+  const lines = [...cells.values()].flatMap((from) =>
+    from.neighbours
+      .map((key) => cells.get(key)!)
+      .filter((to) => to.column === from.column + 1)
+      .map((to) => ({ column: from.column, from: from.y, to: to.y })),
+  );
+  let count = 0;
+  lines.forEach((a, i) => {
+    for (const b of lines.slice(i + 1)) {
+      if (a.column === b.column && (a.from - b.from) * (a.to - b.to) < 0) ++count;
+    }
+  });
+  return count;
 }
 
 /**
- * Groups, split where their members are far apart, like the eyes and the neck of a head: one box
- * around all of them would cover the whole drawing.
+ * Places the cells of a column in their order as near as possible to what they want, without overlap:
+ * a regression that keeps the order. Source: pool adjacent violators, Ayer et al., 1955.
  */
-function piecesOf(structure: Structure, graph: InstanceType<typeof Graph>): Piece[] {
-  const columnOf = (name: string): number => Math.round((graph.node(name) as Box).x);
-  const columns = [...new Set(structure.nodes.map(({ name }) => columnOf(name)))];
-  const ranks = new Map(columns.sort((a, b) => a - b).map((x, rank) => [x, rank]));
-  const rankOf = (name: string): number => ranks.get(columnOf(name)) ?? 0;
-  const pieces: Piece[] = [];
-  for (const group of new Set(structure.nodes.map((node) => node.group))) {
-    if (group === "") continue;
-    const members = structure.nodes
-      .filter((node) => node.group === group)
-      .map(({ name }) => name)
-      .sort((a, b) => rankOf(a) - rankOf(b));
-    let run: string[] = [];
-    members.forEach((member, i) => {
-      run.push(member);
-      const next = members[i + 1];
-      if (next !== undefined && rankOf(next) - rankOf(member) <= 1) return;
-      pieces.push({ key: `group ${group} ${pieces.length}`, group, members: run });
-      run = [];
-    });
-  }
-  return pieces;
-}
-
-/**
- * Lines from the right sides of modules to the left sides of others, spread along the sides in the
- * order of their other ends, so that few cross.
- */
-function attach(
-  structure: Structure,
-  nodes: ReadonlyMap<string, Box>,
-  between: ReadonlyMap<string, Line>,
-): Map<string, Line> {
-  const route = (edge: Edge): readonly Point[] => between.get(edge.key)?.points ?? [];
-  const spread = (edges: readonly Edge[], edge: Edge, box: Box, toward: (edge: Edge) => number) => {
-    const order = edges.filter((each) => !each.background).sort((a, b) => toward(a) - toward(b));
-    const place = edge.background ? 0.5 : (order.indexOf(edge) + 1) / (order.length + 1);
-    return box.y + (place - 0.5) * (box.height - 8);
-  };
-  const lines = new Map<string, Line>();
-  for (const edge of structure.edges) {
-    const from = nodes.get(edge.from)!;
-    const to = nodes.get(edge.to)!;
-    const leaving = structure.edges.filter((each) => each.from === edge.from);
-    const coming = structure.edges.filter((each) => each.to === edge.to);
-    const start = {
-      x: from.x + from.width / 2,
-      y: spread(leaving, edge, from, (each) => (route(each)[0] ?? nodes.get(each.to)!).y),
-    };
-    const end = {
-      x: to.x - to.width / 2,
-      y: spread(coming, edge, to, (each) => (route(each).at(-1) ?? nodes.get(each.from)!).y),
-    };
-    const points = [start, ...route(edge), end];
-    const middle = { x: (start.x + end.x) / 2, y: (start.y + end.y) / 2 };
-    lines.set(edge.key, { points, label: between.get(edge.key)?.label ?? middle });
-  }
-  return lines;
+function settle(column: readonly Cell[], wanted: readonly number[]): void {
+  let depth = 0;
+  const offsets = column.map((cell, i) => {
+    const before = column[i - 1];
+    if (before) depth += (before.height + cell.height) / 2 + rowGap;
+    return depth;
+  });
+  const pools: { sum: number; count: number }[] = [];
+  wanted.forEach((y, i) => {
+    let pool = { sum: y - offsets[i]!, count: 1 };
+    for (;;) {
+      const before = pools.at(-1);
+      if (!before || before.sum / before.count <= pool.sum / pool.count) break;
+      pools.pop();
+      pool = { sum: before.sum + pool.sum, count: before.count + pool.count };
+    }
+    pools.push(pool);
+  });
+  const means = pools.flatMap(({ sum, count }) => Array<number>(count).fill(sum / count));
+  column.forEach((cell, i) => (cell.y = means[i]! + offsets[i]!));
 }
 
 /** A path through points, horizontal at each of them, as the `d` of an SVG path. */
 export function pathThrough(points: readonly Point[]): string {
   const at = (x: number, y: number): string => `${x.toFixed(1)} ${y.toFixed(1)}`;
-  let path = "";
-  points.forEach((point, i) => {
+  return points.reduce((path, point, i) => {
     const before = points[i - 1];
-    if (!before) {
-      path = `M${at(point.x, point.y)}`;
-      return;
-    }
-    // A backward line swings out on both sides.
-    const reach = point.x > before.x ? (point.x - before.x) / 2 : 60;
-    path += `C${at(before.x + reach, before.y)} ${at(point.x - reach, point.y)} ${at(point.x, point.y)}`;
-  });
-  return path;
+    if (!before) return `M${at(point.x, point.y)}`;
+    if (before.y === point.y) return `${path}L${at(point.x, point.y)}`;
+    const isBeside = Math.abs(before.x - point.x) < 20; // in the same column
+    const out = isBeside ? 40 : (point.x - before.x) / 2;
+    const back = isBeside ? -40 : out;
+    const bend = `${at(before.x + out, before.y)} ${at(point.x - back, point.y)}`;
+    return `${path}C${bend} ${at(point.x, point.y)}`;
+  }, "");
 }

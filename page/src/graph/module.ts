@@ -98,8 +98,7 @@ class ModuleView {
     }
     this.failures.take(state);
     const { is, why } = this.failures.conditionOf(module);
-    const text = why ? `${module.status}: ${why}` : module.status;
-    setText(this.status, text);
+    setText(this.status, is === "ended" ? why : why ? `${module.status}: ${why}` : module.status);
     this.status.className = `module-status ${is}`;
     this.updateFacts(module);
     this.updateParameters(module);

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { GraphLink } from "../server";
-import { button, fill, h, type PanelKind } from "../shell";
+import type { GraphLink, GraphModule } from "../server";
+import { button, fill, h, setText, type PanelKind } from "../shell";
 import { Drawing } from "./drawing";
+import { Failures } from "./failures";
 import type { Point } from "./layout";
+import { summaryOf } from "./says";
+import { Standings } from "./standings";
 import { linkKey, type Edge } from "./structure";
 import { Tables } from "./table";
 import { limitTexts, latencyText, rateText } from "./words";
-import { WorkspaceView } from "./workspace";
-
-/** Below this width the tables are shown first [px]. */
-const narrow = 480;
 
 /** The live graph: {kind: "graph", show?: "drawing" | "tables"}. */
 export const graphPanel: PanelKind = (args, host) => {
@@ -52,65 +51,72 @@ export const graphPanel: PanelKind = (args, host) => {
 
   const drawing = new Drawing({ openModule, openEdge: choose });
   const tables = new Tables({ openModule, openLink });
-  const workspaces = h("div.workspaces");
-  const views = new Map<string, WorkspaceView>();
-  const element = h("div.graph.stack", [workspaces, drawing.element, tables.element, menu]);
+  const counts = h("span.muted");
+  const problems = h("span.problems", { role: "status" });
+  const summary = h("p.graph-summary.small", [counts, problems]);
+  const element = h("div.graph.stack", [summary, drawing.element, tables.element, menu]);
 
-  let chosen = args.show;
+  let shown = args.show === "tables" ? "tables" : "drawing";
   const background = h("input", {
     type: "checkbox",
     onchange: () => drawing.showBackground(background.checked),
   });
-  const show = (which: string): void => {
-    drawing.element.hidden = which !== "drawing";
-    tables.element.hidden = which !== "tables";
-    switcher.textContent = which === "drawing" ? "Tables" : "Drawing";
-    for (const tool of drawingTools) tool.hidden = which !== "drawing";
+  const show = (): void => {
+    drawing.element.hidden = shown !== "drawing";
+    tables.element.hidden = shown !== "tables";
+    switcher.textContent = shown === "drawing" ? "Tables" : "Drawing";
+    for (const tool of drawingTools) tool.hidden = shown !== "drawing";
+    update();
   };
-  const shown = (): string => chosen ?? (element.clientWidth < narrow ? "tables" : "drawing");
   const switcher = h("button", {
     onclick: () => {
-      chosen = shown() === "drawing" ? "tables" : "drawing";
-      host.setArgs({ ...args, show: chosen });
-      show(chosen);
+      shown = shown === "drawing" ? "tables" : "drawing";
+      host.setArgs({ ...args, show: shown });
+      show();
     },
   });
   const zoom = (label: string, text: string, action: () => void): HTMLElement =>
     button(text, action, { "aria-label": label, title: label });
   const drawingTools = [
-    h("label.tool", [background, "focus and poses"]),
+    h("label.tool", { title: "Also the links of focus, stops and poses" }, [
+      background,
+      "all links",
+    ]),
     zoom("Smaller", "−", () => drawing.viewport.zoom(0.8)),
     zoom("Larger", "+", () => drawing.viewport.zoom(1.25)),
-    zoom("Show all", "⤢", () => drawing.viewport.fit()),
+    zoom("As it was", "⤢", () => drawing.viewport.fit()),
   ];
   host.tools.append(...drawingTools, switcher);
-  show(chosen ?? "drawing");
-  const resizing = new ResizeObserver(() => show(shown()));
-  resizing.observe(element);
 
-  const off = server.onState((state) => {
-    drawing.update(state);
-    if (shown() === "tables") tables.update(state);
-    for (const [name, view] of views) {
-      if (name in state.focus) continue;
-      view.close();
-      view.element.remove();
-      views.delete(name);
-    }
-    for (const name of Object.keys(state.focus)) {
-      if (views.has(name)) continue;
-      const view = new WorkspaceView(server, name);
-      views.set(name, view);
-      workspaces.append(view.element);
-    }
-  });
+  const failures = new Failures();
+  const standings = new Standings(server, 2, () => {});
+  const update = (): void => {
+    const { state, session, connection } = server;
+    if (!state) return;
+    failures.take(state);
+    standings.follow(state);
+    const isKnown = connection.status === "open";
+    const now = {
+      state,
+      stopped: session?.stopped === true,
+      bids: (workspace: string) => (isKnown ? standings.of(workspace) : []),
+      conditionOf: (module: GraphModule) => failures.conditionOf(module),
+    };
+    if (shown === "drawing") drawing.update(now);
+    else tables.update(state);
+    const { counts: count, problems: bad } = summaryOf(now);
+    setText(counts, count);
+    setText(problems, bad.text);
+    problems.dataset.is = bad.is;
+  };
+  show();
+  const ends = [server.onState(update), server.onSession(update), server.onConnection(update)];
   return {
     element,
     close: () => {
-      off();
-      resizing.disconnect();
+      for (const end of ends) end();
+      standings.close();
       drawing.close();
-      for (const view of views.values()) view.close();
     },
   };
 };

@@ -1,64 +1,97 @@
 // SPDX-License-Identifier: Apache-2.0
-// The structure of a graph's drawing: modules in groups, and one edge for all links of two modules.
+// The structure of a graph's drawing: its parts, or the modules of those that are open, and one edge
+// for all links between two of them.
 import type { GraphLink, GraphModule, GraphState } from "../server";
+import { isBackground, moduleOf, partsOf, portOf, type PartKind } from "./parts";
 
-/** All links from one module to another. */
+/** A box of the drawing. */
+export interface Node {
+  /** That of its part; of an open part's module and of a place outside, the name. */
+  readonly key: string;
+  readonly label: string;
+  readonly kind: PartKind | "outside";
+  readonly members: readonly string[];
+  /** The included graph or the open part to which it belongs; empty: none. */
+  readonly caption: string;
+  /** Key of that open part; empty: none. */
+  readonly part: string;
+}
+
+/** All links from one node to another. */
 export interface Edge {
-  /** `FROM>TO`, names of modules. */
+  /** `FROM>TO`, keys of nodes. */
   readonly key: string;
   readonly from: string;
   readonly to: string;
   /** Names as in links: `MODULE.PORT MODULE.PORT`. */
   readonly links: readonly string[];
-  /** Its links only carry the focus or the poses of frames. */
+  /** Its links only carry the focus, the stop or the poses of frames. */
   readonly background: boolean;
 }
 
 export interface Structure {
-  readonly nodes: readonly { readonly name: string; readonly group: string }[];
+  readonly nodes: readonly Node[];
   readonly edges: readonly Edge[];
-  /** Equal for states that have the same structure. */
-  readonly key: string;
 }
 
-/** Name of the module of `MODULE.PORT`. */
-export function moduleOf(port: string): string {
-  return port.slice(0, port.indexOf("."));
-}
-
-/** Name of the port of `MODULE.PORT`. */
-export function portOf(port: string): string {
-  return port.slice(port.indexOf(".") + 1);
+/** Equal for states that have the same structure. */
+export function structureKey(state: GraphState, open: ReadonlySet<string>): string {
+  const modules = state.modules.map(({ name, program, group, mode }) => [
+    name,
+    program,
+    group,
+    mode,
+  ]);
+  const links = state.links.map(linkKey);
+  return JSON.stringify([modules, links, Object.keys(state.focus), [...open]]);
 }
 
 export function linkKey(link: GraphLink): string {
   return `${link.from} ${link.to}`;
 }
 
-/** Whether a link distributes the focus, the stop, or poses of frames. */
-function isBackground(link: GraphLink): boolean {
-  return ["focus", "stopped", "frames"].includes(portOf(link.to));
+/** A place outside of the graph without its options, such as `dds:robot/camera`. */
+function placeOf(uri: string): string {
+  return uri.replace(/[?#].*/, "");
 }
 
-export function structureOf(state: GraphState): Structure {
-  const nodes = state.modules.map(({ name, group }) => ({ name, group }));
-  const known = new Set(nodes.map((node) => node.name));
-  const edges = new Map<
-    string,
-    { from: string; to: string; links: string[]; background: boolean }
-  >();
+/** @param open  keys of the parts that are open. */
+export function structureOf(state: GraphState, open: ReadonlySet<string>): Structure {
+  const nodes: Node[] = [];
+  const nodeOf = new Map<string, string>(); // of a module
+  const add = (node: Node): void => {
+    nodes.push(node);
+    for (const member of node.members) nodeOf.set(member, node.key);
+  };
+  for (const part of partsOf(state)) {
+    const { key, label, members, body } = part;
+    if (members.length > 1 && open.has(key)) {
+      const inside = { kind: part.kind, caption: label, part: key };
+      for (const name of members) add({ ...inside, key: name, label: name, members: [name] });
+    } else {
+      add({ key, label, kind: part.kind, members, caption: body, part: "" });
+    }
+  }
+  const edges = new Map<string, Edge & { links: string[]; background: boolean }>();
+  const endOf = (end: string): string => {
+    const known = nodeOf.get(moduleOf(end));
+    if (known !== undefined) return known;
+    const key = placeOf(end);
+    if (!nodes.some((node) => node.key === key)) {
+      nodes.push({ key, label: key, kind: "outside", members: [], caption: "", part: "" });
+    }
+    return key;
+  };
   for (const link of state.links) {
-    const from = moduleOf(link.from);
-    const to = moduleOf(link.to);
-    if (!known.has(from) || !known.has(to)) continue; // a URI outside of the graph
-    const edge = edges.get(`${from}>${to}`) ?? { from, to, links: [], background: true };
+    const [from, to] = [endOf(link.from), endOf(link.to)];
+    if (from === to) continue;
+    const key = `${from}>${to}`;
+    const edge = edges.get(key) ?? { key, from, to, links: [], background: true };
     edge.links.push(linkKey(link));
     edge.background &&= isBackground(link);
-    edges.set(`${from}>${to}`, edge);
+    edges.set(key, edge);
   }
-  const list = [...edges].map(([key, edge]) => ({ key, ...edge }));
-  const key = JSON.stringify([nodes, list.map((edge) => [edge.key, edge.background])]);
-  return { nodes, edges: list, key };
+  return { nodes, edges: [...edges.values()] };
 }
 
 /** Links to and from a module. */
@@ -67,3 +100,5 @@ export function linksOf(state: GraphState, module: GraphModule): GraphLink[] {
     (link) => moduleOf(link.from) === module.name || moduleOf(link.to) === module.name,
   );
 }
+
+export { moduleOf, portOf };

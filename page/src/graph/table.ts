@@ -7,6 +7,7 @@ import {
   bytesText,
   limitTexts,
   durationText,
+  linkCondition,
   moduleCondition,
   percentText,
   rateText,
@@ -114,7 +115,7 @@ export class Tables {
         { title: "limit, late or dropped", text: (l) => limitTexts(l).join("; ") },
       ],
       linkKey,
-      (link) => (link.status ? "broken" : "works") + (link.in_workspace ? " in-workspace" : ""),
+      (link) => linkCondition(link).is + (link.in_workspace ? " in-workspace" : ""),
     );
     this.element = h("div.graph-tables", [this.modules.element, this.links.element]);
   }

@@ -6,7 +6,7 @@ import type { GraphLink, GraphModule } from "../server";
 export function rateText(perSecond: number): string {
   if (perSecond <= 0) return "";
   if (perSecond >= 999.5) return `${shortNumber(perSecond / 1000)} k/s`;
-  return `${shortNumber(perSecond)}/s`;
+  return `${perSecond < 0.1 ? perSecond.toFixed(2) : shortNumber(perSecond)}/s`;
 }
 
 /** A duration [s]: "31 ms", "85 µs", "1.2 s". */
@@ -92,12 +92,22 @@ export function moduleCondition(module: GraphModule): { is: Condition; why: stri
     case "waiting":
       return { is: "broken", why: `${exitText(module)}; will be restarted${detail}` };
     case "stalled":
-      return { is: "broken", why: module.detail || "does not respond" };
+      // What takes long, such as reading, is busy meanwhile.
+      return module.detail === "busy"
+        ? { is: "slow", why: "busy" }
+        : { is: "broken", why: module.detail || "does not respond" };
     case "stopping":
       return { is: "broken", why: `is being stopped${detail}` };
     default:
       return { is: "broken", why: `has ${module.status}${detail}` };
   }
+}
+
+/** As moduleCondition(), of a link. */
+export function linkCondition({ status }: GraphLink): { is: Condition; why: string } {
+  if (status === "") return { is: "works", why: "" };
+  if (status.endsWith(": stalled")) return { is: "slow", why: status };
+  return { is: status === "ended" ? "ended" : "broken", why: status };
 }
 
 /** How the last process of a module ended; a status above 128 means a signal. */

@@ -132,9 +132,11 @@ export class Server {
   private end(): void {
     const { state, session } = this;
     if (state) {
-      const ended = { status: "ended", pid: 0, cpu: 0, detail: "", in_focus: false } as const;
+      const idle = { status: "ended", in_workspace: false } as const;
+      const ended = { ...idle, pid: 0, cpu: 0, memory: 0, detail: "", in_focus: false };
       const modules = state.modules.map((each) => ({ ...each, ...ended }));
-      const links = state.links.map((link) => ({ ...link, per_second: 0, bytes_per_second: 0 }));
+      const silent = { ...idle, per_second: 0, bytes_per_second: 0, age: null };
+      const links = state.links.map((link) => ({ ...link, ...silent }));
       const focus = Object.fromEntries(Object.keys(state.focus).map((name) => [name, null]));
       this.states.set({ ...state, modules, links, focus });
     }

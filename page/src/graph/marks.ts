@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// The marks of a graph's drawing: nodes and links.
+import { svg } from "../shell";
+import { pathThrough, type Box, type Line } from "./layout";
+import type { Edge, Node } from "./structure";
+
+const inset = 9; // of text in a node [px]
+const letter = { name: 7.8, detail: 6 }; // widths [px]
+
+/** A text that fits into a node. */
+export function shorten(text: string, width: number, of: keyof typeof letter): string {
+  const letters = Math.floor((width - 2 * inset) / letter[of]);
+  return text.length <= letters ? text : `${text.slice(0, letters - 1)}…`;
+}
+
+/** What a person can reach in the drawing. */
+const item = { role: "button", tabindex: -1 };
+
+export type NodeMark = ReturnType<typeof drawNode>;
+
+/**
+ * @param act  opens the part or its module.
+ * @param close  closes the open part to which it belongs.
+ */
+export function drawNode(node: Node, box: Box, act: () => void, close: () => void) {
+  const { width, height } = box;
+  const [left, top] = [-width / 2, -height / 2];
+  const isPart = node.members.length > 1;
+  const title = svg("title");
+  const detail = svg("text.node-detail", { x: left + inset, y: 13 });
+  const place = { x: left, y: top, width, height, rx: 8 };
+  const name = shorten(node.label, width - (isPart ? 14 : 0), "name");
+  const plus = `M${-left - 20} -8h8M${-left - 16} -12v8`;
+  const group = svg(
+    "g.node",
+    {
+      ...item,
+      "data-members": node.members.join(" "),
+      "aria-expanded": isPart ? "false" : null,
+      onclick: act,
+    },
+    [
+      title,
+      isPart && svg("rect.node-box", { ...place, x: left + 4, y: top + 4 }),
+      svg("rect.node-box", place),
+      svg("text.node-name", { x: left + inset, y: -4 }, name),
+      detail,
+      isPart && svg("path.node-more", { d: plus }),
+    ],
+  );
+  const text = shorten(node.part ? `− ${node.caption}` : node.caption, width + 10, "name");
+  const caption = svg(
+    "g.caption",
+    node.part
+      ? { ...item, "aria-expanded": "true", "aria-label": `Close ${node.caption}`, onclick: close }
+      : {},
+    svg("text.caption-text", { x: left + 2, y: top - 5 }, text),
+  );
+  const element = svg("g", { transform: `translate(${box.x} ${box.y})` }, [
+    node.caption && caption,
+    group,
+  ]);
+  return { element, group, caption, title, detail, box, node };
+}
+
+export type EdgeMark = ReturnType<typeof drawEdge>;
+
+export function drawEdge(edge: Edge, { points, label }: Line, act: () => void) {
+  const d = pathThrough(points);
+  const title = svg("title");
+  const rate = svg("tspan.edge-rate");
+  const age = svg("tspan.edge-age");
+  const group = svg("g.edge", { ...item, "data-edge": edge.key, onclick: act }, [
+    title,
+    svg("path.edge-line", { d, "marker-end": "url(#arrow)" }),
+    svg("path.edge-hit", { d }),
+  ]);
+  // Above all lines.
+  const at = { x: label.x, y: label.y - 3, "text-anchor": label.anchor };
+  const words = svg("text.edge-words", at, [rate, age]);
+  return { group, words, title, rate, age, edge, at: points[0]! };
+}
