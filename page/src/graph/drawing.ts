@@ -181,8 +181,8 @@ export class Drawing {
     setText(detail, shorten(saying.text, box.width, "detail"));
     const loads = members.map(({ name, cpu }) => `${name}, cpu ${percentText(cpu)}`);
     const focus = hasFocus ? ", has the focus" : "";
+    // Also its name for screen readers.
     setText(title, [`${node.label}${focus}: ${saying.text}`, ...loads].join("\n"));
-    setAttribute(group, "aria-label", `${node.label}${focus}: ${saying.text}`);
   }
 
   /** @returns  whether it moves the robot now: something passes it in the global workspace. */

@@ -51,9 +51,7 @@ export function drawNode(node: Node, box: Box, act: () => void, close: () => voi
   const text = shorten(node.part ? `− ${node.caption}` : node.caption, width + 10, "name");
   const caption = svg(
     "g.caption",
-    node.part
-      ? { ...item, "aria-expanded": "true", "aria-label": `Close ${node.caption}`, onclick: close }
-      : {},
+    node.part ? { ...item, "aria-expanded": "true", onclick: close } : {},
     svg("text.caption-text", { x: left + 2, y: top - 5 }, text),
   );
   const element = svg("g", { transform: `translate(${box.x} ${box.y})` }, [
