@@ -21,9 +21,14 @@ const head = {
     link("rectify.left", "far.left"),
     link("rectify.right", "far.right"),
   ],
+  focus: { workspace: 4 },
 } as unknown as GraphState;
-const eyes = { ...head, modules: head.modules.slice(0, 3) };
-const plain = { modules: [module("a")], links: [link("a.x", "b.y")] } as unknown as GraphState;
+const eyes = { ...head, modules: head.modules.slice(0, 3), focus: {} };
+const plain = {
+  modules: [module("a")],
+  links: [link("a.x", "b.y")],
+  focus: {},
+} as unknown as GraphState;
 
 /** Kinds or ports of the panels, column by column. */
 function shown(view: View, width: number, state = head): string[][] {
@@ -42,9 +47,9 @@ test("Drive is the seat", () => {
   assert.deepEqual(shown("drive", 100), [["seat"]]);
 });
 
-test("Watch shows what the robot sees beside the graph", () => {
-  assert.deepEqual(shown("watch", 85), [["graph"], ["augment.left", "far.depth", "log"]]);
-  assert.deepEqual(shown("watch", 24), [["graph", "augment.left", "far.depth", "log"]]);
+test("Watch shows the bids and what the robot sees beside the graph", () => {
+  assert.deepEqual(shown("watch", 85), [["graph"], ["bids", "augment.left", "far.depth", "log"]]);
+  assert.deepEqual(shown("watch", 24), [["graph", "bids", "augment.left", "far.depth", "log"]]);
 });
 
 test("without depth and virtual objects it sees with the eyes that no other pair feeds", () => {

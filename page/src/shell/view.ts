@@ -57,8 +57,9 @@ export function layoutFor(view: View, state: GraphState, width: number): Layout 
   const pictures = view === "watch" ? seen : seen.map(({ title, ...args }) => args);
   const graph = { kind: "graph" };
   const log = { kind: "log" };
-  if (width < 46) return [column(1, graph, ...pictures, log)];
-  if (view === "watch") return [column(2.6, graph), column(1, ...pictures, log)];
+  const bids = Object.keys(state.focus).length > 0 ? [{ kind: "bids" }] : [];
+  if (width < 46) return [column(1, graph, ...bids, ...pictures, log)];
+  if (view === "watch") return [column(2.6, graph), column(1, ...bids, ...pictures, log)];
   const columns = [column(1.4, graph, log), column(1, ...pictures)];
   if (width >= 100) columns.push(column(1, { kind: "recordings" }));
   return columns.filter(({ places }) => places.length > 0);
