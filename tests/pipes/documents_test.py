@@ -114,7 +114,7 @@ class Documents(Pipes):
         for folder in ("graphs", "modules", "templates", "python"):
             pathlib.Path(self.path(folder)).symlink_to(ROOT / folder)
         pathlib.Path(self.path("data")).symlink_to(DATA)
-        self.run_blocks(name)
+        Documents.run_blocks(self, name)
 
     def run_blocks(self, name):
         for block in self.commands(name):

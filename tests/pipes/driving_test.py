@@ -56,8 +56,9 @@ class Driving(Pipes):
         row = b"1 %d 0 0 8 0 120190 0 0 2 1\n%d 0\n"
         self.start_gaze("stick").sendall(row % (1, 1) + row % (2, 0) * 50)
         self.wait_bid_end()
-        # Pushed for 0.1 s at 1 rad/s.
-        self.assertGreater(max(row[2] for row in self.rows("commands")), 0.09)
+        # Pushed for 0.1 s at 1 rad/s, or less where the machine stands still meanwhile; let go of,
+        # it would turn for one step of 0.01 s.
+        self.assertGreater(max(row[2] for row in self.rows("commands")), 0.03)
 
     def test_a_wish_that_is_not_told_again_does_not_run_away(self):
         link = self.start_gaze("setpoint")
