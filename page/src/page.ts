@@ -24,7 +24,7 @@ standardPanels.push(
   { label: "Scene", detail: "frames, head and points in space", args: { kind: "scene" } },
   { label: "Graph", detail: "modules and links, live", args: { kind: "graph" } },
   {
-    label: "Who wants the head",
+    label: "Bids for the focus",
     detail: "each task's bid, now and before",
     args: { kind: "bids" },
   },

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who wants the robot: each task's bid, now and in the last 30 s.
+// The bids for the robot: each task's bid, now and in the last 30 s.
 import type { GraphState } from "../server";
 import { fill, h, setText, svg, type PanelHost, type PanelKind } from "../shell";
 import { BidHistory, type Bid } from "./bids";
@@ -11,7 +11,7 @@ const drawPeriod = 200; // [ms]
 
 /** The bids of all workspaces: {kind: "bids"}. */
 export const bidsPanel: PanelKind = (_, host) => {
-  host.setTitle("Who wants the head");
+  host.setTitle("Bids for the focus");
   const element = h("div.bids");
   const none = h("p.empty.muted", "This graph has no workspace, so no tasks bid.");
   const { server } = host;

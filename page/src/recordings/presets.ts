@@ -28,7 +28,7 @@ function isMotion({ kind }: Output): boolean {
   return kind !== undefined && /position|rotation|transformation/.test(kind.type);
 }
 
-/** The presets for the modules of a graph; those without streams are left out. */
+/** The presets for the modules of a graph, each with at least one stream. */
 export function presetsOf(outlets: readonly Outlet[]): Preset[] {
   const all = outlets.flatMap(({ outputs }) => outputs);
   // What modules make of images and sound can be made again.
