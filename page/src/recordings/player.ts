@@ -12,9 +12,10 @@ const smallMessage = 4096; // [byte]
 /** A stream of a recording, at its player's time. */
 export class ReplaySource extends Emitter implements Source {
   readonly isReplay = true;
-  private shown = -1;
+  private shown?: number; // index; -1: before the first
   private kind = "";
-  private busy = false;
+  private wanted = -Infinity; // time [s since 1970]
+  private isBusy = false;
 
   constructor(
     private readonly track: Track,
@@ -36,27 +37,37 @@ export class ReplaySource extends Emitter implements Source {
 
   /**
    * Emits the messages up to a time: the last large one, and all small ones since the previous time
-   * or, after a jump, of the last half minute.
+   * or, after a jump, of the last half minute. While messages are shown, the newest time waits.
    */
   async goTo(time: number): Promise<void> {
-    const last = this.track.indexAt(time);
-    if (this.busy || last < 0 || last === this.shown) return;
-    this.busy = true;
+    this.wanted = time;
+    if (this.isBusy) return;
+    this.isBusy = true;
     try {
-      const isSmall = this.track.usualBytes <= smallMessage;
-      let first = last;
-      if (isSmall) {
-        const isJump = this.shown < 0 || last < this.shown || last - this.shown > mostAtOnce;
-        const from = isJump ? this.track.indexAt(time - pastOfPlots) : this.shown;
-        first = Math.max(from + 1, last - mostAtOnce + 1);
-      }
-      this.shown = last;
-      for (let index = first; index <= last; ++index) await this.show(index);
+      for (let last; (last = this.track.indexAt(this.wanted)) !== this.shown;)
+        await this.showUpTo(last);
     } catch (error) {
       this.problems.set(error instanceof Error ? error.message : String(error));
     } finally {
-      this.busy = false;
+      this.isBusy = false;
     }
+  }
+
+  private async showUpTo(last: number): Promise<void> {
+    const before = this.shown ?? -1;
+    this.shown = last;
+    if (last < 0) {
+      this.problems.set("The first message of this stream comes later.");
+      return;
+    }
+    this.problems.set("");
+    let first = last;
+    if (this.track.usualBytes <= smallMessage) {
+      const isJump = before < 0 || last < before || last - before > mostAtOnce;
+      const from = isJump ? this.track.indexAt(this.track.timeAt(last) - pastOfPlots) : before;
+      first = Math.max(from + 1, last - mostAtOnce + 1);
+    }
+    for (let index = first; index <= last; ++index) await this.show(index);
   }
 
   private async show(index: number): Promise<void> {
