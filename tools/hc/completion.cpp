@@ -191,7 +191,7 @@ void add_completion(CLI::App& app) {
 }
 
 void complete(const CLI::App& app, const std::vector<std::string>& words) {
-  constexpr unsigned kPatience = 2;  // with a graph that does not answer [s]
+  constexpr unsigned kPatience = 10;  // with a graph that hangs, unlike a slow machine [s]
   ::alarm(kPatience);
   std::string text;
   for (const auto& word : completions(app, words)) text += word + "\n";
