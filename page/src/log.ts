@@ -5,7 +5,7 @@ const mostLines = 500;
 
 /** What the modules report, and the workspace on the focus: {kind: "log"}. */
 export const logPanel: PanelKind = (_args, { server, setTitle }) => {
-  setTitle("What happened");
+  setTitle("Log");
   const lines = h("div.log-lines", { role: "log", tabindex: 0, "aria-label": "Log" });
   const add = (module: string, text: string, level = "info", at?: Date): void => {
     const atEnd = lines.scrollTop + lines.clientHeight >= lines.scrollHeight - 4;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-import { bidsPanel, graphPanel, modulePanel } from "./graph";
+import { addWhy, bidsPanel } from "./bids";
+import { graphPanel, modulePanel } from "./graph";
 import { logPanel } from "./log";
 import { recordingsPanel, replayPanel } from "./recordings";
 import { addStop, seatPanel } from "./seat";
 import { Server } from "./server";
 import { panelKinds, Shell, standardPanels } from "./shell";
 import { scenePanel, streamPanel } from "./views";
-import { addWhy } from "./why";
 
 Object.assign(panelKinds, {
   graph: graphPanel,

@@ -248,7 +248,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     await dialog.getByRole("button", { name: "Sound", exact: true }).click();
     await dialog.getByRole("searchbox").fill("a row for each mode");
     await page.keyboard.press("Enter");
-    await page.locator(".bars-view .bar-row", { hasText: "look" }).waitFor();
+    await page.locator(".bids .bid", { hasText: "look" }).waitFor();
   });
 
   test("a second page takes the seat from the first", async () => {

@@ -1,32 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bids for the focus, and why one wins. Pure.
-import { numbersOf, type Message } from "../mtp";
-
-/** A row of a workspace's `standings`. */
-export interface Bid {
-  readonly mode: number;
-  /** 0 … 1 */
-  readonly salience: number;
-  /** [s] */
-  readonly age: number;
-  readonly inFocus: boolean;
-  /** Made by a person; overrides all others. */
-  readonly ofPerson: boolean;
-}
-
-/** The bids in a message of `standings`: rows of mode, salience, age, in focus, a person's. */
-export function bidsOf(message: Message): Bid[] {
-  const numbers = numbersOf(message);
-  const columns = message.header.width * message.header.components;
-  if (columns < 5) return [];
-  return Array.from({ length: message.header.height }, (_, row) => {
-    const [mode = 0, salience = 0, age = 0, inFocus = 0, ofPerson = 0] = numbers.subarray(
-      row * columns,
-      row * columns + 5,
-    );
-    return { mode, salience, age, inFocus: inFocus !== 0, ofPerson: ofPerson !== 0 };
-  });
-}
+// Why a task has the focus, and the bids of the last seconds. Pure.
+import type { Bid } from "../server";
 
 /** The workspace's rules. */
 export interface Rules {
@@ -75,16 +49,12 @@ export class BidHistory {
   private samples: Sample[] = [];
   constructor(readonly seconds: number) {}
 
+  /** A time before the last one, as after a jump in a recording, begins a new history. */
   add(time: number, bids: readonly Bid[]): void {
+    if (time < (this.samples.at(-1)?.time ?? time)) this.samples = [];
     this.samples.push({ time, bids });
     const first = this.samples.findIndex((sample) => sample.time >= time - this.seconds);
     if (first > 0) this.samples.splice(0, first);
-  }
-
-  /** Modes that have bid, in order. */
-  modes(): number[] {
-    const modes = new Set(this.samples.flatMap((sample) => sample.bids.map((bid) => bid.mode)));
-    return [...modes].sort((a, b) => a - b);
   }
 
   /** Saliences of a mode over time; 0 without a bid. */

@@ -1,100 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bids for the robot: each task's bid, now and in the last 30 s.
-import type { GraphState } from "../server";
-import { fill, h, setText, svg, type PanelHost, type PanelKind } from "../shell";
-import { BidHistory, type Bid } from "./bids";
-import { Standings } from "./standings";
+// Bids for the focus as rows.
+import type { Bid } from "../server";
+import { fill, h, setText, svg } from "../shell/h";
+import { help, meanings } from "../shell/help";
+import { Pace } from "../shell/pace";
+import { BidHistory } from "./bids";
 
 const chart = { width: 120, height: 24 }; // [px]
 const shownSeconds = 30;
-const drawPeriod = 200; // [ms]
+const drawPeriod = 200; // [ms], so that numbers can be read
 
-/** The bids of all workspaces: {kind: "bids"}. */
-export const bidsPanel: PanelKind = (_, host) => {
-  host.setTitle("Bids for the focus");
-  const element = h("div.bids");
-  const none = h("p.empty.muted", "This graph has no workspace, so no tasks bid.");
-  const { server } = host;
-  const views = new Map<string, WorkspaceView>();
-  const standings = new Standings(server, 10, (workspace, bids, at) =>
-    views.get(workspace)?.take(bids, at),
-  );
-  const show = (state: GraphState): void => {
-    const names = Object.keys(state.focus);
-    if (names.join() !== [...views.keys()].join() || !element.hasChildNodes()) {
-      views.clear();
-      for (const name of names) views.set(name, new WorkspaceView(host, name));
-      const shown = [...views.values()].map((view) => view.element);
-      fill(element, shown.length > 0 ? shown : none);
-    }
-    standings.follow(state);
-    for (const view of views.values()) view.draw();
-  };
-  const ends = [
-    server.onState(show),
-    server.onConnection(() => server.state && show(server.state)),
-  ];
-  return {
-    element,
-    close: () => {
-      for (const end of ends) end();
-      standings.close();
-    },
-  };
-};
+/** A button that explains the bids. */
+export const bidHelp = (): HTMLElement => help("a bid", `${meanings.bid} ${meanings.focus}`);
 
-class WorkspaceView {
-  private readonly rows = h("ul.bid-rows");
-  readonly element: HTMLElement;
+/** A row for each task: its bid as a bar and a number, and the last 30 s. */
+export class BidRows {
+  readonly element = h("ul.bid-rows");
+  private readonly rows = new Map<number, BidRow>();
   private readonly history = new BidHistory(shownSeconds);
-  private readonly rowOf = new Map<number, BidRow>();
-  private bids: readonly Bid[] = [];
-  private drawn = 0; // [ms]
+  private readonly pace = new Pace(drawPeriod);
 
-  constructor(
-    private readonly host: PanelHost,
-    private readonly name: string,
-  ) {
-    this.element = h("section", { "aria-label": `Bids at ${name}` }, this.rows);
-  }
+  constructor(private readonly nameOf: (mode: number) => string) {}
 
-  take(bids: readonly Bid[], at: number): void {
-    this.bids = bids;
-    this.history.add(at / 1000, bids);
-    if (at - this.drawn < drawPeriod) return;
-    this.drawn = at;
-    this.draw();
-  }
-
-  draw(): void {
-    const { state, connection } = this.host.server;
-    if (!state) return;
-    const bids = connection.status === "open" ? this.bids : [];
-    const modes = [...new Set([...modesOf(state, this.name), ...this.history.modes()])];
-    if (modes.some((mode) => !this.rowOf.has(mode))) {
-      for (const mode of modes) {
-        if (!this.rowOf.has(mode)) this.rowOf.set(mode, new BidRow(modeName(state, mode)));
-      }
-      const inOrder = [...this.rowOf].sort(([a], [b]) => a - b);
-      fill(
-        this.rows,
-        inOrder.map(([, row]) => row.element),
-      );
+  /** Adds the rows of modes, which stay, so that no row moves when a task bids. */
+  addModes(modes: Iterable<number>): void {
+    const before = this.rows.size;
+    for (const mode of modes) {
+      if (!this.rows.has(mode)) this.rows.set(mode, new BidRow(this.nameOf(mode)));
     }
-    for (const [mode, row] of this.rowOf) {
-      row.update(
-        bids.find((bid) => bid.mode === mode),
-        this.history,
-        mode,
-      );
+    if (this.rows.size === before) return;
+    const inOrder = [...this.rows].sort(([a], [b]) => a - b);
+    fill(
+      this.element,
+      inOrder.map(([, row]) => row.element),
+    );
+  }
+
+  /** Takes the newest bids. @param time  [s] */
+  take(bids: readonly Bid[], time: number): void {
+    this.history.add(time, bids);
+    this.addModes(bids.map(({ mode }) => mode));
+    this.pace.run(() => this.draw(bids));
+  }
+
+  /** Shows that no bids are known. */
+  clear(): void {
+    this.pace.close();
+    this.draw([]);
+  }
+
+  close(): void {
+    this.pace.close();
+  }
+
+  private draw(bids: readonly Bid[]): void {
+    for (const [mode, row] of this.rows) {
+      const bid = bids.find((each) => each.mode === mode);
+      row.update(bid, pathsOf(this.history.of(mode), this.history.seconds));
     }
   }
 }
 
-/** A task: its name, its bid as a bar and a number, and the last 30 s. */
 class BidRow {
   private readonly bar = h("div.bid-now");
-  private readonly value = h("span.bid-value");
+  private readonly value = h("span.bid-value", "–");
+  private readonly note = h("span.bid-note.small");
   private readonly line = svg("path.bid-line");
   private readonly focus = svg("path.bid-focus");
   readonly element: HTMLElement;
@@ -110,18 +80,17 @@ class BidRow {
       h("div.bid-bar", { "aria-hidden": "true" }, this.bar),
       this.value,
       svg("svg.bid-chart", box, [this.line, this.focus]),
+      this.note,
     ]);
   }
 
-  update(bid: Bid | undefined, history: BidHistory, mode: number): void {
+  update(bid: Bid | undefined, paths: ReturnType<typeof pathsOf>): void {
     this.element.classList.toggle("in-focus", bid?.inFocus === true);
-    this.element.setAttribute("aria-current", String(bid?.inFocus === true));
-    this.element.title = bid?.ofPerson ? "a person's bid" : "";
     this.bar.style.width = `${100 * Math.min(1, bid?.salience ?? 0)}%`;
     setText(this.value, bid ? bid.salience.toFixed(2) : "–");
-    const { line, focus } = pathsOf(history.of(mode), history.seconds);
-    this.line.setAttribute("d", line);
-    this.focus.setAttribute("d", focus);
+    setText(this.note, bid?.ofPerson ? "person" : bid?.inFocus ? "focus" : "");
+    this.line.setAttribute("d", paths.line);
+    this.focus.setAttribute("d", paths.focus);
   }
 }
 
@@ -140,16 +109,4 @@ function pathsOf(samples: ReturnType<BidHistory["of"]>, seconds: number) {
     if (inFocus && before) focus += `M${x(before.time)} ${chart.height - 1}H${x(time)}`;
   });
   return { line, focus };
-}
-
-/** The modes of the modules that obey a workspace. */
-function modesOf(state: GraphState, workspace: string): number[] {
-  const obeying = state.modules.filter((module) => module.workspace === workspace);
-  return obeying.flatMap(({ mode }) => state.modes[mode] ?? []);
-}
-
-/** Name of a mode; "mode 7" if it has none. */
-export function modeName(state: GraphState, mode: number): string {
-  const found = Object.entries(state.modes).find(([, number]) => number === mode);
-  return found?.[0] ?? `mode ${mode}`;
 }

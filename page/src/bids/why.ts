@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import { whyText } from "./graph/bids";
-import { Standings } from "./graph/standings";
-import { modeName } from "./graph/workspace";
-import type { GraphState, Session } from "./server";
-import { fill, h, meanings, type Shell } from "./shell";
-
-const rate = 5; // [Hz]
+import { modeName, type GraphState, type Server } from "../server";
+import { fill, h, meanings, type Shell } from "../shell";
+import { whyText } from "./bids";
 
 /** Shows in the bar which task has the focus, and why. */
 export function addWhy({ server, words }: Shell): void {
@@ -13,25 +9,19 @@ export function addWhy({ server, words }: Shell): void {
   words.append(element);
   let shown = "";
   const show = (): void => {
-    const { state, session, connection } = server;
-    const isKnown = state && connection.status === "open";
-    const text = isKnown ? whySentences(state, session, standings) : "";
+    const { state, connection } = server;
+    const text = state && connection.status === "open" ? whySentences(state, server) : "";
     if (text === shown) return;
     shown = text;
     const task = Object.keys(state?.modes ?? {}).find((mode) => text.startsWith(`${mode} `)) ?? "";
     fill(element, h("span", [h("b.focus", task), text.slice(task.length)]));
   };
-  const standings = new Standings(server, rate, show);
-  server.onState((state) => standings.follow(state));
+  server.standings.on(show);
   server.onConnection(show);
 }
 
 /** A sentence for each workspace. */
-function whySentences(
-  state: GraphState,
-  session: Session | undefined,
-  standings: Standings,
-): string {
+function whySentences(state: GraphState, { session, standings }: Server): string {
   const sentences = Object.keys(state.focus).map((name) => {
     const parameters = state.modules.find((module) => module.name === name)?.parameters;
     const rules = {

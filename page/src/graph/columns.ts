@@ -3,8 +3,8 @@
 import type { Edge, Structure } from "./structure";
 
 /**
- * Columns from 0 by node. Tasks share one; what they command is to the right of it. An edge back, as
- * from a neck to the eyes that it moves, has no effect, nor has the background.
+ * Columns from 0 by node. Tasks share one, with their actors to the right. Edges back, as from a
+ * neck to the eyes that it moves, and the background have no effect.
  */
 export function columnsOf({ nodes, edges }: Structure): Map<string, number> {
   const kindOf = new Map(nodes.map(({ key, kind }) => [key, kind]));
@@ -53,7 +53,7 @@ export function columnsOf({ nodes, edges }: Structure): Map<string, number> {
   const last = Math.max(0, ...tasks.map(({ key }) => columns.get(key)!));
   for (const { key } of tasks) columns.set(key, last);
   settle();
-  // What nothing feeds is next to its first reader.
+  // A source is next to its first reader.
   for (const { key } of nodes) {
     if (forward.some(({ to }) => to === key)) continue;
     const readers = forward.filter(({ from }) => from === key).map(({ to }) => columns.get(to)!);
@@ -71,7 +71,7 @@ function reachTo(goals: readonly string[], edges: readonly Edge[]): Set<string> 
   return found;
 }
 
-/** The edges but those that close a cycle, in the order of the nodes. */
+/** The edges without those that close a cycle, in the order of the nodes. */
 function withoutCycles(keys: readonly string[], edges: readonly Edge[]): Edge[] {
   const leaving = new Map(keys.map((key) => [key, edges.filter(({ from }) => from === key)]));
   const kept: Edge[] = [];

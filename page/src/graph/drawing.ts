@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drawing of a graph: laid out once for a structure; its texts and colours are updated.
-import type { GraphLink } from "../server";
+import { moduleOf, portOf, type GraphLink } from "../server";
 import { arrowHead, fill, h, setText, svg } from "../shell";
 import { layoutOf, type Point } from "./layout";
 import { drawEdge, drawNode, shorten, type EdgeMark, type NodeMark } from "./marks";
 import { sayingOf, type Now } from "./says";
-import { isBackground, portOf } from "./parts";
+import { isBackground } from "./parts";
 import { linkKey, structureKey, structureOf, type Edge, type Structure } from "./structure";
 import { Viewport } from "./viewport";
 import {
@@ -23,7 +23,7 @@ export interface DrawingEvents {
   openEdge(edge: Edge, at: Point): void;
 }
 
-/** What can be reached with the keyboard: a node, a link, or what closes an open part. */
+/** A target of the keyboard: a node, a link, or the caption that closes an open part. */
 interface Item {
   readonly key: string;
   readonly element: SVGGElement;
@@ -104,7 +104,7 @@ export class Drawing {
     for (const mark of this.nodes) this.updateNode(mark, now, loop.has(mark.node.key));
   }
 
-  /** Opens a part into its modules, or closes it; what was clicked stays where it is. */
+  /** Opens a part into its modules, or closes it; the clicked node stays in place. */
   private toggle(key: string): void {
     const before = this.cornerOf(key);
     if (!this.open.delete(key)) this.open.add(key);
@@ -205,7 +205,7 @@ export class Drawing {
     setText(mark.title, all.map(linkText).join("\n"));
     const label = (key: string): string =>
       this.nodes.find(({ node }) => node.key === key)?.node.label ?? key;
-    const facts = [rate || "nothing comes", age].filter((fact) => fact !== "").join(", ");
+    const facts = [rate || "no messages", age].filter((fact) => fact !== "").join(", ");
     setAttribute(mark.group, "aria-label", `Link from ${label(from)} to ${label(to)}: ${facts}`);
     return isLoop;
   }
@@ -268,9 +268,9 @@ export class Drawing {
 function linkText(link: GraphLink): string {
   const facts = [
     link.status,
-    rateText(link.per_second) || "nothing comes",
+    rateText(link.per_second) || "no messages",
     link.age ? `latency ${latencyText(link.age)}` : "",
     ...limitTexts(link),
   ].filter((fact) => fact !== "");
-  return `${link.from} → ${portOf(link.to)} of ${link.to.split(".")[0]}: ${facts.join("; ")}`;
+  return `${link.from} → ${portOf(link.to)} of ${moduleOf(link.to)}: ${facts.join("; ")}`;
 }

@@ -1,4 +1,3 @@
 // SPDX-License-Identifier: Apache-2.0
 export { graphPanel } from "./panel";
 export { modulePanel } from "./module";
-export { bidsPanel } from "./workspace";

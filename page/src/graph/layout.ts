@@ -122,13 +122,13 @@ export function layoutOf(structure: Structure): Layout {
   };
   const edges = new Map(
     structure.edges.map((edge) => {
-      const [leaves, comes] = sides(edge);
-      const start = pointAt(edge.from, leaves, edge);
-      const points = [start, ...passes(edge), pointAt(edge.to, comes, edge)];
+      const [start, end] = sides(edge);
+      const first = pointAt(edge.from, start, edge);
+      const points = [first, ...passes(edge), pointAt(edge.to, end, edge)];
       const label =
-        leaves === "right"
-          ? ({ x: start.x + 5, y: start.y, anchor: "start" } as const)
-          : ({ x: start.x - 5, y: start.y, anchor: "end" } as const);
+        start === "right"
+          ? ({ x: first.x + 5, y: first.y, anchor: "start" } as const)
+          : ({ x: first.x - 5, y: first.y, anchor: "end" } as const);
       return [edge.key, { points, label }];
     }),
   );

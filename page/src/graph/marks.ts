@@ -13,7 +13,7 @@ export function shorten(text: string, width: number, of: keyof typeof letter): s
   return text.length <= letters ? text : `${text.slice(0, letters - 1)}…`;
 }
 
-/** What a person can reach in the drawing. */
+/** A target of pointer and keyboard. */
 const item = { role: "button", tabindex: -1 };
 
 export type NodeMark = ReturnType<typeof drawNode>;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import {
   mayOperate,
+  moduleOf,
+  portOf,
   type GraphLink,
   type GraphModule,
   type GraphState,
@@ -10,7 +12,7 @@ import { button, fill, h, setText, type PanelHost, type PanelKind } from "../she
 import { describe, typeText, type Description, type PortDescription } from "./describe";
 import { Failures } from "./failures";
 import { ParameterView } from "./parameter";
-import { linksOf, moduleOf, portOf } from "./structure";
+import { linksOf } from "./structure";
 import { bytesText, latencyText, percentText, rateText } from "./words";
 
 /** Maximum lines of the log. */
@@ -159,7 +161,7 @@ class ModuleView {
       const element = this.ports.querySelector(selector);
       const facts = [
         link.status,
-        rateText(link.per_second) || "nothing comes",
+        rateText(link.per_second) || "no messages",
         latencyText(link.age),
       ];
       const text = facts.filter((fact) => fact !== "").join("; ");

@@ -5,7 +5,6 @@ import { Drawing } from "./drawing";
 import { Failures } from "./failures";
 import type { Point } from "./layout";
 import { summaryOf } from "./says";
-import { Standings } from "./standings";
 import { linkKey, type Edge } from "./structure";
 import { Tables } from "./table";
 import { limitTexts, latencyText, rateText } from "./words";
@@ -51,7 +50,7 @@ export const graphPanel: PanelKind = (args, host) => {
 
   const drawing = new Drawing({ openModule, openEdge: choose });
   const tables = new Tables({ openModule, openLink });
-  const counts = h("span.muted");
+  const counts = h("span.graph-counts.muted");
   const problems = h("span.problems", { role: "status" });
   const summary = h("p.graph-summary.small", [counts, problems]);
   const element = h("div.graph.stack", [summary, drawing.element, tables.element, menu]);
@@ -84,22 +83,19 @@ export const graphPanel: PanelKind = (args, host) => {
     ]),
     zoom("Smaller", "−", () => drawing.viewport.zoom(0.8)),
     zoom("Larger", "+", () => drawing.viewport.zoom(1.25)),
-    zoom("As it was", "⤢", () => drawing.viewport.fit()),
+    zoom("Fit into the window", "⤢", () => drawing.viewport.fit()),
   ];
   host.tools.append(...drawingTools, switcher);
 
   const failures = new Failures();
-  const standings = new Standings(server, 2, () => {});
   const update = (): void => {
-    const { state, session, connection } = server;
+    const { state, session } = server;
     if (!state) return;
     failures.take(state);
-    standings.follow(state);
-    const isKnown = connection.status === "open";
     const now = {
       state,
       stopped: session?.stopped === true,
-      bids: (workspace: string) => (isKnown ? standings.of(workspace) : []),
+      bids: (workspace: string) => server.standings.of(workspace),
       conditionOf: (module: GraphModule) => failures.conditionOf(module),
     };
     if (shown === "drawing") drawing.update(now);
@@ -115,7 +111,6 @@ export const graphPanel: PanelKind = (args, host) => {
     element,
     close: () => {
       for (const end of ends) end();
-      standings.close();
       drawing.close();
     },
   };

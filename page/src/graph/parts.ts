@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parts of a graph that a person thinks in: a task, a person's devices, "ball ×2", the viewers.
 // They follow from modes, links and included graphs alone. Pure.
-import type { GraphLink, GraphModule, GraphState } from "../server";
-
-/** Name of the module of `MODULE.PORT`. */
-export function moduleOf(port: string): string {
-  return port.slice(0, port.indexOf("."));
-}
-
-/** Name of the port of `MODULE.PORT`. */
-export function portOf(port: string): string {
-  return port.slice(port.indexOf(".") + 1);
-}
+import {
+  moduleOf,
+  portOf,
+  programName,
+  type GraphLink,
+  type GraphModule,
+  type GraphState,
+} from "../server";
 
 /** Whether a link distributes the focus, the stop, or poses of frames. */
 export function isBackground(link: GraphLink): boolean {
@@ -39,13 +36,21 @@ class Flow {
   private readonly after = new Map<string, Set<string>>();
   private readonly before = new Map<string, Set<string>>();
 
-  constructor(links: readonly GraphLink[], modules: ReadonlySet<string>) {
+  constructor(
+    private readonly links: readonly GraphLink[],
+    private readonly modules: ReadonlySet<string>,
+  ) {
     for (const link of links) {
       const [from, to] = [moduleOf(link.from), moduleOf(link.to)];
       if (from === to || isBackground(link) || !modules.has(from) || !modules.has(to)) continue;
       this.after.set(from, this.readers(from).add(to));
       this.before.set(to, this.writers(to).add(from));
     }
+  }
+
+  /** The flow among the other modules. */
+  without(those: ReadonlySet<string>): Flow {
+    return new Flow(this.links, new Set([...this.modules].filter((name) => !those.has(name))));
   }
 
   readers(name: string): Set<string> {
@@ -59,113 +64,159 @@ class Flow {
 
 /** The parts of a graph, in the order of their first modules; deterministic. */
 export function partsOf(state: GraphState): Part[] {
-  const modules = new Map(state.modules.map((module) => [module.name, module]));
-  const names = [...modules.keys()];
-  const isTask = (name: string): boolean => (modules.get(name)?.mode ?? "") !== "";
-  const decides = (name: string): boolean => name in state.focus;
-  const hasTasks = new Set(
-    names.filter((name) => isTask(name) || decides(name)).map((name) => modules.get(name)!.group),
-  );
-  const bodyOf = (name: string): string => {
-    const { group } = modules.get(name)!;
-    return hasTasks.has(group) ? "" : group;
-  };
-  const short = (name: string): string => {
-    const { group } = modules.get(name)!;
-    return group && name.startsWith(`${group}_`) ? name.slice(group.length + 1) : name;
-  };
+  return new Grouping(state).parts();
+}
 
-  const parts = new Map<string, Part>();
-  const taken = new Set<string>();
-  const take = (part: Omit<Part, "body">): void => {
-    parts.set(part.key, { ...part, body: bodyOf(part.members[0]!) });
-    for (const member of part.members) taken.add(member);
-  };
-  const free = (): string[] => names.filter((name) => !taken.has(name));
+/** Groups the modules of a graph, rule by rule; a module belongs to the first part that fits. */
+class Grouping {
+  private readonly modules: ReadonlyMap<string, GraphModule>;
+  private readonly names: readonly string[];
+  /** Included graphs that have tasks or a workspace; the empty name is the file itself. */
+  private readonly withTasks: ReadonlySet<string>;
+  private readonly flow: Flow;
+  private readonly grouped = new Map<string, Part>(); // by member
 
-  for (const name of names.filter(decides)) {
-    take({ key: name, label: short(name), kind: "workspace", members: [name] });
-  }
-  for (const mode of new Set(free().map((name) => modules.get(name)!.mode))) {
-    if (mode === "") continue;
-    const members = free().filter((name) => modules.get(name)!.mode === mode);
-    const key = members.length > 1 ? `task:${mode}` : members[0]!;
-    take({ key, label: mode, kind: "task", members });
+  constructor(private readonly state: GraphState) {
+    this.modules = new Map(state.modules.map((module) => [module.name, module]));
+    this.names = [...this.modules.keys()];
+    const deciding = this.names.filter((name) => this.isTask(name) || this.decides(name));
+    this.withTasks = new Set(deciding.map((name) => this.groupOf(name)));
+    this.flow = new Flow(state.links, new Set(this.names));
   }
 
-  // What shows, scores or records: read by none, in a graph that has tasks. An actor is fed by tasks.
-  const all = new Flow(state.links, new Set(names));
-  const isActor = (name: string): boolean => {
-    const writers = [...all.writers(name)];
-    return writers.length > 0 && writers.every(isTask);
-  };
-  const isAside = (name: string, readers: ReadonlySet<string>): boolean =>
-    hasTasks.size > 0 &&
-    !taken.has(name) &&
-    !bodyOf(name) &&
-    !isActor(name) &&
-    [...all.readers(name)].every((reader) => readers.has(reader));
-  const ends = new Set(names.filter((name) => isAside(name, new Set())));
-  const flow = new Flow(state.links, new Set(names.filter((name) => !ends.has(name))));
+  parts(): Part[] {
+    for (const name of this.names.filter((each) => this.decides(each))) {
+      this.take("workspace", this.short(name), [name]);
+    }
+    this.takeTasks();
+    const ends = new Set(this.free().filter((name) => this.isViewer(name, new Set())));
+    const viewers = this.free().filter((name) => this.isViewer(name, ends));
+    const flow = this.flow.without(ends);
+    this.takePerson(flow);
+    this.takeDetails(flow);
+    this.takeSiblings(flow);
+    const left = viewers.filter((name) => !this.grouped.has(name));
+    if (left.length > 1) this.take("viewers", "viewers", left, "viewers:");
+    for (const run of runsOf(this.free(), flow)) {
+      const [first, last] = [run[0]!, run.at(-1)!].map((name) => this.short(name));
+      this.take("module", `${first} … ${last}`, run);
+    }
+    for (const name of this.free()) this.take("module", this.short(name), [name]);
+    return [...new Set(this.names.map((name) => this.grouped.get(name)!))];
+  }
 
-  const steering = state.links.filter(
-    ({ to }) => decides(moduleOf(to)) && ["person", "stop"].includes(portOf(to)),
-  );
-  const steers = new Set(steering.map(({ from }) => moduleOf(from)));
-  const devices = free().filter((name) => {
-    if (bodyOf(name)) return false;
-    const readers = [...flow.readers(name)];
-    const isDevice = readers.length > 0 && flow.writers(name).size === 0;
-    return (
-      steers.has(name) || (isDevice && readers.every((each) => isTask(each) && steers.has(each)))
+  /** The modules of a mode are a task. */
+  private takeTasks(): void {
+    const modeOf = (name: string): string => this.modules.get(name)!.mode;
+    for (const mode of new Set(this.free().map(modeOf))) {
+      if (mode === "") continue;
+      const members = this.free().filter((name) => modeOf(name) === mode);
+      this.take("task", mode, members, `task:${mode}`);
+    }
+  }
+
+  /** The modules that steer the robot for a person, and the devices that only they and tasks read. */
+  private takePerson(flow: Flow): void {
+    const steering = this.state.links.filter(
+      ({ to }) => this.decides(moduleOf(to)) && ["person", "stop"].includes(portOf(to)),
     );
-  });
-  if (devices.length > 0) {
-    const key = devices.length > 1 ? "person:" : devices[0]!;
-    take({ key, label: "person", kind: "person", members: devices });
+    const steers = new Set(steering.map(({ from }) => moduleOf(from)));
+    const members = this.free().filter((name) => {
+      if (this.bodyOf(name)) return false;
+      if (steers.has(name)) return true;
+      const readers = [...flow.readers(name)];
+      const isSource = readers.length > 0 && flow.writers(name).size === 0;
+      return isSource && readers.every((each) => this.isTask(each) && steers.has(each));
+    });
+    if (members.length > 0) this.take("person", "person", members, "person:");
   }
 
-  // What serves only its own body: it belongs to the reader that has the fewest readers itself.
-  const details = new Map<string, string[]>();
-  for (const name of free()) {
-    const readers = [...flow.readers(name)];
-    const isInside = bodyOf(name) && readers.every((each) => bodyOf(each) === bodyOf(name));
-    if (!isInside || readers.length === 0 || flow.writers(name).size > 0) continue;
-    const host = readers.reduce((a, b) => (flow.readers(b).size < flow.readers(a).size ? b : a));
-    details.set(host, [...(details.get(host) ?? []), name]);
-  }
-  for (const [host, others] of details) {
-    if (taken.has(host)) continue;
-    take({ key: `${host}:`, label: short(host), kind: "module", members: [host, ...others] });
-  }
-
-  for (const name of free()) {
-    if (taken.has(name)) continue;
-    const { program } = modules.get(name)!;
-    const isSibling = (other: string): boolean =>
-      modules.get(other)!.program === program &&
-      bodyOf(other) === bodyOf(name) &&
-      [...flow.readers(other)].some((reader) => flow.readers(name).has(reader));
-    const members = free().filter((other) => other === name || isSibling(other));
-    if (members.length < 2) continue;
-    const label = `${commonName(members.map(short)) || programName(program)} ×${members.length}`;
-    take({ key: `${name}:`, label, kind: "module", members });
+  /** Sources that serve only their own body belong to the reader with the fewest readers itself. */
+  private takeDetails(flow: Flow): void {
+    const details = new Map<string, string[]>();
+    for (const name of this.free()) {
+      const body = this.bodyOf(name);
+      const readers = [...flow.readers(name)];
+      const isInside = body && readers.every((each) => this.bodyOf(each) === body);
+      if (!isInside || readers.length === 0 || flow.writers(name).size > 0) continue;
+      const host = readers.reduce((a, b) => (flow.readers(b).size < flow.readers(a).size ? b : a));
+      details.set(host, [...(details.get(host) ?? []), name]);
+    }
+    for (const [host, others] of details) {
+      if (!this.grouped.has(host)) this.take("module", this.short(host), [host, ...others]);
+    }
   }
 
-  const viewers = free().filter((name) => ends.has(name) || isAside(name, ends));
-  if (viewers.length > 1) {
-    take({ key: "viewers:", label: "viewers", kind: "viewers", members: viewers });
+  /** Modules of one program in one body that share a reader are shown as one: "ball ×2". */
+  private takeSiblings(flow: Flow): void {
+    for (const name of this.free()) {
+      if (this.grouped.has(name)) continue;
+      const { program } = this.modules.get(name)!;
+      const isSibling = (other: string): boolean =>
+        this.modules.get(other)!.program === program &&
+        this.bodyOf(other) === this.bodyOf(name) &&
+        [...flow.readers(other)].some((reader) => flow.readers(name).has(reader));
+      const members = this.free().filter((other) => other === name || isSibling(other));
+      if (members.length < 2) continue;
+      const common = commonName(members.map((each) => this.short(each))) || programName(program);
+      this.take("module", `${common} ×${members.length}`, members);
+    }
   }
 
-  const singles = new Set(free());
-  for (const run of runsOf([...singles], flow)) {
-    const [first, last] = [short(run[0]!), short(run.at(-1)!)];
-    take({ key: `${run[0]}:`, label: `${first} … ${last}`, kind: "module", members: run });
+  /** @param key  of a part of several modules; by default that of its first one with a colon. */
+  private take(
+    kind: PartKind,
+    label: string,
+    members: readonly string[],
+    key = `${members[0]}:`,
+  ): void {
+    const own = members.length > 1 ? key : members[0]!;
+    const part = { key: own, label, kind, members, body: this.bodyOf(members[0]!) };
+    for (const member of members) this.grouped.set(member, part);
   }
-  for (const name of free()) {
-    take({ key: name, label: short(name), kind: "module", members: [name] });
+
+  private free(): string[] {
+    return this.names.filter((name) => !this.grouped.has(name));
   }
-  return names.flatMap((name) => [...parts.values()].filter(({ members }) => members[0] === name));
+
+  private groupOf(name: string): string {
+    return this.modules.get(name)!.group;
+  }
+
+  private isTask(name: string): boolean {
+    return (this.modules.get(name)?.mode ?? "") !== "";
+  }
+
+  /** Whether it is a workspace. */
+  private decides(name: string): boolean {
+    return name in this.state.focus;
+  }
+
+  private bodyOf(name: string): string {
+    const group = this.groupOf(name);
+    return this.withTasks.has(group) ? "" : group;
+  }
+
+  /** Its name without that of its included graph. */
+  private short(name: string): string {
+    const group = this.groupOf(name);
+    return group && name.startsWith(`${group}_`) ? name.slice(group.length + 1) : name;
+  }
+
+  /**
+   * Whether a module only shows, scores or records: only `readers` read it, in a graph with tasks.
+   * A module that only tasks feed moves something instead.
+   */
+  private isViewer(name: string, readers: ReadonlySet<string>): boolean {
+    const writers = [...this.flow.writers(name)];
+    const isActor = writers.length > 0 && writers.every((each) => this.isTask(each));
+    return (
+      this.withTasks.size > 0 &&
+      !this.bodyOf(name) &&
+      !isActor &&
+      [...this.flow.readers(name)].every((reader) => readers.has(reader))
+    );
+  }
 }
 
 /** Long rows of modules, each of which only reads the one before and is only read by the next. */
@@ -201,8 +252,4 @@ function commonName(names: readonly string[]): string {
     return "";
   };
   return common((words, n) => words.slice(-n)) || common((words, n) => words.slice(0, n));
-}
-
-export function programName(program: GraphModule["program"]): string {
-  return program.split("/").at(-1) ?? program;
 }

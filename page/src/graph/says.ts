@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node of the drawing says, and the graph as a whole: the problem, or else what it is for. Pure.
-import type { GraphModule, GraphState } from "../server";
-import type { Bid } from "./bids";
-import { moduleOf } from "./parts";
-import type { Edge, Node } from "./structure";
+// The texts of nodes and of the whole graph: the problem, or else the purpose. Pure.
+import { moduleOf, type Bid, type GraphModule, type GraphState } from "../server";
+import { linkKey, type Edge, type Node } from "./structure";
 import { percentText, rateText, type Condition } from "./words";
 
 export interface Saying {
@@ -11,7 +9,7 @@ export interface Saying {
   readonly text: string;
 }
 
-/** What is known of a graph at one time. */
+/** A graph at one time, with its bids and conditions. */
 export interface Now {
   readonly state: GraphState;
   /** Whether the robot is stopped. */
@@ -22,7 +20,7 @@ export interface Now {
 
 const order: readonly Condition[] = ["broken", "slow", "works", "ended"];
 
-/** What a node says. @param edges  those of the drawing. */
+/** The text of a node. @param edges  those of the drawing. */
 export function sayingOf(node: Node, edges: readonly Edge[], now: Now): Saying {
   const { state } = now;
   const members = state.modules.filter(({ name }) => node.members.includes(name));
@@ -38,7 +36,7 @@ export function sayingOf(node: Node, edges: readonly Edge[], now: Now): Saying {
   return { is: "works", text: purposeText(node, members, edges, now) };
 }
 
-/** What a node is doing, in the terms of its kind. */
+/** The purpose of a node, in the terms of its kind. */
 function purposeText(
   node: Node,
   members: readonly GraphModule[],
@@ -71,7 +69,7 @@ function purposeText(
           .flatMap((edge) => edge.links),
       );
       const rates = state.links
-        .filter((link) => links.has(`${link.from} ${link.to}`))
+        .filter((link) => links.has(linkKey(link)))
         .map((link) => link.per_second);
       const rate = rates.length > 0 ? rateText(Math.max(...rates)) || "silent" : "";
       const cpu = `cpu ${percentText(members.reduce((sum, each) => sum + each.cpu, 0))}`;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The structure of a graph's drawing: its parts, or the modules of those that are open, and one edge
 // for all links between two of them.
-import type { GraphLink, GraphModule, GraphState } from "../server";
-import { isBackground, moduleOf, partsOf, portOf, type PartKind } from "./parts";
+import { moduleOf, type GraphLink, type GraphModule, type GraphState } from "../server";
+import { isBackground, partsOf, type PartKind } from "./parts";
 
 /** A box of the drawing. */
 export interface Node {
@@ -100,5 +100,3 @@ export function linksOf(state: GraphState, module: GraphModule): GraphLink[] {
     (link) => moduleOf(link.from) === module.name || moduleOf(link.to) === module.name,
   );
 }
-
-export { moduleOf, portOf };

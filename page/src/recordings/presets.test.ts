@@ -32,7 +32,7 @@ function ports(name: string): readonly string[] | undefined {
 test("presets follow from the types of the outputs", () => {
   assert.deepEqual(ports("Everything")?.length, 9);
   assert.deepEqual(ports("Poses and commands"), ["neck.pose", "follow.command"]);
-  assert.deepEqual(ports("What it senses and does"), [
+  assert.deepEqual(ports("Senses and actions"), [
     "eyes.ears",
     "eyes.left",
     "follow.bid",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What to record: choices of streams by their types, and how much they give. Pure.
+// Presets of streams to record, by their types, and their estimated rates. Pure.
 import { Coord } from "../mtp";
 import type { Outlet, Output } from "../outputs";
 import type { GraphLink } from "../server";
@@ -31,20 +31,20 @@ function isMotion({ kind }: Output): boolean {
 /** The presets for the modules of a graph, each with at least one stream. */
 export function presetsOf(outlets: readonly Outlet[]): Preset[] {
   const all = outlets.flatMap(({ outputs }) => outputs);
-  // What modules make of images and sound can be made again.
+  // Results computed from images and sound can be computed again.
   const senses = outlets.filter(({ perceives }) => !perceives).flatMap(({ outputs }) => outputs);
   const chosen = (outputs: readonly Output[], takes: (output: Output) => boolean) =>
     outputs.filter(takes).map(({ port }) => port);
   const small = chosen(all, (output) => !isLarge(output));
   return [
     {
-      name: "What it senses and does",
+      name: "Senses and actions",
       detail: "images of the eyes, sound, and all numbers and texts",
       ports: [...chosen(senses, isSense), ...small].sort(),
     },
     {
       name: "Poses and commands",
-      detail: "where things are and are to go",
+      detail: "positions, directions, and commands to move",
       ports: chosen(all, isMotion),
     },
     {
@@ -55,7 +55,7 @@ export function presetsOf(outlets: readonly Outlet[]): Preset[] {
   ].filter(({ ports }) => ports.length > 0);
 }
 
-/** How much is recorded of these outputs. */
+/** The estimated size of a recording. */
 export interface Amount {
   /** [byte/s], of those whose rate is known. */
   readonly rate: number;

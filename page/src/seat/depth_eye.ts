@@ -4,7 +4,7 @@ import { numbersOf, type Message } from "../mtp";
 import type { Server, Stream } from "../server";
 import { black, code } from "../views/coding";
 import { bitmapOf } from "../views/picture";
-import type { DepthOptions } from "./eyes";
+import type { DepthOptions } from "./eye";
 
 /** Images that wait for their depth, which comes later by the time of matching. */
 const mostKept = 8;

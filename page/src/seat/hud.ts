@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the head looks, and how soon an image shows a command, written over the image.
+// The direction of gaze and the motion-to-photon latency, written over the image.
 import { numbersOf } from "../mtp";
 import type { Server, Session, Stream } from "../server";
 import { h, setText } from "../shell";

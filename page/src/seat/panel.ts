@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The supervisor's seat: the robot's images, and the controls to move it.
-import { mayDrive, modesInFocus, type DriveOutput, type GraphState } from "../server";
+import { mayDrive, modeName, modesInFocus, type DriveOutput, type GraphState } from "../server";
+import { earsOf } from "../eyes";
 import { button, h, meanings, setText, type PanelHost, type PanelKind } from "../shell";
 import { Ears } from "./ears";
-import { earsOf } from "./eyes";
 import { GazeHistory, headOutput } from "./gaze";
 import { dragSteers, gamepadsSteer, keysSteer } from "./hands";
 import { Seat, type SeatState } from "./holder";
@@ -11,7 +11,6 @@ import { Hud } from "./hud";
 import { Latency } from "./latency";
 import { TaskButtons } from "./tasks";
 import { PhoneTracker } from "./telepresence";
-import { modeName } from "../graph/workspace";
 import { SeatView } from "./view";
 import { taskOf, whoText } from "./who";
 import type { XrView } from "./xr";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws the images of two eyes.
-import type { Picture, Side } from "./eyes";
+import type { Picture, Side } from "./eye";
 import { placesOf, type Place, type Way } from "./places";
 
 export type Pictures = Readonly<Partial<Record<Side, Picture>>>;

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { sentHeader } from "../mtp";
 import type { GraphState } from "../server";
-import { eyePairs, labelsOf } from "./eyes";
+import { eyePairs, labelsOf } from "../eyes";
 import { headOutput } from "./gaze";
 import { Latency } from "./latency";
 import { anglesOfDevice, anglesOfHeadset, anglesOfPose, since, type Angles } from "./orientation";

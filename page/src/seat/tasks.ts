@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tasks of the robot as buttons, with their bids. Their size depends on neither.
-import { Standings } from "../graph/standings";
-import { modesInFocus, type GraphState, type Server } from "../server";
+import { modesInFocus, type GraphState, type Server, type Unsubscribe } from "../server";
 import { button, fill, h, meanings, setText } from "../shell";
 import type { Seat } from "./holder";
 
-const rate = 5; // of the shown bids [Hz]
-
 export class TaskButtons {
   readonly element = h("div.tasks", { role: "group", "aria-label": "Tasks" });
-  private readonly standings: Standings;
+  private readonly end: Unsubscribe;
   private key = "";
 
   /** @param mayChoose  whether a task can be chosen now. */
@@ -18,18 +15,25 @@ export class TaskButtons {
     private readonly seat: Seat,
     private readonly mayChoose: () => boolean,
   ) {
-    this.standings = new Standings(server, rate, () => this.showBids());
+    this.end = server.standings.on(() => this.showBids());
   }
 
   update(state: GraphState): void {
-    this.standings.follow(state);
     const modes = Object.entries(state.modes).sort((a, b) => a[1] - b[1]);
     const can = this.mayChoose();
     const isKnown = this.server.connection.status === "open";
     const inFocus = isKnown ? modesInFocus(state).map(({ number }) => number) : [];
     const key = JSON.stringify([modes, can, this.seat.task, inFocus]);
-    if (this.key === key) return;
+    if (this.key !== key) this.build(modes, can, inFocus);
     this.key = key;
+    this.showBids();
+  }
+
+  private build(
+    modes: readonly (readonly [string, number])[],
+    can: boolean,
+    inFocus: readonly number[],
+  ): void {
     const active = document.activeElement;
     const focused = active instanceof HTMLElement && this.element.contains(active) ? active : null;
     fill(
@@ -39,11 +43,10 @@ export class TaskButtons {
     );
     const again = focused && `[data-task="${CSS.escape(focused.dataset.task ?? "")}"]`;
     if (again) this.element.querySelector<HTMLElement>(again)?.focus();
-    this.showBids();
   }
 
   close(): void {
-    this.standings.close();
+    this.end();
   }
 
   private drawRelease(can: boolean): HTMLElement {
@@ -72,9 +75,8 @@ export class TaskButtons {
   }
 
   private showBids(): void {
-    const { state, connection } = this.server;
-    const workspaces = connection.status === "open" ? Object.keys(state?.focus ?? {}) : [];
-    const bids = workspaces.flatMap((name) => this.standings.of(name));
+    const { state, standings } = this.server;
+    const bids = Object.keys(state?.focus ?? {}).flatMap((name) => standings.of(name));
     for (const each of this.element.querySelectorAll<HTMLElement>("[data-number]")) {
       const bid = bids.find(({ mode }) => mode === Number(each.dataset.number));
       setText(each.lastElementChild!, bid ? bid.salience.toFixed(2) : "");

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The images of the robot's eyes in the seat: a canvas and its streams.
-import type { GraphState, Server } from "../server";
+import { moduleOf, type GraphState, type Server } from "../server";
 import { button, fill, h } from "../shell";
-import { moduleOf } from "../graph/structure";
 import { SlowRange } from "../views/coding";
-import { Eye, eyePairs, labelsOf, type EyePair, type Picture, type Side } from "./eyes";
+import { eyePairs, labelsOf, type EyePair } from "../eyes";
+import { Eye, type Picture, type Side } from "./eye";
 import type { Latency } from "./latency";
 import { drawPictures, thumbnailOf, type Pictures } from "./picture";
 import { pixelAt, placesOf, sidesOf, wayNames, ways, type Way } from "./places";

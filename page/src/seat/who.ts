@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which task has the head, as a sentence, and which tasks read the driver's outputs. Pure.
-import { moduleOf } from "../graph/structure";
 import {
   mayDrive,
+  moduleOf,
   type Connection,
   type DriveOutput,
   type GraphState,

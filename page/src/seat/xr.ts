@@ -12,7 +12,7 @@ import {
   SRGBColorSpace,
   WebGLRenderer,
 } from "three";
-import type { Picture, Side } from "./eyes";
+import type { Picture, Side } from "./eye";
 import { anglesOfHeadset, since, type Angles } from "./orientation";
 
 /** Distance of the images [m]; their size follows from the camera's focal length. */

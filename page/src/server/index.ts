@@ -2,5 +2,6 @@
 export * from "./drive";
 export * from "./server";
 export * from "./signal";
+export { bidsOf, type Bid } from "./standings";
 export * from "./stream";
 export * from "./types";

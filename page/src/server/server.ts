@@ -3,6 +3,7 @@ import { readMessage, rowsOf } from "../mtp";
 import { Drive } from "./drive";
 import { Signal } from "./signal";
 import { Socket } from "./socket";
+import { Standings } from "./standings";
 import { Stream, type StreamOptions } from "./stream";
 import type { Connection, GraphState, LogLine, Recording, Session } from "./types";
 
@@ -25,7 +26,7 @@ const serverLeaves = 1001;
 /** A server that has left for longer is not restarted [ms]. */
 const restartTime = 3000;
 
-/** The server of this page: the graph's state, the session, the log, commands, streams. */
+/** The server of this page: the graph's state, the session, the bids, the log, commands, streams. */
 export class Server {
   private readonly states = new Signal<GraphState>();
   private readonly sessions = new Signal<Session>();
@@ -36,6 +37,7 @@ export class Server {
   readonly onConnection = this.connections.on;
   /** New lines of the log (G46); earlier ones are in `log`. */
   readonly onLog = this.lines.on;
+  readonly standings = new Standings();
   private readonly waiting = new Map<bigint, Waiting>(); // by the number of the command
   private asked = 0n; // over this connection
   private readonly logged: LogLine[] = [];
@@ -54,6 +56,7 @@ export class Server {
       lost: (code, reason, retry) => {
         const { session } = this;
         if (session) this.sessions.set({ ...session, stopped: null }); // unknown now
+        this.standings.clear();
         if (code === serverLeaves) this.leftAt = performance.now();
         const ended = performance.now() - this.leftAt > restartTime;
         if (ended) this.end();
@@ -147,8 +150,11 @@ export class Server {
     const message = readMessage(bytes);
     const rows = rowsOf(message);
     switch (message.header.src) {
-      case 1:
-        return this.states.set(JSON.parse(rows.join("")) as GraphState);
+      case 1: {
+        const state = JSON.parse(rows.join("")) as GraphState;
+        this.standings.follow(state);
+        return this.states.set(state);
+      }
       case 2:
         this.logged.push(JSON.parse(rows.join("")) as LogLine);
         if (this.logged.length > logLines) this.logged.shift();

@@ -83,6 +83,27 @@ export interface GraphState {
   readonly modes: Readonly<Record<string, number>>;
 }
 
+/** Name of the module of `MODULE.PORT`. */
+export function moduleOf(port: string): string {
+  return port.slice(0, port.indexOf("."));
+}
+
+/** Name of the port of `MODULE.PORT`. */
+export function portOf(port: string): string {
+  return port.slice(port.indexOf(".") + 1);
+}
+
+/** Name of a program, without its folder. */
+export function programName(program: string): string {
+  return program.split("/").at(-1) ?? program;
+}
+
+/** Name of a mode; "mode 7" if it has none. */
+export function modeName(state: GraphState | undefined, mode: number): string {
+  const found = Object.entries(state?.modes ?? {}).find(([, number]) => number === mode);
+  return found?.[0] ?? `mode ${mode}`;
+}
+
 /** The modes in focus, in the order of the workspaces' names. */
 export function modesInFocus(state: GraphState | null | undefined): Focus[] {
   return Object.values(state?.focus ?? {}).filter((focus) => focus !== null);

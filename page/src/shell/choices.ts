@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the opener offers, and what matches a search. Pure.
+// The choices of the opener, and the search among them. Pure.
 import type { PanelArgs } from "./panel";
 
 export interface Choice {

@@ -42,6 +42,14 @@ export function button(
   return h("button", { ...attributes, onclick }, text);
 }
 
+/** A dialog with a class, which a click beside it closes. */
+export function dialogBox(name: string, label: string, content: HTMLElement): HTMLDialogElement {
+  const close = ({ target }: Event) => target === dialog && dialog.close();
+  const attributes = { class: `${name} box`, "aria-label": label, onclick: close };
+  const dialog: HTMLDialogElement = h("dialog", attributes, content);
+  return dialog;
+}
+
 /** An arrow head as a marker of a size [px]; `refX`: where its line ends. */
 export function arrowHead(id: string, size: number, attributes: Attributes): SVGDefsElement {
   const middle = size / 2;

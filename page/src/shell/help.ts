@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { button, h } from "./h";
+import { button, dialogBox, h } from "./h";
 
 /** The words of the page, also for tooltips. */
 export const meanings = {
@@ -20,9 +20,9 @@ const keys: readonly [string, string][] = [
 export function helpDialog(): HTMLDialogElement {
   const words = (entries: readonly (readonly [string, string])[]) =>
     h("dl", entries.map(([word, meaning]) => [h("dt", word), h("dd", meaning)]).flat());
-  const dialog: HTMLDialogElement = h(
-    "dialog.help.box",
-    { "aria-label": "Help", onclick: (event) => event.target === dialog && dialog.close() },
+  const dialog = dialogBox(
+    "help-dialog",
+    "Help",
     h("div.help-body", { tabindex: 0 }, [
       h("h2", "The three views"),
       words([

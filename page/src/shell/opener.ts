@@ -2,7 +2,7 @@
 import { outletsOf, type Outlet } from "../outputs";
 import type { Server } from "../server";
 import { found, streamTypes, wordFor, type Choice, type Group } from "./choices";
-import { button, fill, h } from "./h";
+import { button, dialogBox, fill, h } from "./h";
 import { help } from "./help";
 import type { PanelArgs } from "./panel";
 
@@ -107,9 +107,9 @@ export function opener(server: Server, open: (args: PanelArgs) => void): HTMLDia
     const all = targets();
     (all[all.indexOf(document.activeElement as HTMLElement) + step] ?? search).focus();
   });
-  const dialog = h(
-    "dialog.opener.box",
-    { "aria-label": "Open a panel", onclick: (event) => event.target === dialog && dialog.close() },
+  const dialog = dialogBox(
+    "opener",
+    "Open a panel",
     h("div.opener-body.stack", [
       h("p.opener-hint.small", [
         "Open a panel, or a module of the robot and one of its streams",

@@ -24,7 +24,7 @@ export class Shell {
   readonly words = h("div.words");
   /** Place in the bar for the stop. */
   readonly stopSlot = h("div.stop-slot");
-  /** What is below the bar. */
+  /** The area below the bar. */
   readonly stage: HTMLElement;
   private readonly graphName = h("h1", "Hypercolumn");
   private readonly links = views.map((view) =>
@@ -101,7 +101,7 @@ export class Shell {
     this.silence = window.setTimeout(() => (this.said.textContent = ""), sentenceLife);
   }
 
-  /** Shows what the URL names: a view, or panels in Build. */
+  /** Shows the view in the URL, or its panels in Build. */
   private follow(): void {
     const { state } = this.server;
     const view = viewOf(location.hash);

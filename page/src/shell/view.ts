@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The three views of the page, and the panels that each shows. Pure.
+import { eyePairs } from "../eyes";
 import type { GraphState } from "../server";
 import type { Layout } from "./layout";
 import type { PanelArgs } from "./panel";
@@ -13,36 +14,19 @@ export function viewOf(hash: string): View {
   return views.find((view) => view === name) ?? "build";
 }
 
-/** An output of the first module that runs a program. */
-function outputOf(state: GraphState, program: string, port: string): string | undefined {
-  const found = state.modules.find((module) => module.program.split("/").at(-1) === program);
-  return found && `${found.name}.${port}`;
-}
-
-/** The outputs left and right of a module that no other such pair feeds: the eyes. */
-function eyesOf(state: GraphState): string[] {
-  const outputs = new Set(state.links.map((link) => link.from));
-  const pairs = state.modules
-    .map(({ name }) => name)
-    .filter((name) => outputs.has(`${name}.left`) && outputs.has(`${name}.right`));
-  const isFed = (name: string) =>
-    state.links.some(
-      ({ from, to }) => to.startsWith(`${name}.`) && pairs.includes(from.split(".")[0]!),
-    );
-  const name = pairs.find((each) => !isFed(each));
-  return name === undefined ? [] : [`${name}.left`, `${name}.right`];
-}
-
 /** What the robot sees: with virtual objects and in depth, or else both eyes. */
 function picturesOf(state: GraphState): PanelArgs[] {
-  const [left, right] = eyesOf(state);
-  const augmented = outputOf(state, "augment", "left");
-  const depth = outputOf(state, "depth", "depth");
+  const pairs = eyePairs(state);
+  const eyes = pairs.find(({ raw }) => raw) ?? pairs.find(({ coding }) => !coding);
+  const augmented = pairs.find((pair) => pair.augmented);
+  const depth = pairs.find(({ coding }) => coding);
   const picture = (port: string | undefined, title: string): PanelArgs[] =>
     port === undefined ? [] : [{ kind: "stream", port, title }];
   return [
-    ...picture(augmented ?? left, augmented ? "What it sees, with virtual objects" : "Left eye"),
-    ...picture(depth ?? right, depth ? "How far it is" : "Right eye"),
+    ...(augmented
+      ? picture(augmented.left, "Left eye, with virtual objects")
+      : picture(eyes?.left, "Left eye")),
+    ...(depth ? picture(depth.left, "Depth") : picture(eyes?.right, "Right eye")),
   ];
 }
 

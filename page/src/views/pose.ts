@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pose as a person says it: where it looks, and where it is. Pure.
+// A pose in words: its direction and its place. Pure.
 import { Coord, numbersOf, type Message } from "../mtp";
 
 export interface Pose {

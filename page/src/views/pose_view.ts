@@ -2,7 +2,8 @@
 // A pose or a rotation as two dials: pan from above, tilt from the side.
 import type { Arrival } from "../server";
 import { h, setText, svg } from "../shell/h";
-import { angleText, placeText, poseOf } from "./pose";
+import { Pace } from "../shell/pace";
+import { angleText, placeText, poseOf, type Pose } from "./pose";
 import type { View, ViewKind } from "./view";
 
 const radius = 50; // of a dial
@@ -89,24 +90,28 @@ export class PoseView implements View {
     h("div.dials", [this.pan.element, this.tilt.element]),
     this.more,
   ]);
-  private read = -Infinity; // [ms]
+  private readonly pace = new Pace(readingPeriod);
 
   async show({ message }: Arrival): Promise<void> {
     const pose = poseOf(message);
     if (!pose) return;
     this.pan.turn(-pose.pan);
     this.tilt.turn(pose.tilt);
-    const now = performance.now();
-    if (now > this.read + readingPeriod) {
-      this.read = now;
-      this.pan.read(angleText(pose.pan, "left", "right"));
-      this.tilt.read(angleText(pose.tilt, "down", "up"));
-      const roll = angleText(pose.roll, "right", "left");
-      const place = pose.place ? placeText(pose.place) : "";
-      const rolled = roll === "0.0°" ? "" : `rolled ${roll}`;
-      setText(this.more, [place, rolled].filter(Boolean).join("; "));
-    }
+    this.pace.run(() => this.read(pose));
     await new Promise(requestAnimationFrame);
+  }
+
+  close(): void {
+    this.pace.close();
+  }
+
+  private read(pose: Pose): void {
+    this.pan.read(angleText(pose.pan, "left", "right"));
+    this.tilt.read(angleText(pose.tilt, "down", "up"));
+    const roll = angleText(pose.roll, "right", "left");
+    const place = pose.place ? placeText(pose.place) : "";
+    const rolled = roll === "0.0°" ? "" : `rolled ${roll}`;
+    setText(this.more, [place, rolled].filter(Boolean).join("; "));
   }
 }
 

@@ -3,6 +3,7 @@
 import { numberText, type Header } from "../mtp";
 import type { Arrival } from "../server";
 import { fill, h, setText } from "../shell/h";
+import { Pace } from "../shell/pace";
 import { columnsOf, type Column } from "./columns";
 import { Sight } from "./room";
 import type { View, ViewKind } from "./view";
@@ -15,8 +16,7 @@ export class TableView implements View {
   private readonly more = h("p.muted");
   readonly element = h("div.table-view", { tabindex: 0 }, [this.table, this.more]);
   private readonly sight = new Sight(this.element);
-  private drawn = 0;
-  private timer?: number;
+  private readonly pace = new Pace(100); // [ms], faster than anyone can read
   private cells: HTMLTableCellElement[] = [];
   private shape = "";
 
@@ -24,19 +24,15 @@ export class TableView implements View {
   constructor(private readonly declared: readonly string[]) {}
 
   show(arrival: Arrival): void {
-    clearTimeout(this.timer);
-    const wait = this.drawn + 100 - performance.now(); // faster than anyone can read
-    if (wait > 0) this.timer = window.setTimeout(() => this.draw(arrival), wait);
-    else this.draw(arrival);
+    this.pace.run(() => this.draw(arrival));
   }
 
   close(): void {
-    clearTimeout(this.timer);
+    this.pace.close();
     this.sight.close();
   }
 
   private draw({ message }: Arrival): void {
-    this.drawn = performance.now();
     const { header, elements } = message;
     const shape = `${header.width} ${header.height} ${header.components}`;
     if (shape !== this.shape) this.build(header, shape);
