@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -107,5 +108,45 @@ class Recordings : public ::testing::Test {
  private:
   Folder folder_;
 };
+
+inline Message message_of(const Info& info, std::int32_t width, std::int32_t height,
+                          std::int64_t seq, std::mt19937& random) {
+  auto draft = Draft::make(info, height, width);
+  draft.header.seq = seq;
+  draft.header.src = 7;
+  draft.header.time = unix_time(1'763'683'200'000'000'000 + seq);
+  for (auto& each : draft.elements()) each = static_cast<std::byte>(random());
+  if (info.encoding == Encoding::Text)  // no NaN, whose bits text does not preserve
+    for (auto& each : draft.elements()) each = static_cast<std::byte>(random() % 64);
+  return std::move(draft).finish();
+}
+
+inline Message image(std::int64_t seq, std::int32_t width = 40) {
+  std::mt19937 random(static_cast<unsigned>(seq));
+  return message_of({MatrixType::RgbImage, 3, Scalar::U8, Encoding::Binary}, width, 30, seq,
+                    random);
+}
+
+inline WriterOptions chunks_of(std::size_t bytes = 10000) {
+  WriterOptions options;
+  options.chunk_bytes = bytes;
+  return options;
+}
+
+/// Records images 0 … count - 1 at 1 ns, 2 ns, …; returns the bytes of each.
+inline std::vector<std::string> record_images(const std::string& file, int count,
+                                              const WriterOptions& options = chunks_of(),
+                                              std::int32_t width = 40) {
+  auto writer = writer_of(file, options);
+  const auto stream = *writer->add_stream("eye.left");
+  std::vector<std::string> all;
+  for (int i = 0; i < count; ++i) {
+    const auto message = image(i, width);
+    EXPECT_TRUE(writer->add(stream, message, unix_time(i + 1)));
+    all.push_back(encode(message));
+  }
+  EXPECT_TRUE(writer->close().status);
+  return all;
+}
 
 }  // namespace hc::record
