@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The direction of gaze and the motion-to-photon latency, written over the image.
-import { numbersOf } from "../mtp";
 import type { Server, Session, Stream } from "../server";
 import { h, setText } from "../shell";
 import { headOutput } from "./gaze";
 import type { Latency } from "./latency";
-import { anglesOfPose, type Angles } from "./orientation";
+import { angleText, poseOf } from "../views/pose";
 
 const rate = 5; // [Hz]
 
@@ -28,8 +27,10 @@ export class Hud {
     this.stream?.close();
     this.stream = port === undefined ? undefined : this.server.stream(port, { rate });
     this.stream?.on("message", ({ message }) => {
-      if (message.header.type !== "transformation") return;
-      setText(this.gaze, gazeText(anglesOfPose(numbersOf(message))));
+      const pose = poseOf(message);
+      if (!pose) return;
+      const pan = angleText(pose.pan, "left", "right", 0);
+      setText(this.gaze, `Head ${pan}, ${angleText(pose.tilt, "down", "up", 0)}`);
     });
   }
 
@@ -44,13 +45,4 @@ export class Hud {
   close(): void {
     this.stream?.close();
   }
-}
-
-/** A direction of gaze: "Head 12° left, 3° down". */
-export function gazeText({ yaw, pitch }: Pick<Angles, "yaw" | "pitch">): string {
-  const part = (angle: number, positive: string, negative: string): string => {
-    const degrees = Math.round((angle * 180) / Math.PI);
-    return `${Math.abs(degrees)}° ${degrees < 0 ? negative : positive}`;
-  };
-  return `Head ${part(yaw, "left", "right")}, ${part(pitch, "down", "up")}`;
 }

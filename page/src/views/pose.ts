@@ -66,11 +66,11 @@ export function poseOf(message: Message): Pose | undefined {
   };
 }
 
-/** "12.3° left"; without a direction if it would be 0.0. */
-export function angleText(angle: number, positive: string, negative: string): string {
-  const text = `${Math.abs(angle).toFixed(1)}°`;
-  if (text === "0.0°") return text;
-  return `${text} ${angle > 0 ? positive : negative}`;
+/** "12.3° left"; "0.0°" without a direction. */
+export function angleText(angle: number, positive: string, negative: string, digits = 1): string {
+  const size = Math.abs(angle).toFixed(digits);
+  if (Number(size) === 0) return `${size}°`;
+  return `${size}° ${angle > 0 ? positive : negative}`;
 }
 
 /** "0.06 m forward, 0.05 m left"; "" at the origin. */
