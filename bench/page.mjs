@@ -42,7 +42,7 @@ async function measureDrawn(page, graph) {
 const inFocus = (page, task) =>
   page.locator(".bar .focus", { hasText: task }).waitFor({ timeout: watchdog });
 
-const graph = new Graph("head.toml", "--set", "head_eyes.ball=absent", "--quiet");
+const graph = new Graph("head.toml", ["--set", "head_eyes.ball=absent", "--quiet"]);
 const browser = await openBrowser({ webgl: false });
 try {
   const url = await graph.url();

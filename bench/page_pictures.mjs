@@ -13,7 +13,7 @@ const sizes = [
   [3840, 2160],
 ];
 
-const graph = new Graph("head.toml", "--quiet");
+const graph = new Graph("head.toml", ["--quiet"], "head");
 const browser = await openBrowser({ webgl: false });
 try {
   const context = await browser.newContext();

@@ -25,7 +25,7 @@ const columns = {
   graph: "hc run [MB]",
 };
 
-const graph = new Graph("head.toml", "--quiet");
+const graph = new Graph("head.toml", ["--quiet"]);
 const browser = await openBrowser();
 try {
   const page = await browser.newPage({ viewport: { width: 1200, height: 700 } });

@@ -51,7 +51,7 @@ function write(frames, folder, quality) {
 }
 
 const folder = mkdtempSync(join(tmpdir(), "hc-picture-"));
-const graph = new Graph("head.toml", "--quiet");
+const graph = new Graph("head.toml", ["--quiet"], "head");
 const browser = await openBrowser();
 try {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });

@@ -40,11 +40,12 @@ const port = 20000 + (process.pid % 10000);
 
 /** A graph that runs in a folder of its own, with its page. */
 export class Graph {
-  name = `page-${process.pid}`;
   folder = mkdtempSync(join(tmpdir(), "hc-page-"));
   log = "";
 
-  constructor(file, ...options) {
+  /** @param name  shown in the page; a test that runs beside others needs one of its own. */
+  constructor(file, options = [], name = `page-${process.pid}`) {
+    this.name = name;
     const programs = join(build, "tests/programs"); // those of tests
     this.process = spawn(
       hc,

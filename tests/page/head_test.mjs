@@ -75,7 +75,10 @@ async function takeSeat(panels = "seat") {
 
 describe("the page", { timeout: 10 * watchdog }, () => {
   before(async () => {
-    graph = new Graph("head.toml", ...small.flatMap((each) => ["--set", each]));
+    graph = new Graph(
+      "head.toml",
+      small.flatMap((each) => ["--set", each]),
+    );
     browser = await openBrowser();
     context = await browser.newContext({ viewport: { width: 1000, height: 720 } });
     context.setDefaultTimeout(watchdog);
