@@ -110,7 +110,8 @@ try {
   await page.reload();
   const reds = [];
   for (const name of ["left_ball", "right_ball", "view_left", "view_depth", "view_augmented"]) {
-    const node = page.locator(`[data-members~="${name}"]`);
+    // Several are in one box, which stays red for a while.
+    const node = page.locator(`[data-members~="${name}"]:not(.broken)`);
     await node.waitFor({ timeout: watchdog });
     await node.evaluate((element) => {
       new MutationObserver(() => {
