@@ -10,7 +10,9 @@
 namespace fs = std::filesystem;
 
 void Saver::save(const std::string& to, const hc::Header& header, const cv::Mat& bgr) {
-  if (to.ends_with('/')) {
+  if (!to.empty() && !is_place(to)) {
+    fail(to + " is neither a .png nor a folder/");
+  } else if (to.ends_with('/')) {
     write({free_place(to, header), bgr});
   } else if (!to.empty()) {
     unsaved_ = {to, bgr.clone()};
@@ -45,6 +47,10 @@ void Saver::save_latest() {
 void Saver::write(const Picture& picture) {
   auto saved = hc::vision::save_image(picture.path, picture.bgr);
   if (saved) last_ = picture.path;
-  if (!saved && !std::exchange(has_failed_, true))  // continue: a later image may succeed
-    module_.log("not all images saved: " + saved.error().detail, hc::Level::Error);
+  if (!saved) fail(saved.error().detail);  // and continue: a later image may succeed
+}
+
+void Saver::fail(const std::string& why) {
+  if (!std::exchange(has_failed_, true))
+    module_.log("not all images saved: " + why, hc::Level::Error);
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 
 #include <hc/module/module.h>
 #include <opencv2/core.hpp>
@@ -17,8 +18,12 @@ class Saver {
   explicit Saver(hc::Module& module) : module_(module) {}
 
   /// Saves an image, u8: (H, W, 3) blue, green, red, or (H, W) grey.
-  /// @param to  a file, or folder/.
+  /// @param to  a place, or "": nothing is saved. Another name is logged once as a failure.
   void save(const std::string& to, const hc::Header& header, const cv::Mat& bgr);
+  /// Whether a name is FILE.png or folder/; another file may be a recording, and stays as it is.
+  [[nodiscard]] static bool is_place(std::string_view name) {
+    return name.ends_with('/') || name.ends_with(".png");
+  }
   /// Saves the latest image that is not in the file yet.
   void save_latest();
 
@@ -34,6 +39,7 @@ class Saver {
   };
   std::filesystem::path free_place(const std::string& folder, const hc::Header& header);
   void write(const Picture& picture);
+  void fail(const std::string& why);
   void end_pause();
 
   hc::Module& module_;

@@ -21,8 +21,7 @@ struct ViewParameters {
   hc::Parameter<std::string> save =
       module.parameter("save", "", "",
                        "PNG file for the latest image, replaced once a second and at the "
-                       "end, or folder/ for all as SRC_SEQ.png",
-                       {.positional = true});
+                       "end, or folder/ for all as SRC_SEQ.png");
   hc::Parameter<std::string> window = module.parameter(
       "window", "auto", "", "show a window", {.choices = {"auto", "yes", "no"}, .fixed = true});
   hc::Parameter<std::int64_t> monitor =

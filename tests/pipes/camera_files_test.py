@@ -84,7 +84,7 @@ write("right.avi", 10, 3)"""
         messages = "".join(
             "1 1 0 %d 8 0 30300 0 7 1 1\n%d 0 0\n" % each for each in zip(numbers or values, values)
         )
-        self.shell("hc view %s/ --window no" % folder, data=messages.encode())
+        self.shell("hc view --save %s/ --window no" % folder, data=messages.encode())
 
     def seen(self, command):
         """The first values of the images of each eye."""
