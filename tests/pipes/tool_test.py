@@ -262,6 +262,26 @@ class Tool(Pipes):
         self.shell("hc camera %s | hc view --save all/ --count 2" % images)
         self.assertEqual(len(os.listdir(self.path("all"))), 2)
 
+    def test_view_saves_in_the_place_of_no_recording(self):
+        image = "hc camera %s/aloeL.jpg --count 1 --width 8 --height 6 | " % DATA
+        self.shell("hc send 1 > kept.mtp")
+        self.shell(image + "hc view --save kept.mtp", 1)
+        self.assertIn("save: kept.mtp is neither a .png nor a folder/", self.err)
+        self.shell(image + "hc view kept.mtp", 2)
+        self.assertIn('one argument too many: "kept.mtp"', self.err)
+        self.assertRegex(self.shell("hc cat kept.mtp"), "^table ")
+
+    def test_a_stream_of_a_folder_has_the_rate_of_its_own_time(self):
+        os.mkdir(self.path("both"))
+        for name, count, period in (("fast", 21, 50), ("long", 3, 2000)):  # [ms]
+            with open(self.path("both/%s.mtp" % name), "w", encoding="ascii") as file:
+                for i in range(count):
+                    time = 10**18 + i * period * 10**6
+                    file.write("1 1 0 %d 8 %d 120190 0 0 1 1\n%d\n" % (i, time, i))
+        out = self.shell("hc info both")
+        self.assertRegex(out, r"\nfast +21 +20 Hz ")
+        self.assertRegex(out, r"\nlong +3 +0\.5 Hz ")
+
     def test_record_and_play_give_the_same_bytes(self):
         self.record()
         self.shell("hc play --speed max r.mtp | hc record copy.mtp")

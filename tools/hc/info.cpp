@@ -73,15 +73,24 @@ void print_senders(const std::map<std::int32_t, Sender>& senders) {
   print(text);
 }
 
-/// Prints the streams of a recording, and other topics.
+/// The rate of a stream over its own time, or at least so much where only that of all streams is
+/// known.
+std::string rate_of(const hc::record::StreamInfo& stream, double seconds) {
+  const auto count = static_cast<double>(stream.messages);
+  const double own = hc::seconds(stream.end - stream.begin);
+  if (stream.begin != hc::Time()) return own > 0 ? hc::format("{:.3g} Hz", (count - 1) / own) : "-";
+  return seconds > 0 ? hc::format("≥ {:.3g} Hz", count / seconds) : "-";
+}
+
+/// Prints the streams of a recording, and other topics. @param seconds  from the first message to
+/// the last
 void print_streams(const std::vector<hc::record::StreamInfo>& streams, double seconds,
                    const std::string& size) {
   std::string text = hc::format("{:<32} {:>9} {:>8}  {}\n", "stream", "messages", "rate", "type");
   std::uint64_t messages = 0;
   for (const auto& each : streams) {
-    const auto count = static_cast<double>(each.messages);
-    text += hc::format("{:<32} {:>9} {:>8}  {}\n", each.name, each.messages,
-                       seconds > 0 ? hc::format("{:.3g} Hz", count / seconds) : "-", each.type);
+    text += hc::format("{:<32} {:>9} {:>8}  {}\n", each.name, each.messages, rate_of(each, seconds),
+                       each.type);
     messages += each.messages;
   }
   print(text + hc::format("{}, {}, {:.3f} s\n", counted(messages, "message"), size, seconds));
