@@ -194,6 +194,10 @@ class Focus(Graphs):
                 to + " (obeys the task in focus only|decides on the focus)",
             )
         self.assertIn(
+            "hc graph link tcp-listen:PORT workspace.stop makes one",
+            self.hc("send 1 --to workspace.stop" + of, 2),
+        )
+        self.assertIn(
             "direct.in leads to actor.command", self.hc("send 0 0 0 --to direct.in" + of, 2)
         )
         for to in ("task.in", "before.in"):

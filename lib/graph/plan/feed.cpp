@@ -60,7 +60,9 @@ Status check_feed(const Plan& plan, const std::string& input) {
     return refuse("cannot be sent to: its program does not support unix-listen");
   const bool is_focus = find_input(*description, port) == &focus_input();
   if (is_focus || plan.workspaces.contains(name))
-    return refuse("decides on the focus: only the links of the graph lead there");
+    return refuse(
+        std::string("decides on the focus: only the links of the graph lead there") +
+        (port == "stop" ? "; hc graph link tcp-listen:PORT " + input + " makes one" : ""));
   if (is_actor(*module, port) || module->exclusive.contains(port))
     return refuse("obeys the task in focus only: send to an input of a task");
   if (const auto actor = actor_behind(plan, *module); !actor.empty())
