@@ -46,7 +46,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
 endif()
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # It is about headers, for which a .cpp of a unity build is taken.
-  target_compile_options(hc_flags INTERFACE -Wno-subobject-linkage)
+  target_compile_options(hc_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
 endif()
 if(HC_WERROR)
   target_compile_options(hc_flags INTERFACE -Werror)

@@ -89,8 +89,9 @@ TEST_F(DefaultHead, a_pose_that_waits_in_the_input_is_waited_for) {
   Module module{"test", "A test.", {.clock = &clock_}};
   ModuleFrames frames{module};
   const auto feed = [&](std::int64_t ms) {
-    ASSERT_TRUE(frames.feed("robot", "head", kStart + ms * 1ms,
-                            Eigen::Isometry3d(frames::rotation(0, 0, 0.001 * ms))));
+    ASSERT_TRUE(
+        frames.feed("robot", "head", kStart + ms * 1ms,
+                    Eigen::Isometry3d(frames::rotation(0, 0, 0.001 * static_cast<double>(ms)))));
   };
   feed(0);
   pass(150);

@@ -21,7 +21,7 @@ struct PortDescription {
   /// Of an input: default of `keep` for its links; 0: no preference.
   std::uint32_t keep = 0;
   /// Of an output: names of the numbers in a row, with their units; empty: none.
-  std::vector<std::string> columns;
+  std::vector<std::string> columns{};
 };
 
 struct Description {

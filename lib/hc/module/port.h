@@ -44,7 +44,7 @@ struct OutputOptions {
   /// a slow reader so many of the newest wait. For a module that has other work to do in time.
   std::uint32_t keep = 0;
   /// Names of the numbers in a row, with their units: "age [s]". The next numbers repeat them.
-  std::vector<std::string> columns;
+  std::vector<std::string> columns{};
 };
 
 namespace internal {
