@@ -35,9 +35,11 @@ class Stopped(BaseException):
 
 
 def other_python() -> str:
-    """The error if the package was built for another version of Python."""
+    """The error if the package was not built, or for another version of Python."""
     folder = pathlib.Path(__file__).parent
-    built = ", ".join(sorted(path.name for path in folder.glob("_hypercolumn.*.so"))) or "nothing"
+    built = ", ".join(sorted(path.name for path in folder.glob("_hypercolumn.*.so")))
+    if not built:
+        return "the Python package in %s is not built: build it with ./dev build" % folder
     return (
         "hypercolumn was built for another Python than %s (%d.%d): %s has %s; start the program with "
         "that Python, or build with cmake -D Python_EXECUTABLE=%s"

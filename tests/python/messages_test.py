@@ -81,8 +81,10 @@ class Fields(Package):
             self.path("hypercolumn"),
             ignore=shutil.ignore_patterns("*.so", "__pycache__"),
         )
-        self.write("hypercolumn/_hypercolumn.cpython-30-x86_64-linux-gnu.so", "")
         self.environment["PYTHONPATH"] = self.path("")
+        self.shell("python3 -c 'import hypercolumn'", 1)
+        self.assertIn("/hypercolumn is not built: build it with ./dev build", self.err)
+        self.write("hypercolumn/_hypercolumn.cpython-30-x86_64-linux-gnu.so", "")
         self.shell("python3 -c 'import hypercolumn'", 1)
         said = self.err.splitlines()[-1]
         self.assertIn("ImportError: hypercolumn was built for another Python than /", said)
