@@ -73,17 +73,17 @@ void print_senders(const std::map<std::int32_t, Sender>& senders) {
   print(text);
 }
 
-/// The rate of a stream over its own time, or at least so much where only that of all streams is
-/// known.
+/// The rate of a stream over its own time; at least that over all streams' time, where only this is
+/// known. @param seconds  of all streams
 std::string rate_of(const hc::record::StreamInfo& stream, double seconds) {
-  const auto count = static_cast<double>(stream.messages);
-  const double own = hc::seconds(stream.end - stream.begin);
-  if (stream.begin != hc::Time()) return own > 0 ? hc::format("{:.3g} Hz", (count - 1) / own) : "-";
-  return seconds > 0 ? hc::format("≥ {:.3g} Hz", count / seconds) : "-";
+  const bool has_times = stream.begin != hc::Time();
+  const double time = has_times ? hc::seconds(stream.end - stream.begin) : seconds;
+  if (time <= 0 || stream.messages < 2) return "-";
+  const double rate = static_cast<double>(stream.messages - 1) / time;
+  return hc::format("{}{:.3g} Hz", has_times ? "" : ">=", rate);
 }
 
-/// Prints the streams of a recording, and other topics. @param seconds  from the first message to
-/// the last
+/// Prints the streams of a recording, and other topics. @param seconds  of all streams
 void print_streams(const std::vector<hc::record::StreamInfo>& streams, double seconds,
                    const std::string& size) {
   std::string text = hc::format("{:<32} {:>9} {:>8}  {}\n", "stream", "messages", "rate", "type");

@@ -42,7 +42,7 @@ test("a stream that is still being shown goes to the newest time afterwards", as
   assert.deepEqual(shown, [100, 102]);
 });
 
-test("a time before the first message of a stream is told", async () => {
+test("before its first message a stream says so", async () => {
   const player = new Player([track("a.b", [105]), track("a.c", [100])]);
   const { source, shown, next, release } = shownOf(player, "a.b");
   const problems: string[] = [];
