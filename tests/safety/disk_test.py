@@ -9,7 +9,8 @@ import subprocess
 import time
 import unittest
 
-from head import SMALL, Head, Rows
+from table import Rows  # which knows the way to the others
+from head import SMALL, Head
 from namespaces import UNSHARE
 
 DISKS = {"folder": 4, "file.mcap": 1}  # of their own, each full within some seconds [MB]

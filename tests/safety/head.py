@@ -1,32 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The whole simulated head while it runs: its modules, the seat of its page, its neck, and the rows
-of the table that are tried on it.
+"""The whole simulated head while it runs: its modules, the seat of its page, its neck.
 
     hung_test.py BUILD_FOLDER [TEST …], and so the others; HC_FULL=1: as long as the table says
 """
 
 import contextlib
-import json
 import os
 import pathlib
 import re
 import signal
-import socket
 import sys
-import threading
 import time
-import unittest
 
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests/pipes"))
 
+from driver import PageSocket, Seat, seat_bid, seat_stick  # noqa: E402
 from feeder import Feeder, Source  # noqa: E402
-from graphs import Messages  # noqa: E402
-from harness import BUILD, end_when_hung, wait_until  # noqa: E402
-from page import Page, message as message_of, number  # noqa: E402
-from rows import Row, rows  # noqa: E402
-from streams import Focus, Line, Motion, Stream, run_delay, rotation, stick  # noqa: E402
-from web_socket import BINARY, CLOSE, WebSocket, get  # noqa: E402
+from harness import wait_until  # noqa: E402
+from page import Page  # noqa: E402
+from streams import Focus, Line, Motion, Stream, run_delay, rotation  # noqa: E402
+from web_socket import get  # noqa: E402
 
 IS_FULL = os.environ.get("HC_FULL") == "1"
 HEAD = ROOT / "graphs/head.toml"
@@ -56,70 +50,6 @@ def new_name():
     """For a socket of the test: of the abstract namespace, of nobody else."""
     new_name.count = getattr(new_name, "count", 0) + 1
     return "safety.%d.%d" % (os.getpid(), new_name.count)
-
-
-class PageSocket:
-    """The page's /graph: keeps the session, and hands out answers."""
-
-    def __init__(self, port, cookie):
-        self.socket = WebSocket(port, "/graph", cookie)
-        self.session, self.answers, self.orders = {}, {}, 0
-        self.thread = threading.Thread(target=self.read, daemon=True)
-        self.thread.start()
-
-    def read(self):
-        with contextlib.suppress(OSError, ValueError):
-            while (frame := self.socket.next())[0] != CLOSE:
-                if frame[0] == BINARY:
-                    header, elements = message_of(frame[1])
-                    if header[1] == 3:
-                        self.session = json.loads(elements)
-                    elif header[1] == 4:
-                        self.answers[header[3]] = elements.decode()
-
-    def order(self, text):
-        """Gives a command; its number."""
-        self.socket.send(text)
-        self.orders += 1
-        return self.orders - 1
-
-    def ask(self, text):
-        number = self.order(text)
-        return wait_until(lambda: self.answers.get(number))
-
-    def end(self):
-        """Ends the reading thread before it closes the socket: the next socket gets the same
-        descriptor number, and a thread that waits for that keeps its name taken."""
-        with contextlib.suppress(OSError):  # the server has closed
-            self.socket.connection.shutdown(socket.SHUT_RDWR)
-        self.thread.join()
-        self.socket.close()
-
-
-class Seat:
-    """Who drives in the page: says each 20 ms what `says` gives, messages by the time [s]."""
-
-    def __init__(self, port, cookie, says):
-        self.socket = WebSocket(port, "/drive?take=1", cookie)
-        self.socket.connection.settimeout(1)
-        self.says = says
-        self.feeder = Feeder(self.say)
-
-    def say(self, now):
-        for data in self.says(now):
-            self.socket.send_frame(BINARY, data)
-
-    def send(self, data):
-        self.socket.send_frame(BINARY, data)
-
-    def was_silent(self):
-        """For almost as long as its server waits until the seat is left, or longer."""
-        return max(self.feeder.pauses, default=0) > 0.15
-
-    def leave(self):
-        self.feeder.end()
-        with contextlib.suppress(OSError):
-            self.socket.close()
 
 
 class Head(Page):
@@ -462,69 +392,3 @@ class Waits:
         """From the begin until a moment [ns]. [s]"""
         later = [total for at, total in self.samples if at >= moment] + [self.samples[-1][1]]
         return max(0, later[0] - self.samples[0][1]) / 1e9
-
-
-def seat_bid(salience, mode):
-    return number(5, salience, mode)
-
-
-def seat_stick(left, down=0.0):
-    return stick(left, down, src=1, stamp=0)
-
-
-class Rows(unittest.TestCase):
-    """Rows of the table, a test each, on what is `head` meanwhile."""
-
-    def setUp(self):
-        end_when_hung(self)
-        self.row, self.broken = Row(self._testMethodName.removeprefix("test_"), BUILD), []
-        self.begun = time.monotonic()
-
-    def tearDown(self):
-        self.row.keep()
-
-    def note(self, limit, value, where="", excused=0):
-        """Takes a measurement; the row fails at its end where it is beyond its limit."""
-        broken = self.row.note(limit, value, where, excused)
-        if broken:
-            self.broken.append("%s, %.1f s after begin" % (broken, time.monotonic() - self.begun))
-
-    def hold(self):
-        """Fails where something was beyond its limit."""
-        print(self.row.row["name"], json.dumps(self.row.worst), flush=True)
-        self.assertEqual(self.broken, [])
-
-    def note_ended(self, before, but=(), where=""):
-        """How many modules have ended since restarts() gave `before`."""
-        after = self.head.restarts(but)
-        ended = {n: after[n] - k for n, k in before.items() if n in after and after[n] != k}
-        self.note("ended", sum(ended.values()), "%s %s" % (where, ended or ""))
-
-    def note_halt(self, moment, waits, where=""):
-        """When the head has come to rest, after a moment [ns]."""
-        self.note_time("halts", moment, self.head.motion.rests_at(moment), waits, where)
-
-    def note_time(self, limit, begin, end, waits, where=""):
-        """From one moment to another [ns]. What processes waited for meanwhile is excused."""
-        waited = waits.until(end)
-        where += " beside others who had the processor for %.3f s" % waited
-        self.note(limit, (end - begin) / 1e9, where.strip(), waited)
-
-
-class Safety(Rows):
-    """Rows that are tried on one head, one after the other; it has small images, unless these are
-    tried for as long as the table says."""
-
-    begin = {} if IS_FULL else dict(SMALL, is_calibrated=False)  # arguments of Head.begin()
-
-    @classmethod
-    def setUpClass(cls):
-        cls.head = Head()
-        cls.addClassCleanup(cls.head.doCleanups)
-        cls.head.begin(**cls.begin)
-
-    def setUp(self):
-        if self.head.process.poll() is not None:
-            self.fail("the head has ended: " + self.head.said()[-2000:])
-        self.head.settle()
-        super().setUp()

@@ -9,7 +9,9 @@ import time
 import tomllib
 import unittest
 
-from head import HEAD, IS_FULL, Safety, seat_bid, seat_stick
+from table import Safety  # which knows the way to the others
+from head import HEAD, IS_FULL
+from driver import seat_bid, seat_stick
 from harness import wait_until
 from streams import message, rotation
 from web_socket import BINARY

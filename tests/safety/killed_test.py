@@ -7,7 +7,7 @@ import signal
 import time
 import unittest
 
-from head import Safety
+from table import Safety  # which knows the way to the others
 from streams import run_delay
 
 

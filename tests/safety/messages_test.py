@@ -8,7 +8,7 @@ import time
 import unittest
 
 from bad_messages import CLOSES, bad_messages
-from head import Safety  # which knows the way to the others
+from table import Safety  # which knows the way to the others
 from feeder import Feeder
 from streams import bid, message, rotation, stick
 

@@ -8,7 +8,7 @@ import struct
 import time
 import unittest
 
-from head import Safety  # which knows the way to the others
+from table import Safety  # which knows the way to the others
 from feeder import Feeder
 from streams import bid, message, rotation, stick, stop
 

@@ -6,7 +6,9 @@ import signal
 import time
 import unittest
 
-from head import IS_FULL, Safety, seat_bid, seat_stick  # which knows the way to the others
+from table import Safety  # which knows the way to the others
+from head import IS_FULL
+from driver import seat_bid, seat_stick
 from feeder import Feeder
 from page import ALIVE
 from streams import stick
