@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The robot head's ears and mouth: microphone, speaker, speech."""
 
-import json
 import os
 import pathlib
 import re

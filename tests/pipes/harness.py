@@ -169,3 +169,16 @@ class Pipes(unittest.TestCase):
     def catches_term(pid):
         text = pathlib.Path("/proc/%d/status" % pid).read_text()
         return int(re.search(r"SigCgt:\t([0-9a-f]+)", text)[1], 16) >> (signal.SIGTERM - 1) & 1
+
+    def write_recording(self):
+        """Ten positions, 20 ms apart, of two senders; one lost."""
+        lines = []
+        for i in range(10):
+            lines.append(
+                "1 7 0 %d 8 %d 10390 0 3 1 1\n%d 0 0\n" % (i, 10**18 + i * 20_000_000, i)
+            )
+            if i != 4:
+                lines.append(
+                    "1 8 0 %d 8 %d 120190 0 0 1 1\n%d\n" % (i, 10**18 + i * 20_000_000, i)
+                )
+        self.write("r.mtp", "".join(lines))

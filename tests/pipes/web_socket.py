@@ -4,7 +4,6 @@
 import base64
 import os
 import socket
-import ssl
 import struct
 
 from harness import WATCHDOG

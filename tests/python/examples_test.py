@@ -8,7 +8,7 @@ import unittest
 
 import numpy
 
-from package import BUILD, Package, ROOT, hc
+from package import Package, ROOT, hc
 
 from harness import DATA
 

@@ -8,7 +8,6 @@ import shutil
 import signal
 import sys
 import threading
-import time
 import unittest
 import warnings
 

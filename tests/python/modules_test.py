@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Modules written in Python: how they describe themselves, what they send, how they work."""
 
-import signal
 import subprocess
 import unittest
 

@@ -68,7 +68,6 @@ out.send(sum(held), time=1)
         self.assertEqual(len(self.pull(body, count=40, arguments="--clock messages")), 40)
 
     def test_what_is_wrong_ends_it_with_a_status(self):
-        body = "for message in left: out.send([1, 2, 3])"
         self.pull("for message in left: raise ValueError('no')", 1)
         self.assertIn("ValueError: no", self.err)
         # Bad messages in a file, known at its end: the script goes on, and its status says so.
