@@ -61,10 +61,11 @@ class Brake {
   [[nodiscard]] std::string reason(hc::MonotonicTime now) const;
 
   void set_names(std::map<std::int32_t, std::string> names) { names_ = std::move(names); }
-  /// A source's name, or "source 14".
+  /// A source's name, or "source 14". Programs outside the graph, such as `hc estop`, share src 0.
   [[nodiscard]] std::string name(std::int32_t source) const {
     const auto found = names_.find(source);
-    return found == names_.end() ? "source " + std::to_string(source) : found->second;
+    if (found != names_.end()) return found->second;
+    return source == 0 ? "a program outside the graph" : "source " + std::to_string(source);
   }
 
  private:

@@ -176,6 +176,7 @@ TEST(Brake, sources_are_called_by_their_names) {
   robot.say(kPage, 1);
   EXPECT_EQ(robot.reason(), "stopped by web.stop");
   EXPECT_EQ(robot.brake.name(3), "source 3");
+  EXPECT_EQ(robot.brake.name(0), "a program outside the graph");
 }
 
 TEST(Brake, any_number_of_sources_is_borne_and_none_is_unheard) {

@@ -154,6 +154,9 @@ class Ports(Graphs):
         self.assertEqual(image["kind"], "input")
         self.assertEqual(image["types"][0]["type"], "rgb_image")
         self.assertEqual(len(lines), table.count("\n"))
+        own = self.shell("hc ports brightness --of " + self.name)
+        self.assertRegex(own, r"^brightness.image +in .*\nbrightness.mean +out  table")
+        self.refused("hc ports brightniss --of " + self.name, 'did you mean "brightness"')
         self.assertRegex(self.shell("hc ports brightness"), "^image +in   .*\nmean +out  table")
         self.assertRegex(self.shell("hc ports depth.toml"), r"\ndepth.depth +out  ")
         # Neither /usr/bin/head, nor the graph depth.toml.
@@ -188,15 +191,11 @@ class Focus(Graphs):
     def test_nothing_moves_but_by_a_task(self):
         name, _ = self.run_named("focus", HEAD, "started")
         of = " --of " + name
-        for to in ("actor.command", "workspace.bids", "workspace.stop", "task.focus"):
+        for to in ("actor.command", "workspace.bids", "task.focus"):
             self.assertRegex(
                 self.hc("send 0 0 0 --to " + to + of, 2),
                 to + " (obeys the task in focus only|decides on the focus)",
             )
-        self.assertIn(
-            "hc graph link tcp-listen:PORT workspace.stop makes one",
-            self.hc("send 1 --to workspace.stop" + of, 2),
-        )
         self.assertIn(
             "direct.in leads to actor.command", self.hc("send 0 0 0 --to direct.in" + of, 2)
         )

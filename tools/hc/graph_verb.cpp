@@ -68,12 +68,6 @@ std::vector<hc::ParameterState> parameters_of(const RunningGraph& graph,
   return std::move(description->parameters);
 }
 
-const hc::ModuleState& find_module(const hc::GraphState& state, const std::string& name) {
-  if (const auto* found = hc::find_named(state.modules, name)) return *found;
-  throw Failure(hc::Code::Invalid, hc::format("no module \"{}\"{}", name,
-                                              hc::suggestion(name, hc::names_of(state.modules))));
-}
-
 /// Adds a row for each parameter: its value, and its range and default.
 /// @param what  MODULE, MODULE.PARAMETER, or empty: all.
 void add_parameters(const RunningGraph& graph, const hc::GraphState& state, const std::string& what,
@@ -259,7 +253,7 @@ void add_graph(CLI::App& app) {
   add_change(*verb, options, "unlink", "Remove a link", {from, to}, {}, false, true);
   add_change(*verb, options, "set", "Set parameters, all or none", {},
              {"SETTING", "a parameter and its new value, as MODULE.PARAMETER=VALUE"}, true);
-  add_change(*verb, options, "stop", "Stop the graph", {});
+  add_change(*verb, options, "stop", "End the graph", {});
   auto wanted = std::make_shared<std::vector<std::string>>();
   auto* getter = add_verb(*verb, options, "get", "Print parameters: value, unit, range, default");
   getter->add_option("MODULE[.PARAMETER]", *wanted, "a module or a parameter (default: all)");

@@ -51,6 +51,7 @@ constexpr const char* kOverview =
     "  hc top                       show what the running graph does\n"
     "  hc cat MODULE.PORT           print what a port sends (view: in a window)\n"
     "  hc graph set MODULE.NAME=7   change it while it runs\n"
+    "  hc estop                     stop the robot (hc graph stop: end the graph)\n"
     "  hc MODULE --help             a module's ports and parameters\n\n"
     "All commands: hc --help. Any command: hc COMMAND --help.\n";
 
@@ -100,8 +101,8 @@ std::vector<std::string> module_arguments(const std::string& program,
 /// Words of other programs, and what to write instead.
 std::string meant_command(const std::string& word) {
   for (const auto& [name, hint] :
-       {std::pair("stop", "to stop the running graph: hc graph stop"),
-        {"kill", "to stop the running graph: hc graph stop"},
+       {std::pair("stop", "to stop the robot: hc estop; to end the running graph: hc graph stop"),
+        {"kill", "to end the running graph: hc graph stop"},
         {"start", "to run a graph: hc run"},
         {"list", "hc ps lists the running graphs, hc ports their ports, hc --help all commands"},
         {"ls", "hc ps lists the running graphs, hc ports their ports, hc --help all commands"},
@@ -166,10 +167,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(footer);
   using namespace tool;
-  for (const auto add : {add_run,  add_check,  add_doctor,     add_frames, add_graph,    add_ports,
-                         add_ps,   add_top,    add_page,       add_trace,  add_cat,      add_info,
-                         add_send, add_record, add_play,       add_replay, add_describe, add_new,
-                         add_key,  add_agent,  add_completion, add_manual})
+  for (const auto add : {add_run,   add_check, add_doctor, add_estop,      add_frames, add_graph,
+                         add_ports, add_ps,    add_top,    add_page,       add_trace,  add_cat,
+                         add_info,  add_send,  add_record, add_play,       add_replay, add_describe,
+                         add_new,   add_key,   add_agent,  add_completion, add_manual})
     add(app);
 
   if (argc == 1) {

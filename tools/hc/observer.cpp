@@ -101,6 +101,12 @@ hc::GraphState state_of(const RunningGraph& graph, bool is_measured) {
   return std::move(*state);
 }
 
+const hc::ModuleState& find_module(const hc::GraphState& state, const std::string& name) {
+  if (const auto* found = hc::find_named(state.modules, name)) return *found;
+  throw Failure(hc::Code::Invalid, hc::format("no module \"{}\"{}", name,
+                                              hc::suggestion(name, hc::names_of(state.modules))));
+}
+
 std::vector<std::string> command_graph(const RunningGraph& graph,
                                        const std::vector<std::string>& commands) {
   auto answer = value_or_fail(hc::ask(graph, commands, hc::stop_descriptor()), graph.text());

@@ -44,6 +44,9 @@ class Observer {
 /// @param is_measured  as next_measured().
 hc::GraphState state_of(const RunningGraph& graph, bool is_measured = false);
 
+/// A module of a running graph. Fails if there is none of that name.
+const hc::ModuleState& find_module(const hc::GraphState& state, const std::string& name);
+
 /// Sends commands, a row each, to a graph. Returns its answer; fails if it refuses.
 std::vector<std::string> command_graph(const RunningGraph& graph,
                                        const std::vector<std::string>& commands);

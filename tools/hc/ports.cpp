@@ -29,11 +29,18 @@ struct Described {
   std::string text;
 };
 
-std::vector<Described> describe_running(const std::string& of) {
+/// @param wanted  a module; empty: all.
+std::vector<Described> describe_running(const std::string& of, const std::string& wanted) {
   const auto graph = choose_running(of);
+  const auto state = state_of(graph);
   std::vector<Described> all;
-  for (const auto& module : state_of(graph).modules)
+  auto add = [&](const hc::ModuleState& module) {
     all.push_back({module.name, joined(command_graph(graph, {"describe " + module.name}))});
+  };
+  if (wanted.empty())
+    std::ranges::for_each(state.modules, add);
+  else
+    add(find_module(state, wanted));
   return all;
 }
 
@@ -99,15 +106,16 @@ std::string as_table(const std::vector<Described>& all) {
 void add_ports(CLI::App& app) {
   auto options = std::make_shared<PortsOptions>();
   auto* verb = app.add_subcommand("ports", "List ports with their types");
-  auto* what = verb->add_option("what", options->what,
-                                "a program, a graph file, or the name of a shipped graph (default: "
-                                "the running graph)");
-  add_of(*verb, options->of)->excludes(what);
+  verb->add_option("what", options->what,
+                   "a program, a graph file, or the name of a shipped graph; with --of a module of "
+                   "that graph (default: the running graph)");
+  add_of(*verb, options->of);
   verb->add_flag("--json", options->json,
                  "a line of JSON for each port: as --describe prints it, and its `kind`");
   verb->callback([options] {
+    const bool is_running = options->what.empty() || !options->of.empty();
     const auto all =
-        options->what.empty() ? describe_running(options->of) : describe_word(options->what);
+        is_running ? describe_running(options->of, options->what) : describe_word(options->what);
     print(options->json ? as_lines(all) : as_table(all));
   });
 }

@@ -51,6 +51,7 @@ void add_check(CLI::App& app);
 void add_completion(CLI::App& app);
 void add_describe(CLI::App& app);
 void add_doctor(CLI::App& app);
+void add_estop(CLI::App& app);
 void add_frames(CLI::App& app);
 void add_graph(CLI::App& app);
 void add_info(CLI::App& app);

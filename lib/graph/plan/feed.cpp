@@ -58,11 +58,11 @@ Status check_feed(const Plan& plan, const std::string& input) {
   auto refuse = [&](const std::string& why) { return Error{Code::Invalid, input + " " + why}; };
   if (!description->knows("unix-listen"))
     return refuse("cannot be sent to: its program does not support unix-listen");
+  // A stop moves nothing, and neither does clearing it: the mode that gets the focus does.
+  const bool is_workspace = plan.workspaces.contains(name);
   const bool is_focus = find_input(*description, port) == &focus_input();
-  if (is_focus || plan.workspaces.contains(name))
-    return refuse(
-        std::string("decides on the focus: only the links of the graph lead there") +
-        (port == "stop" ? "; hc graph link tcp-listen:PORT " + input + " makes one" : ""));
+  if (is_focus || (is_workspace && port != "stop"))
+    return refuse("decides on the focus: only the links of the graph lead there");
   if (is_actor(*module, port) || module->exclusive.contains(port))
     return refuse("obeys the task in focus only: send to an input of a task");
   if (const auto actor = actor_behind(plan, *module); !actor.empty())

@@ -238,12 +238,14 @@ void Supervised::decide(int status) {
     timer_ = loop_.call_at(MonotonicClock::now() + decision.delay, [this] { start_again(); });
     return;
   }
-  bool is_given_up = decision.next == Next::GiveUp;
-  callbacks_.event(is_given_up ? Level::Warning : Level::Info,
-                   is_given_up && plan_.restart != Restart::Never
-                       ? words + "; failed permanently" +
-                             (starts_ > 1 ? " after " + std::to_string(starts_) + " starts" : "")
-                       : words);
+  const bool is_given_up = decision.next == Next::GiveUp;
+  auto text = words;
+  if (is_given_up && plan_.restart != Restart::Never) {
+    text += "; failed permanently";
+    if (starts_ > 1) text += " after " + std::to_string(starts_) + " starts";
+    text += "; hc graph restart " + plan_.name + " starts it again";
+  }
+  callbacks_.event(is_given_up ? Level::Warning : Level::Info, text);
   change(is_given_up ? ModuleStatus::GivenUp : ModuleStatus::Ended, is_given_up ? words : "");
   callbacks_.ended();
 }

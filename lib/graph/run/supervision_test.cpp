@@ -119,7 +119,9 @@ TEST_F(Supervision, OneThatEndsAtOnceIsPutOffAndGivenUp) {
   auto report = must(run());
   EXPECT_EQ(count("a: started"), 13);
   EXPECT_EQ(count("a: failed with status 3; restarting"), 4);
-  EXPECT_EQ(lines_.back(), "a: failed with status 3; failed permanently after 13 starts");
+  EXPECT_EQ(lines_.back(),
+            "a: failed with status 3; failed permanently after 13 starts; hc graph restart a "
+            "starts it again");
   EXPECT_EQ(module(report, "a").status, ModuleStatus::GivenUp);
   EXPECT_EQ(module(report, "a").exit, 3);
 }
@@ -127,9 +129,10 @@ TEST_F(Supervision, OneThatEndsAtOnceIsPutOffAndGivenUp) {
 TEST_F(Supervision, BadArgumentsWouldBeBadAgain) {
   add("a", "exit 2");
   must(run());
-  EXPECT_EQ(lines_,
-            (std::vector<std::string>{
-                "a: started", "a: failed with status 2 (bad arguments); failed permanently"}));
+  EXPECT_EQ(lines_, (std::vector<std::string>{
+                        "a: started",
+                        "a: failed with status 2 (bad arguments); failed permanently; "
+                        "hc graph restart a starts it again"}));
 }
 
 TEST_F(Supervision, OneThatSendsNoReportsIsSeenToBeStopped) {

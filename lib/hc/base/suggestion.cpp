@@ -30,16 +30,16 @@ std::size_t distance(std::string_view a, std::string_view b) {
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
   constexpr std::size_t kNear = 3;
-  const std::string* best = nullptr;
   // A third of the letters may differ; leading dashes of an option do not count.
   const std::size_t letters = name.size() - std::min(name.find_first_not_of('-'), name.size());
-  std::size_t beyond = std::min(kNear, (letters + 1) / 3) + 1;
-  for (const auto& word : known)
-    if (std::size_t away = distance(name.substr(0, 64), word); away < beyond) {
-      beyond = away;
-      best = &word;
-    }
-  return best == nullptr ? "" : ", did you mean \"" + *best + "\"?";
+  const std::size_t most = std::min(kNear, (letters + 1) / 3);
+  const std::string ending = "_" + std::string(name);  // behind the prefix of an included graph
+  const auto away = [&](const std::string& word) {
+    return word.ends_with(ending) ? kNear : distance(name.substr(0, 64), word);
+  };
+  const auto best = std::ranges::min_element(known, {}, away);
+  if (best == known.end() || away(*best) > most) return "";
+  return ", did you mean \"" + *best + "\"?";
 }
 
 }  // namespace hc

@@ -8,7 +8,7 @@
 
 namespace hc {
 
-/// ", did you mean "camera"?" if one of `known` is similar to `name`; else empty.
+/// ", did you mean "camera"?" if one of `known` is similar to `name` or has a prefix; else empty.
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 
 }  // namespace hc

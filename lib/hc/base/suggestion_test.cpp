@@ -14,6 +14,15 @@ TEST(Suggestion, IsNearOrNothing) {
   EXPECT_EQ(suggestion("brihtnes", {"brightness"}), ", did you mean \"brightness\"?");
 }
 
+TEST(Suggestion, MayHaveThePrefixOfAnIncludedGraph) {
+  EXPECT_EQ(suggestion("workspace.standings", {"eyes.left", "robot_workspace.standings"}),
+            ", did you mean \"robot_workspace.standings\"?");
+  EXPECT_EQ(suggestion("eyes.left", {"head_eyes.left", "eyes.lift"}),
+            ", did you mean \"eyes.lift\"?");
+  for (const char* name : {"space.focus", "ft", "", "workspace.focus.x"})
+    EXPECT_EQ(suggestion(name, {"robot_workspace.focus", "eye_ft"}), "") << name;
+}
+
 TEST(Suggestion, IsNotAnotherWordOfThatLength) {
   for (const char* name : {"", "x", "foo", "left", "speed"})
     EXPECT_EQ(suggestion(name, {"y", "to", "keep", "min", "depth"}), "") << name;

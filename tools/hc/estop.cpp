@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// hc estop: stops the robot of a running graph, or clears its stops (doc/routing.md).
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include <client/tap.h>
+#include <hc/base/clock.h>
+#include <hc/base/format.h>
+#include <hc/mtp/message.h>
+#include <hc/os/program.h>
+#include <record/writer.h>
+
+#include "common.h"
+#include "observer.h"
+#include "verbs.h"
+
+namespace tool {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::uint8_t kStop = 1, kClear = 2;  // values of the input `stop`
+constexpr milliseconds kConfirmation{2000};    // for the workspace to report it
+constexpr milliseconds kRepetition{500};       // a source that repeats its stop, as a page, has
+
+hc::Message make_stop(std::uint8_t value) {
+  hc::Header header;
+  header.info = {hc::MatrixType::Table, 1, hc::Scalar::U8, hc::Encoding::Binary};
+  header.width = header.height = 1;
+  header.time = hc::SystemClock().wall();
+  hc::Draft draft = hc::Draft::make(header);
+  draft.elements()[0] = std::byte{value};
+  return std::move(draft).finish();
+}
+
+void send_to(const RunningGraph& graph, const std::string& input, const hc::Message& message) {
+  hc::record::Place place{hc::record::Place::Kind::Link, {}, {}, {}};
+  place.uri = value_or_fail(hc::feed_uri(graph, input, hc::stop_descriptor()));
+  auto sink = value_or_fail(hc::record::open_sink(place, link_options()), input);
+  send(*sink, message, input);
+  if (auto closed = sink->close(); !closed) throw Failure(input, closed.error());
+}
+
+/// Sends to all workspaces of a graph, and waits until they report that the robot is stopped, or
+/// that it is not and that no source has stopped it again.
+void estop(const RunningGraph& graph, bool clears) {
+  Observer observer(graph);
+  auto state = observer.next();
+  if (state && state->focus.empty())
+    throw Failure(hc::Code::NotFound, graph.text() + " has no workspace, so nothing to stop");
+  if (state)
+    for (const auto& [workspace, mode] : state->focus)
+      send_to(graph, workspace + ".stop", make_stop(clears ? kClear : kStop));
+  const auto sent = std::chrono::steady_clock::now();
+  for (; state; state = observer.next()) {
+    const auto waited = std::chrono::steady_clock::now() - sent;
+    const bool is_done = clears ? state->stopped.empty() && waited >= kRepetition
+                                : state->stopped.size() == state->focus.size();
+    if (is_done) return say(clears ? "hc estop: cleared" : "hc estop: the robot is stopped");
+    if (waited > kConfirmation)
+      throw Failure(hc::Code::Closed,
+                    clears ? "NOT cleared: a source repeats its stop, as a page does; clear it "
+                             "there, the log names it"
+                           : "stop NOT confirmed: the workspace does not report it");
+  }
+  throw Failure(hc::Code::Closed, graph.text() + " has ended, and its motors with it");
+}
+
+}  // namespace
+
+void add_estop(CLI::App& app) {
+  struct Options {
+    std::string word, of;
+  };
+  auto options = std::make_shared<Options>();
+  auto* verb = app.add_subcommand("estop",
+                                  "Stop the robot, or clear its stops: no mode has the "
+                                  "focus while it is stopped");
+  verb->add_option("clear", options->word, "\"clear\" clears all stops")
+      ->check(CLI::IsMember({"clear"}));
+  add_of(*verb, options->of);
+  verb->callback([options] { estop(choose_running(options->of), !options->word.empty()); });
+}
+
+}  // namespace tool
