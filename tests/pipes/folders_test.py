@@ -12,7 +12,6 @@ from harness import WATCHDOG, wait_until
 from recorded_graph import CAMERA, GRAPH, Recordings
 
 
-
 class Folders(Recordings):
     def test_the_recorder_writes_a_folder_instead(self):
         self.shell(CAMERA + " --count 5 >in.mtp")
