@@ -21,6 +21,10 @@ namespace hc::record {
 /// for viewers, the topic of the MTP channel with the same messages.
 inline constexpr const char *kStreamKey = "hypercolumn.stream", *kCompanionKey = "hypercolumn.mtp";
 
+/// Before a module's name: the metadata in MCAP with what it declares, and the key of that JSON.
+inline constexpr const char* kDescriptionPrefix = "hypercolumn.description.";
+inline constexpr const char* kDescriptionKey = "json";
+
 struct StreamInfo {
   std::string name;  ///< "head_eyes.left"
   std::string type;  ///< of its messages: of ROS 2 in MCAP, else of MTP; may be empty

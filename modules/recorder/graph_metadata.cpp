@@ -4,6 +4,8 @@
 #include <fstream>
 #include <iterator>
 
+#include <record/reader.h>
+
 GraphMetadata::GraphMetadata(hc::GraphClient& graph, hc::record::Writer& writer)
     : graph_(graph), writer_(writer) {
   // A graph that publishes no state has no metadata.
@@ -42,7 +44,8 @@ void GraphMetadata::describe_next() {
   graph_.command({"describe " + name}, [this, name](const auto& answer) {
     if (!answer) return;
     if (answer->is_ok && !answer->rows.empty())
-      record("hypercolumn.description." + name, {{"json", answer->rows.front()}});
+      record(hc::record::kDescriptionPrefix + name,
+             {{hc::record::kDescriptionKey, answer->rows.front()}});
     describe_next();
   });
 }

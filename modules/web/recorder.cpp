@@ -9,9 +9,11 @@
 #include <set>
 #include <utility>
 
+#include <client/graph_client.h>
 #include <hc/base/natural_order.h>
 #include <hc/compress/compress.h>
 #include <hc/contract/description.h>
+#include <record/reader.h>
 
 #include "encoder.h"
 
@@ -25,6 +27,20 @@ constexpr std::string_view kEnding = ".mcap";
 bool is_recording_name(std::string_view name) {
   return !name.empty() && name.size() <= kMaxName &&
          std::ranges::all_of(name, hc::is_of_graph_name);
+}
+
+/// Records what the modules of ports declare, such as the columns of tables; as far as they answer.
+void record_descriptions(hc::record::Writer& writer, const hc::RunningGraph& graph,
+                         const std::vector<std::string>& ports) {
+  std::set<std::string> modules;
+  for (const auto& port : ports) modules.insert(port.substr(0, port.find('.')));
+  for (const auto& module : modules) {
+    const auto answer = hc::ask(graph, {"describe " + module});
+    if (!answer) return;  // the graph has ended, or hangs
+    if (answer->is_ok && !answer->rows.empty())
+      static_cast<void>(writer.metadata(hc::record::kDescriptionPrefix + module,
+                                        {{hc::record::kDescriptionKey, answer->rows.front()}}));
+  }
 }
 
 }  // namespace
@@ -104,6 +120,7 @@ hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& gr
   writer_options.log = options.log;
   auto writer = hc::record::Writer::open(place, writer_options);
   if (!writer) return writer.error();
+  record_descriptions(**writer, graph, ports);
   std::unique_ptr<Recorder> recorder(new Recorder(std::move(*writer), options.log, name, ports));
   for (std::size_t i = 0; i < ports.size(); ++i)
     recorder->taps_.push_back(std::make_unique<hc::Tap>(

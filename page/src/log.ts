@@ -7,12 +7,18 @@ const mostLines = 500;
 export const logPanel: PanelKind = (_args, { server, setTitle }) => {
   setTitle("Log");
   const lines = h("div.log-lines", { role: "log", tabindex: 0, "aria-label": "Log" });
+  let isAtEnd = true;
+  const follow = (): void => {
+    if (isAtEnd) lines.scrollTop = lines.scrollHeight;
+  };
+  lines.onscroll = () => (isAtEnd = lines.scrollTop + lines.clientHeight >= lines.scrollHeight - 4);
+  const resizing = new ResizeObserver(follow); // also when it is shown first
+  resizing.observe(lines);
   const add = (module: string, text: string, level = "info", at?: Date): void => {
-    const atEnd = lines.scrollTop + lines.clientHeight >= lines.scrollHeight - 4;
     const time = at && h("time.muted", at.toLocaleTimeString([], { hour12: false }));
     lines.append(h("div", { class: level }, [time, " ", h("b", module), " ", text]));
     while (lines.childElementCount > mostLines) lines.firstElementChild?.remove();
-    if (atEnd) lines.scrollTop = lines.scrollHeight;
+    follow();
   };
   const ends = [
     // After connecting, the server sends the last lines again.
@@ -20,5 +26,9 @@ export const logPanel: PanelKind = (_args, { server, setTitle }) => {
     server.onLog(({ module, text, level }) => add(module, text, level, new Date())),
   ];
   for (const { module, text, level } of server.log) add(module, text, level);
-  return { element: lines, close: () => ends.forEach((end) => end()) };
+  const close = (): void => {
+    resizing.disconnect();
+    ends.forEach((end) => end());
+  };
+  return { element: lines, close };
 };

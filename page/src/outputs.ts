@@ -38,7 +38,8 @@ async function described(
   return description;
 }
 
-function outputsIn(module: string, description: Description | undefined): Output[] {
+/** The outputs of a module; empty without a description. */
+export function outputsIn(module: string, description: Description | undefined): Output[] {
   return (description?.outputs ?? []).map(({ name, types, doc = "", columns = [] }) => ({
     port: `${module}.${name}`,
     type: types.map(typeText).join(" or "),

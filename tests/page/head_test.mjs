@@ -372,7 +372,7 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     });
     await noFocus();
     assert.ok(await bar.getByRole("button", { name: "Let it move" }).isDisabled());
-    await bar.getByLabel("its way is clear").check();
+    await bar.getByLabel("the robot's way is clear").check();
     await bar.getByRole("button", { name: "Let it move" }).click();
     await bar.waitFor({ state: "hidden" });
     await until("a task has the focus again", () => graph.state().focus.workspace);
@@ -391,7 +391,7 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     await early.goto(`${origin}/#seat`);
     const bar = early.locator(".stopped-bar");
     await bar.waitFor();
-    await bar.getByLabel("its way is clear").check();
+    await bar.getByLabel("the robot's way is clear").check();
     await bar.getByRole("button", { name: "Let it move" }).click();
     await bar.waitFor({ state: "hidden" });
     await early.close();

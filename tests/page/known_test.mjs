@@ -226,7 +226,8 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     await page.locator(".clock", { hasText: `${at} of` }).waitFor();
     await drawn(".replay .picture");
     assertColours(await pixels(".replay .picture", quarters), colours);
-    await page.locator(".replay .series-button", { hasText: "42.5" }).waitFor();
+    // With the name and the unit that its module declares.
+    await page.locator(".replay .series-button", { hasText: /level.*42\.5 m/ }).waitFor();
   });
 
   test("a recording is deleted after a question", async () => {
@@ -308,7 +309,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     await bar.waitFor();
     await viewer.locator(".stop-note").waitFor();
     assert.ok(await viewer.getByRole("button", { name: "Let it move" }).isHidden());
-    await bar.getByLabel("its way is clear").check();
+    await bar.getByLabel("the robot's way is clear").check();
     await bar.getByRole("button", { name: "Let it move" }).click();
     await viewer.locator(".stopped-bar").waitFor({ state: "hidden" });
     await other.close();
@@ -352,7 +353,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
       await bar.waitFor();
       await page.locator(".seat-who", { hasText: "Stopped." }).waitFor();
       assert.deepEqual(await boxes(), before);
-      await bar.getByLabel("its way is clear").check();
+      await bar.getByLabel("the robot's way is clear").check();
       await bar.getByRole("button", { name: "Let it move" }).click();
       await bar.waitFor({ state: "hidden" });
     }
@@ -384,7 +385,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     await alone.locator(".not-stopped").waitFor({ state: "hidden" });
     const bar = alone.locator(".stopped-bar");
     await bar.waitFor();
-    await bar.getByLabel("its way is clear").check();
+    await bar.getByLabel("the robot's way is clear").check();
     await bar.getByRole("button", { name: "Let it move" }).click();
     await bar.waitFor({ state: "hidden" });
     await alone.close();
@@ -395,7 +396,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     const bar = page.locator(".stopped-bar");
     const alarm = page.locator(".not-stopped");
     const clear = async () => {
-      await bar.getByLabel("its way is clear").check();
+      await bar.getByLabel("the robot's way is clear").check();
       await bar.getByRole("button", { name: "Let it move" }).click();
       await bar.waitFor({ state: "hidden" });
     };

@@ -42,14 +42,21 @@ export interface Description {
   readonly parameters: readonly ParameterDescription[];
 }
 
-/** A module's description; undefined if it is unavailable. */
-export async function describe(server: Server, module: string): Promise<Description | undefined> {
+/** Reads a module's description; undefined if it is none. */
+export function parseDescription(json: string): Description | undefined {
   try {
-    const [json] = await server.command(`describe ${module}`);
-    return json === undefined ? undefined : (JSON.parse(json) as Description);
+    const read = JSON.parse(json) as Partial<Description> | null;
+    const lists = [read?.inputs, read?.outputs, read?.parameters];
+    return lists.every(Array.isArray) ? (read as Description) : undefined;
   } catch {
     return undefined;
   }
+}
+
+/** A module's description; undefined if it is unavailable. */
+export async function describe(server: Server, module: string): Promise<Description | undefined> {
+  const [json = ""] = await server.command(`describe ${module}`).catch(() => []);
+  return parseDescription(json);
 }
 
 /** A type as text: "rgb_image of 3 × u8". */

@@ -62,13 +62,15 @@ test("a damaged file ends with a sentence", async () => {
 });
 
 /**
- * A file of MCAP, whose chunks have these messages of a stream `s`, and their companions.
+ * A file of MCAP, whose chunks have these messages of a stream `s.numbers`, and their companions.
  *
  * @param timeOf  log time of a message by its sequence [s].
+ * @param description  of the module `s`.
  */
 function fileOf(
   chunks: ("message" | "companion")[][],
   timeOf = (sequence: number) => 1 + sequence,
+  description = "",
 ): Blob {
   const number = (size: number, value: number) => {
     const bytes = Buffer.alloc(size);
@@ -93,7 +95,7 @@ function fileOf(
   const file = [magic];
   const size = () => file.reduce((sum, part) => sum + part.length, 0);
   const summary = [channel(1, "/s", "hypercolumn.mtp", "/s/mtp")];
-  summary.push(channel(2, "/s/mtp", "hypercolumn.stream", "s"));
+  summary.push(channel(2, "/s/mtp", "hypercolumn.stream", "s.numbers"));
   for (const kinds of chunks) {
     const records: Buffer[] = [];
     const indexes: Buffer[] = [];
@@ -120,6 +122,10 @@ function fileOf(
     const place = [number(16, 0), number(8, at), length, list(), number(8, index.length)];
     summary.push(record(8, ...place, text(""), stored, stored));
   }
+  const name = text("hypercolumn.description.s");
+  const metadata = record(12, name, list(text("json"), text(description)));
+  summary.push(record(13, number(8, size()), number(8, metadata.length), name));
+  file.push(metadata);
   const begin = number(8, size());
   return new Blob([...file, ...summary, record(2, begin, number(12, 0)), magic] as BlobPart[]);
 }
@@ -171,6 +177,21 @@ test("a message is as large as it and its companion, whichever comes first", asy
     openMcap(fileOf([["message", "companion"]])),
   ]);
   assert.equal(track!.usualBytes, other!.usualBytes);
+});
+
+test("a stream has what its module declares of its outputs, where that was recorded", async () => {
+  const described = async (text: string) => {
+    const [track] = await openMcap(fileOf([["companion", "message"]], () => 1, text));
+    return track!.outputs;
+  };
+  const columns = ["mode", "age [s]"];
+  const output = { name: "numbers", types: [], columns };
+  const [declared] = await described(
+    JSON.stringify({ inputs: [], outputs: [output], parameters: [] }),
+  );
+  assert.deepEqual([declared!.port, declared!.columns], ["s.numbers", columns]);
+  for (const text of ["", "{", "null", "[]", '{"outputs":3}'])
+    assert.deepEqual(await described(text), []);
 });
 
 test("a message whose elements are missing says so, and the others are found", async () => {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Streams of messages in an MCAP file (doc/recordings.md, "In the file"; https://mcap.dev/spec).
+import { parseDescription } from "../graph/describe";
 import { elementsOf, parseHeader, type Message } from "../mtp";
+import { outputsIn, type Output } from "../outputs";
+import { moduleOf } from "../server";
 import { Track } from "./track";
 import { expandZstd } from "./zstd";
 
@@ -8,7 +11,8 @@ const magic = Uint8Array.of(0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a);
 const tailBytes = 9 + 20 + magic.length; // the footer's record and the magic
 const mostBytes = 2 ** 30; // of a chunk, expanded
 const mostCompanions = 1000; // searched before and after a message
-const opcodes = { channel: 4, chunkIndex: 8 };
+const opcodes = { channel: 4, chunkIndex: 8, metadataIndex: 13 };
+const descriptionPrefix = "hypercolumn.description."; // of metadata, before the module's name
 
 /** Reads consecutive numbers and texts; throws RangeError beyond the end. */
 class Fields {
@@ -59,6 +63,13 @@ class Fields {
     this.at += size;
     return begin;
   }
+}
+
+/** The texts of a map, by their keys. */
+function wordsIn(map: Fields): Map<string, string> {
+  const words = new Map<string, string>();
+  while (map.left > 0) words.set(map.text(), map.text());
+  return words;
 }
 
 /** A chunk, from the summary. */
@@ -135,11 +146,15 @@ class McapFile {
           "repair it with hc record cut.mcap whole.mcap.",
       );
     const summary = await this.read(summaryAt, footerAt - summaryAt);
+    const channels: Fields[] = [];
+    const outputs = new Map<string, Output[]>();
     while (summary.left > 0) {
       const { opcode, content } = summary.record();
-      if (opcode === opcodes.channel) this.addChannel(content);
+      if (opcode === opcodes.channel) channels.push(content);
       if (opcode === opcodes.chunkIndex) this.addChunk(content);
+      if (opcode === opcodes.metadataIndex) await this.readMetadata(content, outputs);
     }
+    for (const content of channels) this.addChannel(content, outputs);
     this.chunks.sort((a, b) => a.end - b.end);
     for (const [i, chunk] of this.chunks.entries()) {
       this.addMessages(chunk, await this.read(chunk.end, chunk.indexBytes));
@@ -159,16 +174,31 @@ class McapFile {
     return new Fields(new Uint8Array(await this.file.slice(begin, begin + size).arrayBuffer()));
   }
 
-  private addChannel(content: Fields): void {
+  /** Reads what a module has declared, if that is the metadata at this index. */
+  private async readMetadata(index: Fields, outputs: Map<string, Output[]>): Promise<void> {
+    const [begin, size] = [index.u64(), index.u64()];
+    const name = index.text();
+    if (!name.startsWith(descriptionPrefix)) return;
+    const { content } = (await this.read(begin, size)).record();
+    content.text(); // the name again
+    const words = wordsIn(content.list());
+    const module = name.slice(descriptionPrefix.length);
+    outputs.set(module, outputsIn(module, parseDescription(words.get("json") ?? "")));
+  }
+
+  private addChannel(content: Fields, outputs: ReadonlyMap<string, Output[]>): void {
     const id = content.u16();
     content.u16();
     const topic = content.text();
     content.text();
-    const words = new Map<string, string>();
-    for (const list = content.list(); list.left > 0;) words.set(list.text(), list.text());
+    const words = wordsIn(content.list());
     const name = words.get("hypercolumn.stream");
     const [places, companions] = [[] as Place[], this.companionsOf(topic)];
-    const track = new Track(name ?? "", (index) => this.message(topic, places[index]!, companions));
+    const track = new Track(
+      name ?? "",
+      (index) => this.message(topic, places[index]!, companions),
+      outputs.get(moduleOf(name ?? "")),
+    );
     const stream = name === undefined ? undefined : { track, places, companions };
     this.channels.set(id, { stream, companion: words.get("hypercolumn.mtp") });
   }

@@ -81,7 +81,8 @@ class Replay {
       session: host.server.session,
       ready: () => Promise.resolve(),
       open: (port) => player.open(port) ?? missing(port),
-      outputsBeside: () => Promise.resolve([]),
+      outputsBeside: (port) =>
+        Promise.resolve(tracks.find((track) => track.port === port)?.outputs ?? []),
     };
     const play = h("button", {
       class: "primary",

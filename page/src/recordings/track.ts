@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One stream of a recording: the times of its messages, and how to read them.
 import { Reader, readMessage, type Message } from "../mtp";
+import type { Output } from "../outputs";
 
 /** A growing array of numbers. */
 class Column {
@@ -30,6 +31,8 @@ export class Track {
     readonly port: string,
     /** Reads a message. */
     readonly message: (index: number) => Promise<Message>,
+    /** What its module declares of its outputs; empty if that was not recorded. */
+    readonly outputs: readonly Output[] = [],
   ) {}
 
   /** Adds a message. @param bytes  its size. */

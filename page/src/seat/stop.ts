@@ -105,7 +105,7 @@ function stoppedBar(clear: () => void) {
   const clearButton = button("Let it move", clear, { class: "stop-clear", disabled: true });
   confirm.onchange = () => (clearButton.disabled = !confirm.checked);
   const controls = h("span.stop-controls.row", [
-    h("label.row", { for: "stop-confirm" }, [confirm, "its way is clear"]),
+    h("label.row", { for: "stop-confirm" }, [confirm, "the robot's way is clear"]),
     clearButton,
   ]);
   const note = h("span.stop-note", "Clearing this stop needs the right to drive.");

@@ -60,7 +60,9 @@ test("the words for who has the head are those of the workspace", () => {
     "You do not hold the head: the workspace does not answer.",
   );
   assert.equal(text({ decides: false, focus: [] }), "You have the seat.");
-  assert.match(text({ slow: true }), /this page is too slow/);
+  const tooSlow = "This page is too slow to drive: close other tabs.";
+  assert.equal(text({ slow: true, focus: ["track"] }), `${tooSlow} In focus: track.`);
+  assert.equal(text({ slow: true, decides: false }), tooSlow);
 });
 
 test("who does not have the seat reads who does", () => {

@@ -54,7 +54,10 @@ export function whoText(now: Situation): string {
   const has = focus.join(", ") || "no task";
   if (seat === "held") {
     if (session.stopped) return "Stopped. You have the seat.";
-    if (now.slow) return "To drive, this page is too slow: close other tabs.";
+    if (now.slow) {
+      const head = now.decides ? ` In focus: ${has}.` : "";
+      return `This page is too slow to drive: close other tabs.${head}`;
+    }
     if (!now.decides) return "You have the seat.";
     if (!bid) return `The robot decides: ${has}.`;
     if (focus.includes(bid)) return `You hold the head (${bid}).`;

@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
   auto image = module.output("image", hc::rgb_image(), "four colours");
   auto depth = module.output("depth", hc::intensity_image<float>().in(hc::Coord::kDepth),
                              "1.5 m, 3.5 m and unknown");
-  auto number = module.output("number", hc::table(), "42.5");
+  auto number = module.output("number", hc::table(), "42.5", {.columns = {"level [m]"}});
   auto grid = module.output("grid", hc::table(), "1 to 6 in two rows");
   auto text = module.output("text", hc::string(), "a sentence");
   auto sound = module.output("sound", hc::sound(2).in(hc::Coord::kSound16k),
