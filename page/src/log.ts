@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import type { LogLine } from "./server";
 import { h, type PanelKind } from "./shell";
 
 const mostLines = 500;
@@ -14,8 +15,8 @@ export const logPanel: PanelKind = (_args, { server, setTitle }) => {
   lines.onscroll = () => (isAtEnd = lines.scrollTop + lines.clientHeight >= lines.scrollHeight - 4);
   const resizing = new ResizeObserver(follow); // also when it is shown first
   resizing.observe(lines);
-  const add = (module: string, text: string, level = "info", at?: Date): void => {
-    const time = at && h("time.muted", at.toLocaleTimeString([], { hour12: false }));
+  const add = ({ module, text, level, at }: LogLine): void => {
+    const time = h("time.muted", new Date(at).toLocaleTimeString([], { hour12: false }));
     lines.append(h("div", { class: level }, [time, " ", h("b", module), " ", text]));
     while (lines.childElementCount > mostLines) lines.firstElementChild?.remove();
     follow();
@@ -23,9 +24,9 @@ export const logPanel: PanelKind = (_args, { server, setTitle }) => {
   const ends = [
     // After connecting, the server sends the last lines again.
     server.onConnection(({ status }) => status === "open" && lines.replaceChildren()),
-    server.onLog(({ module, text, level }) => add(module, text, level, new Date())),
+    server.onLog(add),
   ];
-  for (const { module, text, level } of server.log) add(module, text, level);
+  server.log.forEach(add);
   const close = (): void => {
     resizing.disconnect();
     ends.forEach((end) => end());

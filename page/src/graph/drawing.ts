@@ -162,6 +162,11 @@ export class Drawing {
     const current = this.items.find(({ key }) => key === this.current) ?? this.items[0];
     if (current) this.moveTo(current);
     if (hadFocus) current?.element.focus({ preventScroll: true });
+    const workspace = this.nodes.find(({ node }) => node.kind === "workspace")?.box;
+    if (workspace) {
+      const { x, y, width, height } = workspace;
+      this.viewport.openAt({ x: x + 0.6 * width, y: y + 0.6 * height });
+    }
     this.viewport.setSize(layout.width, layout.height, this.open.size > 0);
     this.structure = structure;
   }

@@ -11,6 +11,8 @@ export class Viewport {
   private height = 1;
   /** A person has chosen the scale. */
   private isChosen = false;
+  /** The lower right corner of what is in sight when it opens; undefined: it has opened. */
+  private corner?: { x: number; y: number } = { x: 0, y: 0 };
   private readonly resizing: ResizeObserver;
 
   constructor(
@@ -26,6 +28,11 @@ export class Viewport {
 
   close(): void {
     this.resizing.disconnect();
+  }
+
+  /** Chooses a corner of the drawing that is in sight when it opens. */
+  openAt(corner: { x: number; y: number }): void {
+    if (this.corner) this.corner = corner;
   }
 
   /** Size of the drawing [px]. @param keepsScale  whether its scale stays. */
@@ -46,6 +53,10 @@ export class Viewport {
     this.scale = Math.min(scales.most * text, Math.max(scales.least * text, whole));
     this.isChosen = false;
     this.apply();
+    if (!this.corner) return;
+    const { x, y } = this.corner;
+    this.window.scrollTo(x * this.scale - clientWidth, y * this.scale - clientHeight);
+    this.corner = undefined;
   }
 
   /** Zooms about a point of the window [px], by default its centre. */

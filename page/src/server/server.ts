@@ -155,10 +155,13 @@ export class Server {
         this.standings.follow(state);
         return this.states.set(state);
       }
-      case 2:
-        this.logged.push(JSON.parse(rows.join("")) as LogLine);
+      case 2: {
+        const said = JSON.parse(rows.join("")) as Omit<LogLine, "at">;
+        const line = { ...said, at: Number(message.header.time) / 1e6 };
+        this.logged.push(line);
         if (this.logged.length > logLines) this.logged.shift();
-        return this.lines.emit(this.logged[this.logged.length - 1] as LogLine);
+        return this.lines.emit(line);
+      }
       case 3:
         return this.sessions.set(JSON.parse(rows.join("")) as Session);
       case 4: {

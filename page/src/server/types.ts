@@ -67,6 +67,8 @@ export interface LogLine {
   readonly module: string;
   readonly level: "info" | "warning" | "error" | "result";
   readonly text: string;
+  /** When the server got it [ms since 1970]. */
+  readonly at: number;
 }
 
 export interface GraphState {
