@@ -6,8 +6,6 @@ import type { Coding, SlowRange } from "../views/coding";
 import { bitmapOf } from "../views/picture";
 import { DepthEye } from "./depth_eye";
 
-export type Side = "left" | "right";
-
 /** A decoded image. */
 export interface Picture {
   readonly bitmap: ImageBitmap;
@@ -36,15 +34,17 @@ export class Eye {
   private readonly stream: Stream;
   private readonly depth?: DepthEye;
   private closed = false;
-  picture?: Picture;
 
-  /** @param depth  undefined: the stream is of images. */
+  /**
+   * @param depth  undefined: the stream is of images.
+   * @param taken  gets each image, and closes it.
+   */
   constructor(
     server: Server,
     port: string,
     width: number,
     depth: DepthOptions | undefined,
-    private readonly shown: (picture: Picture) => void,
+    private readonly taken: (picture: Picture) => void,
     problem: (text: string) => void,
   ) {
     this.stream = server.stream(port, { as: depth ? "raw" : "jpeg", width });
@@ -62,16 +62,13 @@ export class Eye {
     this.closed = true;
     this.stream.close();
     this.depth?.close();
-    this.picture?.bitmap.close();
-    this.picture = undefined;
   }
 
   private async take({ message, at }: Arrival): Promise<void> {
     const bitmap = await (this.depth ? this.depth.bitmapOf(message) : bitmapOf(message));
     if (!bitmap || this.closed) return bitmap?.close();
     const sensor = sentHeader(this.stream.header ?? "") ?? message.header;
-    this.picture?.bitmap.close();
-    this.picture = {
+    this.taken({
       bitmap,
       time: message.header.time,
       coord: message.header.coord,
@@ -79,7 +76,6 @@ export class Eye {
       height: sensor.height,
       arrived: at,
       decoded: Date.now(),
-    };
-    this.shown(this.picture);
+    });
   }
 }

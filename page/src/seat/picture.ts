@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws the images of two eyes.
-import type { Picture, Side } from "./eye";
+import type { Side } from "../views/pairing";
+import type { Picture } from "./eye";
 import { placesOf, type Place, type Way } from "./places";
 
 export type Pictures = Readonly<Partial<Record<Side, Picture>>>;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The layout of two eyes' images in a canvas, in several ways. Pure.
-import type { Side } from "./eye";
+import type { Side } from "../views/pairing";
 
 export const ways = ["left", "right", "side by side", "red/cyan"] as const;
 export type Way = (typeof ways)[number];

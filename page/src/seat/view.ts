@@ -4,7 +4,8 @@ import { moduleOf, type GraphState, type Server } from "../server";
 import { button, fill, h } from "../shell";
 import { SlowRange } from "../views/coding";
 import { eyePairs, labelsOf, type EyePair } from "../eyes";
-import { Eye, type Picture, type Side } from "./eye";
+import { Pairing, type Side } from "../views/pairing";
+import { Eye, type Picture } from "./eye";
 import type { Latency } from "./latency";
 import { drawPictures, thumbnailOf, type Pictures } from "./picture";
 import { pixelAt, placesOf, sidesOf, wayNames, ways, type Way } from "./places";
@@ -13,6 +14,8 @@ import type { XrView } from "./xr";
 /** Maximum width of requested images [px]. */
 const widest = 1280;
 const waiting = "Waiting for the first image…";
+
+const close = ({ bitmap }: Picture): void => bitmap.close();
 
 export class SeatView {
   readonly canvas = h("canvas.seat-image", { role: "img", "aria-label": "What the robot sees" });
@@ -28,6 +31,9 @@ export class SeatView {
   private module = "";
   readonly element: HTMLElement;
   private readonly eyes = new Map<Side, Eye>();
+  /** What is shown. */
+  private pictures: Pictures = {};
+  private readonly pairing = new Pairing<Picture>(close);
   private pairs: readonly EyePair[] = [];
   private readonly resizing: ResizeObserver;
   private drawing = false;
@@ -51,7 +57,7 @@ export class SeatView {
   close(): void {
     this.resizing.disconnect();
     this.xr?.leave();
-    for (const eye of this.eyes.values()) eye.close();
+    this.shut();
   }
 
   /** Updates the pairs of eyes in the graph. */
@@ -104,7 +110,7 @@ export class SeatView {
    *  undefined outside unprocessed camera images. */
   pixelAt(clientX: number, clientY: number) {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
-    const pictures = this.pictures();
+    const { pictures } = this;
     const image = pictures.left ?? pictures.right;
     if (!image || !this.pair?.raw) return undefined;
     const { canvas } = this;
@@ -128,14 +134,24 @@ export class SeatView {
     return ways.find((way) => way === this.way.value) ?? "left";
   }
 
-  private pictures(): Pictures {
-    return { left: this.eyes.get("left")?.picture, right: this.eyes.get("right")?.picture };
+  /** Closes all streams. */
+  private shut(): void {
+    for (const eye of this.eyes.values()) eye.close();
+    this.eyes.clear();
+    this.pairing.close();
+    this.replace({});
+  }
+
+  private replace(pictures: Pictures): void {
+    const old = this.pictures;
+    this.pictures = pictures;
+    for (const side of ["left", "right"] as const)
+      if (old[side] && old[side] !== pictures[side]) close(old[side]);
   }
 
   /** Opens the streams needed, and closes others. */
   private reopen(): void {
-    for (const eye of this.eyes.values()) eye.close();
-    this.eyes.clear();
+    this.shut();
     this.problem.textContent = "";
     const { pair } = this;
     if (!pair) {
@@ -145,34 +161,47 @@ export class SeatView {
     this.problem.textContent = waiting;
     this.way.disabled = pair.right === undefined;
     const wanted = this.xr ? (["left", "right"] as const) : sidesOf(this.shownWay);
-    const first = wanted[0]!;
     const range = new SlowRange();
     for (const side of wanted) {
       const port = side === "left" ? pair.left : (pair.right ?? pair.left);
       const image = pair.images?.[side === "left" ? 0 : 1];
       const depth = pair.coding && { coding: pair.coding, image, range };
-      const shown = (picture: Picture): void => this.take(side, picture, side === first);
+      const taken = (picture: Picture): void => this.take(side, picture, wanted.length === 1);
       const problem = (text: string): void => {
         this.problem.textContent = text;
       };
-      this.eyes.set(side, new Eye(this.server, port, this.width(), depth, shown, problem));
+      this.eyes.set(side, new Eye(this.server, port, this.width(), depth, taken, problem));
     }
   }
 
-  private take(side: Side, picture: Picture, measured: boolean): void {
+  /** Takes an image of an eye. @param isAlone  The other eye is not shown. */
+  private take(side: Side, picture: Picture, isAlone: boolean): void {
+    if (this.xr) {
+      // A headset shows each eye's image at once, in the direction in which it was taken.
+      this.xr.show(side, picture);
+      this.replace({ ...this.pictures, [side]: picture });
+      if (side === "left") this.show(picture);
+      return;
+    }
+    const pictures = isAlone ? { [side]: picture } : this.pairing.take(side, picture);
+    if (!pictures) return;
+    this.replace(pictures);
+    this.show(picture);
+  }
+
+  /** Draws the pictures, and measures their latency by one of them. */
+  private show(picture: Picture): void {
     if (this.problem.textContent === waiting) this.problem.textContent = "";
-    this.xr?.show(side, picture);
-    const thumbnail = measured ? thumbnailOf(picture.bitmap) : undefined;
-    this.draw(() => {
-      if (!thumbnail) return;
+    const thumbnail = thumbnailOf(picture.bitmap);
+    this.draw(() =>
       this.latency.shown({
         thumbnail,
         sensed: Number(picture.time / 1000n) / 1000,
         arrived: picture.arrived,
         decoded: picture.decoded,
         drawn: Date.now(),
-      });
-    });
+      }),
+    );
   }
 
   /** Draws at the next frame, then calls `drawn`. */
@@ -182,7 +211,7 @@ export class SeatView {
       this.drawing = true;
       requestAnimationFrame(() => {
         this.drawing = false;
-        drawPictures(this.canvas, this.shownWay, this.pictures());
+        drawPictures(this.canvas, this.shownWay, this.pictures);
       });
     }
     requestAnimationFrame(drawn); // after drawing, since it was requested later
@@ -204,6 +233,6 @@ export class SeatView {
     this.canvas.height = h;
     for (const eye of this.eyes.values()) eye.setWidth(this.width());
     // At once, since resizing clears a canvas.
-    drawPictures(this.canvas, this.shownWay, this.pictures());
+    drawPictures(this.canvas, this.shownWay, this.pictures);
   }
 }

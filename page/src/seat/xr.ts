@@ -12,7 +12,8 @@ import {
   SRGBColorSpace,
   WebGLRenderer,
 } from "three";
-import type { Picture, Side } from "./eye";
+import type { Side } from "../views/pairing";
+import type { Picture } from "./eye";
 import { anglesOfHeadset, since, type Angles } from "./orientation";
 
 /** Distance of the images [m]; their size follows from the camera's focal length. */
