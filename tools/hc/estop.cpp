@@ -2,6 +2,7 @@
 // hc estop: stops the robot of a running graph, or clears its stops (doc/routing.md).
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <client/tap.h>
@@ -42,6 +43,32 @@ void send_to(const RunningGraph& graph, const std::string& input, const hc::Mess
   if (auto closed = sink->close(); !closed) throw Failure(input, closed.error());
 }
 
+/// Sends to each workspace, also after another one has failed.
+void send_to_all(const RunningGraph& graph, const hc::GraphState& state,
+                 const hc::Message& message) {
+  std::optional<Failure> failure;
+  for (const auto& [workspace, mode] : state.focus) {
+    try {
+      send_to(graph, workspace + ".stop", message);
+    } catch (const Failure& failed) {
+      failure = failed;
+    }
+  }
+  if (failure) throw *failure;
+}
+
+/// Why a workspace does not report what it was told.
+std::string why_not(const hc::GraphState& state, bool clears) {
+  const std::string what = clears ? "NOT cleared: " : "stop NOT confirmed: ";
+  for (const auto& [workspace, mode] : state.focus)
+    if (state.stopped.contains(workspace) == clears &&
+        find_module(state, workspace).status != hc::ModuleStatus::Running)
+      return what + workspace + " does not run, or hangs";
+  return what + (clears
+                     ? "a source repeats its stop, as a page does; clear it there, the log names it"
+                     : "the workspace does not report it");
+}
+
 /// Sends to all workspaces of a graph, and waits until they report that the robot is stopped, or
 /// that it is not and that no source has stopped it again.
 void estop(const RunningGraph& graph, bool clears) {
@@ -49,22 +76,16 @@ void estop(const RunningGraph& graph, bool clears) {
   auto state = observer.next();
   if (state && state->focus.empty())
     throw Failure(hc::Code::NotFound, graph.text() + " has no workspace, so nothing to stop");
-  if (state)
-    for (const auto& [workspace, mode] : state->focus)
-      send_to(graph, workspace + ".stop", make_stop(clears ? kClear : kStop));
+  if (state) send_to_all(graph, *state, make_stop(clears ? kClear : kStop));
   const auto sent = std::chrono::steady_clock::now();
   for (; state; state = observer.next()) {
     const auto waited = std::chrono::steady_clock::now() - sent;
     const bool is_done = clears ? state->stopped.empty() && waited >= kRepetition
                                 : state->stopped.size() == state->focus.size();
     if (is_done) return say(clears ? "hc estop: cleared" : "hc estop: the robot is stopped");
-    if (waited > kConfirmation)
-      throw Failure(hc::Code::Closed,
-                    clears ? "NOT cleared: a source repeats its stop, as a page does; clear it "
-                             "there, the log names it"
-                           : "stop NOT confirmed: the workspace does not report it");
+    if (waited > kConfirmation) throw Failure(hc::Code::Closed, why_not(*state, clears));
   }
-  throw Failure(hc::Code::Closed, graph.text() + " has ended, and its motors with it");
+  throw Failure(hc::Code::Closed, graph.text() + " has ended");
 }
 
 }  // namespace
