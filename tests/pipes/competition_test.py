@@ -266,6 +266,13 @@ mode = "look"
         self.assertIn("NOT cleared: a source repeats its stop", self.err)
         self.shell(estop + " clear")
         self.shell(estop + " now", 2)
+        # A workspace that hangs.
+        self.shell(estop)
+        workspace = self.module(self.state_of(process, name), "workspace")["pid"]
+        os.kill(workspace, signal.SIGSTOP)
+        self.shell(estop + " clear", 1)
+        self.assertIn("NOT cleared: workspace does not run, or hangs", self.err)
+        os.kill(workspace, signal.SIGCONT)
         self.stop(process)
 
 
