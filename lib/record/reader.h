@@ -21,7 +21,8 @@ namespace hc::record {
 /// for viewers, the topic of the MTP channel with the same messages.
 inline constexpr const char *kStreamKey = "hypercolumn.stream", *kCompanionKey = "hypercolumn.mtp";
 
-/// Before a module's name: the metadata in MCAP with what it declares, and the key of that JSON.
+/// The metadata in MCAP with a module's description: what precedes its name, and the key of the
+/// JSON.
 inline constexpr const char* kDescriptionPrefix = "hypercolumn.description.";
 inline constexpr const char* kDescriptionKey = "json";
 

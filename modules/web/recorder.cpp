@@ -29,7 +29,7 @@ bool is_recording_name(std::string_view name) {
          std::ranges::all_of(name, hc::is_of_graph_name);
 }
 
-/// Records what the modules of ports declare, such as the columns of tables; as far as they answer.
+/// Records the descriptions of the modules of ports, with the columns of tables.
 void record_descriptions(hc::record::Writer& writer, const hc::RunningGraph& graph,
                          const std::vector<std::string>& ports) {
   std::set<std::string> modules;

@@ -23,7 +23,7 @@ using std::chrono::milliseconds;
 
 constexpr std::uint8_t kStop = 1, kClear = 2;  // values of the input `stop`
 constexpr milliseconds kConfirmation{2000};    // for the workspace to report it
-constexpr milliseconds kRepetition{500};       // a source that repeats its stop, as a page, has
+constexpr milliseconds kRepetition{500};       // by then a page has repeated its stop
 
 hc::Message make_stop(std::uint8_t value) {
   hc::Header header;

@@ -11,7 +11,7 @@ export class Viewport {
   private height = 1;
   /** A person has chosen the scale. */
   private isChosen = false;
-  /** The lower right corner of what is in sight when it opens; undefined: it has opened. */
+  /** A corner that is in sight when it opens; undefined: it has opened. */
   private corner?: { x: number; y: number } = { x: 0, y: 0 };
   private readonly resizing: ResizeObserver;
 

@@ -174,7 +174,7 @@ class McapFile {
     return new Fields(new Uint8Array(await this.file.slice(begin, begin + size).arrayBuffer()));
   }
 
-  /** Reads what a module has declared, if that is the metadata at this index. */
+  /** Reads the outputs of a module, if this is the index of its description. */
   private async readMetadata(index: Fields, outputs: Map<string, Output[]>): Promise<void> {
     const [begin, size] = [index.u64(), index.u64()];
     const name = index.text();

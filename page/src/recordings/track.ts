@@ -31,7 +31,7 @@ export class Track {
     readonly port: string,
     /** Reads a message. */
     readonly message: (index: number) => Promise<Message>,
-    /** What its module declares of its outputs; empty if that was not recorded. */
+    /** The outputs of its module; empty without a recorded description. */
     readonly outputs: readonly Output[] = [],
   ) {}
 

@@ -31,7 +31,7 @@ export class SeatView {
   private module = "";
   readonly element: HTMLElement;
   private readonly eyes = new Map<Side, Eye>();
-  /** What is shown. */
+  /** The images shown. */
   private pictures: Pictures = {};
   private readonly pairing = new Pairing<Picture>(close);
   private pairs: readonly EyePair[] = [];

@@ -7,13 +7,12 @@ interface Timed {
   readonly time: bigint;
 }
 
-/** Items of an eye that wait for the other's. */
+/** Most items of an eye that wait for a partner. */
 const mostKept = 4;
 
 /**
- * What both eyes have seen at one time. Where a slow link drops other times of each, so that many
- * in a row find none of theirs, those are paired that are at most half a period apart, and after
- * even more the nearest ones.
+ * Makes pairs of one time. After `mostKept` items without a partner, as a slow link drops different
+ * times of each eye, items up to half a period apart are a pair; after twice as many, any nearest two.
  */
 export class Pairing<T extends Timed> {
   private readonly waiting: Record<Side, T[]> = { left: [], right: [] };
