@@ -194,8 +194,8 @@ Message image_of(std::uint8_t background, std::uint8_t noise, int ball_at = 0) {
       random = random * 1664525 + 1013904223;
       pixel = static_cast<std::uint8_t>(background + (random >> 24) % (noise + 1U));
     }
-  for (int y = 280; ball_at > 0 && y < 320; ++y)
-    for (int x = ball_at; x < ball_at + 40; ++x) pixels.row(y)[static_cast<std::size_t>(x)] = 255;
+  for (std::size_t y = 280; ball_at > 0 && y < 320; ++y)
+    std::fill_n(pixels.row(y).begin() + ball_at, 40, std::uint8_t{255});
   return std::move(draft).finish();
 }
 

@@ -197,7 +197,7 @@ TEST_F(ByMessages, ATraceSaysWhatIsReadFromTheClock) {
   feed("a", {at(1), at(2), at(3)});
   const auto moment = [](std::int64_t milliseconds) { return at(milliseconds).header.time; };
   module.on_start([&] { log.push_back("start" + now()); });
-  module.on(b, [this](const auto&) {});
+  module.on(b, [](const auto&) {});
   module.every(1h, [&] { log.push_back("timer" + now()); });
   const auto read = [&](std::int64_t at) { return TraceEvent{Read, "", 0, 0, Time(), moment(at)}; };
   const auto began = [&](const char* port, std::int64_t at) {
