@@ -226,8 +226,9 @@ class FileLoader : public GraphLoader {
     return loaded;
   }
 
-  /// Replaces names of programs by paths; a name with a slash is relative to its graph file.
-  /// Modules on an unreachable host cause no further problems.
+  /// Replaces names of programs by absolute paths, which stay the same in a later plan; a name with
+  /// a slash is relative to its graph file. Modules on an unreachable host cause no further
+  /// problems.
   void find_programs(Graph& graph, const HostAnswers& remote, Problems& problems, int stop) const {
     for (auto& module : graph.modules) {
       auto& [program, place] = module.program;
@@ -240,7 +241,9 @@ class FileLoader : public GraphLoader {
       } else if (host.empty() || options_.programs_here) {
         std::string name = given;
         if (name.find('/') != std::string::npos && !name.starts_with('/'))
-          name = (fs::path(problems.file(place.file)).parent_path() / name).string();
+          name = fs::absolute(fs::path(problems.file(place.file)).parent_path() / name)
+                     .lexically_normal()
+                     .string();
         const auto path = path_of(given, name, stop);
         if (!path) problems.add(place, path.error().detail);
         program = path.value_or("");

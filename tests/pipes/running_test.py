@@ -93,6 +93,18 @@ class Running(Graphs):
         self.write_graph(GRAPH + "[modules.more]\nprogram = 'brightness'\n")
         self.state(observed, lambda state: self.module(state, "more") and rate(state) == "50")
 
+    def test_programs_beside_the_file_stay_where_they_are(self):
+        os.mkdir(self.path("task"))
+        self.shell("cp %s/libexec/hypercolumn/brightness task/mine" % BUILD)
+        mine = "[modules.mine]\nprogram = './mine'\n"
+        self.write("task/g.toml", "version = 1\n" + GRAPH + mine)
+        name = "beside_%d" % os.getpid()
+        process = self.start("exec hc run task/g.toml --as " + name)
+        self.await_lines(process, "mine: started")
+        for command in ("restart mine", "link camera.left mine.image", "add second task/mine"):
+            self.shell("hc graph %s --of %s" % (command, name))
+        self.stop(process)
+
     FILTER = """#!/bin/bash
 [ "$1" = --describe ] && exec echo '{"inputs":[{"name":"in","types":[]}],
   "outputs":[{"name":"out","types":[]}],

@@ -192,6 +192,8 @@ class Tool(Pipes):
         self.write("depth.toml", "version = 1\n[modules.none]\n")  # the nearer one
         self.shell("hc check mine.toml", 2)
         self.assertIn("depth.toml:2: ", self.err)
+        os.mkdir(self.path("head"))  # as ./dev run makes it
+        self.assertIn("no problems found", self.shell("hc check head"))
         self.shell("hc check depht.toml", 1)
         self.assertIn("depht.toml: cannot be read", self.err)
 

@@ -146,9 +146,9 @@ void say(std::string_view lines) {
 
 std::string find_graph(const std::string& name) {
   std::error_code missing;
-  if (name.find('/') != std::string::npos ||
-      fs::status(name, missing).type() != fs::file_type::not_found)
-    return name;
+  const auto type = fs::status(name, missing).type();
+  const bool is_file = type != fs::file_type::not_found && type != fs::file_type::directory;
+  if (name.find('/') != std::string::npos || is_file) return name;
   const fs::path folder = hc::graph_folder();
   for (const char* suffix : {"", ".toml"})
     if (fs::is_regular_file(folder / (name + suffix), missing)) return folder / (name + suffix);

@@ -113,8 +113,8 @@ std::string joined(const std::vector<std::string>& words, std::string_view betwe
 /// "1 message", "2 messages"
 std::string counted(std::uint64_t number, std::string_view what);
 
-/// The path of a graph file: `name` if that file exists, or a shipped graph of that name, with or
-/// without ".toml".
+/// The path of a graph file: `name` if that file exists (not a folder), or a shipped graph of that
+/// name, with or without ".toml".
 std::string find_graph(const std::string& name);
 /// The names of the shipped graphs, without ".toml".
 std::vector<std::string> shipped_graphs();

@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 
 #include <hc/base/format.h>
@@ -192,6 +193,14 @@ CLI::App* add_verb(CLI::App& verb, GraphOptions& options, const std::string& nam
   return added;
 }
 
+/// A program's path, which here is relative to the present folder, and in a graph file to its own.
+/// @param module  MODULE or MODULE@HOST, where the path is the host's.
+std::string program_path(const std::string& module, const std::string& program) {
+  const bool is_path = program.find('/') != std::string::npos;
+  if (!is_path || module.find('@') != std::string::npos) return program;
+  return std::filesystem::absolute(program).lexically_normal().string();
+}
+
 /// Adds a verb that sends its words to the running graph: as one command or, with `is_each`, as a
 /// command for each of `more_words`, of which all or none are executed.
 /// @param more_words  any number of further words; without a name: none.
@@ -209,6 +218,7 @@ void add_change(CLI::App& verb, GraphOptions& options, const std::string& name,
   added->callback([&options, name, given, more, is_each, is_link] {
     for (auto& word : *given)
       if (is_link) word = link_end(word);
+    if (name == "add") (*given)[1] = program_path((*given)[0], (*given)[1]);
     std::vector<std::string> commands;
     for (const auto& word : *more)
       if (is_each) commands.push_back(name + " " + word);
