@@ -6,7 +6,6 @@ import os
 import re
 import signal
 import socket
-import threading
 import unittest
 
 from graphs import Graphs
@@ -233,46 +232,6 @@ mode = "look"
         self.assertEqual((state["stopped"], state["focus"]["workspace"]), (["workspace"], None))
         say(2)
         self.assertEqual(wait_focus(self.LOOK)["stopped"], [])
-        self.stop(process)
-
-    def test_the_shell_stops_the_robot(self):
-        name = "estop_%d" % os.getpid()
-        self.write_graph(self.GRAPH)
-        process = self.start("exec hc run g.toml --as %s 2>errors" % name)
-        wait_until(lambda: "workspace: focus: look" in self.read("errors"))
-        estop = "hc estop --of " + name
-        for _ in range(2):
-            self.shell(estop)
-            self.assertEqual(self.err, "hc estop: the robot is stopped\n")
-            self.assertIn(", stopped", self.shell("hc ps"))
-        self.assertIn("stopped by a program outside the graph", self.read("errors"))
-        self.shell(estop + " clear")
-        self.assertEqual(self.err, "hc estop: cleared\n")
-        self.assertNotIn(", stopped", self.shell("hc ps"))
-        # A source that repeats its stop, as a page.
-        with socket.socket(socket.AF_UNIX) as link:
-            link.connect(self.path("stop"))
-            is_done = threading.Event()
-
-            def repeat():
-                while not is_done.wait(0.05):
-                    link.sendall(b"1 12 0 0 8 0 120100 0 0 1 1\n1\n")
-
-            repeating = threading.Thread(target=repeat)
-            repeating.start()
-            self.shell(estop + " clear", 1)
-            is_done.set()
-            repeating.join()
-        self.assertIn("NOT cleared: a source repeats its stop", self.err)
-        self.shell(estop + " clear")
-        self.shell(estop + " now", 2)
-        # A workspace that hangs.
-        self.shell(estop)
-        workspace = self.module(self.state_of(process, name), "workspace")["pid"]
-        os.kill(workspace, signal.SIGSTOP)
-        self.shell(estop + " clear", 1)
-        self.assertIn("NOT cleared: workspace does not run, or hangs", self.err)
-        os.kill(workspace, signal.SIGCONT)
         self.stop(process)
 
 

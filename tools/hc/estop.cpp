@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc estop: stops the robot of a running graph, or clears its stops (doc/routing.md).
 #include <chrono>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <client/tap.h>
 #include <hc/base/clock.h>
-#include <hc/base/format.h>
 #include <hc/mtp/message.h>
 #include <hc/os/program.h>
 #include <record/writer.h>
@@ -70,22 +71,42 @@ std::string why_not(const hc::GraphState& state, bool clears) {
 }
 
 /// Sends to all workspaces of a graph, and waits until they report that the robot is stopped, or
-/// that it is not and that no source has stopped it again.
-void estop(const RunningGraph& graph, bool clears) {
+/// that it is not and that no source has stopped it again. False: the graph has no workspace.
+bool estop(const RunningGraph& graph, bool clears) {
   Observer observer(graph);
   auto state = observer.next();
-  if (state && state->focus.empty())
-    throw Failure(hc::Code::NotFound, graph.text() + " has no workspace, so nothing to stop");
+  if (state && state->focus.empty()) return false;
   if (state) send_to_all(graph, *state, make_stop(clears ? kClear : kStop));
   const auto sent = std::chrono::steady_clock::now();
   for (; state; state = observer.next()) {
     const auto waited = std::chrono::steady_clock::now() - sent;
     const bool is_done = clears ? state->stopped.empty() && waited >= kRepetition
                                 : state->stopped.size() == state->focus.size();
-    if (is_done) return say(clears ? "hc estop: cleared" : "hc estop: the robot is stopped");
+    if (is_done) {
+      say("hc estop: " + graph.text() + (clears ? " may move" : " is stopped"));
+      return true;
+    }
     if (waited > kConfirmation) throw Failure(hc::Code::Closed, why_not(*state, clears));
   }
   throw Failure(hc::Code::Closed, graph.text() + " has ended");
+}
+
+/// Stops the robots of all graphs, at once, since one that hangs must not delay the others.
+void stop_all() {
+  std::vector<std::future<bool>> stops;
+  for (const auto& graph : find_running())
+    stops.push_back(std::async(std::launch::async, estop, graph, false));
+  bool is_any = false;
+  std::optional<Failure> failure;
+  for (auto& stop : stops) {
+    try {
+      is_any = stop.get() || is_any;
+    } catch (const Failure& failed) {
+      failure = failed;
+    }
+  }
+  if (failure) throw *failure;
+  if (!is_any) throw Failure(hc::Code::NotFound, "no graph with a workspace is running here");
 }
 
 }  // namespace
@@ -95,13 +116,18 @@ void add_estop(CLI::App& app) {
     std::string word, of;
   };
   auto options = std::make_shared<Options>();
-  auto* verb = app.add_subcommand("estop",
-                                  "Stop the robot, or clear its stops: no mode has the "
-                                  "focus while it is stopped");
-  verb->add_option("clear", options->word, "\"clear\" clears all stops")
+  auto* verb = app.add_subcommand(
+      "estop", "Stop the robots of all graphs, or of one; estop clear lets one move again");
+  verb->add_option("clear", options->word, "\"clear\" clears all stops of a graph")
       ->check(CLI::IsMember({"clear"}));
   add_of(*verb, options->of);
-  verb->callback([options] { estop(choose_running(options->of), !options->word.empty()); });
+  verb->callback([options] {
+    const bool clears = !options->word.empty();
+    if (!clears && options->of.empty()) return stop_all();
+    const auto graph = choose_running(options->of);
+    if (!estop(graph, clears))
+      throw Failure(hc::Code::NotFound, graph.text() + " has no workspace, so nothing to stop");
+  });
 }
 
 }  // namespace tool
