@@ -153,6 +153,15 @@ void check_bids(Planning& planning) {
   for (const auto& link : graph.links)
     if (planning.plan.workspaces.contains(link.to.module) || planning.is_router(link.to.module))
       back[link.to.module].insert(link.from.module);
+  for (const auto& link : graph.links) {
+    const auto* from = find_named(graph.modules, link.from.module);
+    if (from == nullptr || from->mode || link.to.port != "bids") continue;
+    if (planning.plan.workspaces.contains(link.to.module) && !planning.is_router(from->name))
+      planning.problems.warn(link.place,
+                             "module " + from->name +
+                                 " bids without a mode, which is refused: add mode = \"NAME\", "
+                                 "unless its messages have one");
+  }
   const auto bidding = reach(back, planning.plan.workspaces);  // workspaces and senders to them
   if (bidding.contains("")) return;                            // bids from outside are not known
   for (const auto& mode : graph.modes) {

@@ -86,6 +86,17 @@ TEST(Modes, TheFocusIsLinkedToWhoFollowsIt) {
   EXPECT_EQ(own.links.size(), 6U);
 }
 
+TEST(Modes, ABidderWithoutAModeIsWarnedOf) {
+  EXPECT_TRUE(must(plan(kModes + kBid)).warnings.empty());
+  const auto other = "[modules.other]\nprogram = \"task\"\n";
+  const auto planned = must(plan(kModes + kBid + other + link_text("other.bid", "workspace.bids")));
+  ASSERT_EQ(planned.warnings.size(), 1U);
+  EXPECT_TRUE(planned.warnings[0].ends_with(
+      ": module other bids without a mode, which is refused: add mode = \"NAME\", unless its "
+      "messages have one"))
+      << planned.warnings[0];
+}
+
 TEST(Modes, ErrorsNameTheLineAndWhatWouldBeRight) {
   EXPECT_EQ(wrong("[modules.task]\nmode = \"trak\"\n[modes]\ntrack = 1\n[modules.other]\n"
                   "program = \"task\"\nmode = \"track\"\n"),
