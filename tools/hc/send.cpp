@@ -234,9 +234,11 @@ void add_send(CLI::App& app) {
   verb->add_option("--text", options->text, "send this as a string");
   verb->add_option("--image", options->image, "send an image file");
   verb->add_option("--npy", options->npy, "send a NumPy array");
-  verb->add_option("--type", options->type, "matrix type of the numbers or the array")
-      ->capture_default_str();
-  verb->add_option("--scalar", options->scalar, "scalar of the numbers")->capture_default_str();
+  verb->add_option(
+      "--type", options->type,
+      "matrix type of the numbers or the array (default: of the input of --to, else table)");
+  verb->add_option("--scalar", options->scalar,
+                   "scalar of the numbers (default: as above, else f64)");
   verb->add_option("--components", options->components, "numbers in an element")
       ->check(CLI::Range(1, 99));
   verb->add_option("--width", options->width, "elements in a row (default: all)");
