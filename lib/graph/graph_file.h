@@ -53,7 +53,7 @@ struct GraphModule {
   std::string name;            ///< snake_case
   Lined<std::string> program;  ///< a module's name, or a path
   Lined<std::string> host;     ///< empty: the host of `hc run`
-  std::string group;           ///< the NAME of its [graphs.NAME]
+  std::string group;           ///< the NAME of its [graphs.NAME], within another: OTHER_NAME
   std::string prefix;          ///< added to its name by inclusion, such as "head_"
   std::map<std::string, Lined<std::string>> parameters;  ///< as text, as on a command line
   std::map<std::string, Lined<std::int64_t>> addresses;  ///< of ports

@@ -11,6 +11,7 @@ export interface EyePair {
   readonly right?: string;
   /** Unprocessed camera images, whose pixels can be selected as targets. */
   readonly raw: boolean;
+  readonly rectified?: boolean;
   /** With virtual objects. */
   readonly augmented: boolean;
   /** Of a pair of depths: how they are shown, and what was matched. */
@@ -28,8 +29,10 @@ export function labelsOf(pairs: readonly EyePair[]): Map<string, string> {
   return labels;
 }
 
-function sortOf({ module, raw, augmented, coding }: EyePair): string {
-  return coding ? "Depth" : augmented ? "Virtual" : raw ? "Camera" : module;
+function sortOf({ module, raw, rectified, augmented, coding }: EyePair): string {
+  if (coding) return "Depth";
+  if (augmented) return "Virtual";
+  return raw ? "Camera" : rectified ? "Rectified" : module;
 }
 
 /** The pairs of depths in a graph, in each coding: in fog if their images are known. */
@@ -57,7 +60,8 @@ export function eyePairs(state: GraphState): EyePair[] {
     const [left, right] = ports.filter((port) => augmented || outputs.has(port));
     if (left === undefined) return [];
     const raw = !ports.some((port) => inputs.has(port));
-    return [{ module: name, left, right, raw, augmented }];
+    const rectified = programName(program) === "rectify";
+    return [{ module: name, left, right, raw, rectified, augmented }];
   });
   const order = (pair: EyePair): number => (pair.raw ? 0 : pair.augmented ? 1 : 2);
   return [...pairs.sort((a, b) => order(a) - order(b)), ...depthPairs(state)];

@@ -26,7 +26,7 @@ Graph with_prefix(Graph graph, const std::string& name) {
   };
   for (auto& module : graph.modules) {
     rename(module.name);
-    module.group = name;
+    module.group = module.group.empty() ? name : prefix + module.group;
     module.prefix = prefix + module.prefix;
     rename(module.workspace);
     for (auto& [port, to] : module.to)

@@ -92,6 +92,9 @@ modules.eye_camera.more_outputs.left = "tcp:2"
             "pair_eye_camera.left tcp:1 all\npair_eye_camera.left pair_eye_any.in 2\n"
             "pair_eye_camera.right pair_eye_any.in all\neye.left pair_eye_any.in all\n"
             "eye.right pair_eye_any.in 3\npair_eye_camera.left tcp:2 all\n");
+  const auto pair = must(plan("[graphs.pair]\nfile = \"pair.toml\"\n", files));
+  ASSERT_EQ(pair.modules.size(), 2U);
+  EXPECT_EQ(pair.modules[0].group, "pair_eye");
   EXPECT_EQ(links_of(plan(R"([modules.eye]
 program = "source"
 [graphs.eye_b]

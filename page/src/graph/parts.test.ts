@@ -83,6 +83,25 @@ test("a module that only an included graph's own modules read belongs to one of 
   assert.deepEqual([neck.members, neck.body], [["head_neck", "head_unit"], "head"]);
 });
 
+test("a head within a graph that another one includes has the same parts", () => {
+  const head = stateOfFile("head.toml");
+  const within = (name: string): string => (name === "" ? "robot" : `robot_${name}`);
+  const robot = {
+    ...head,
+    focus: Object.fromEntries(Object.entries(head.focus).map(([name, at]) => [within(name), at])),
+    modules: head.modules.map((module) => ({
+      ...module,
+      name: within(module.name),
+      group: within(module.group),
+      workspace: module.workspace && within(module.workspace),
+    })),
+    links: head.links.map((link) => ({ ...link, from: within(link.from), to: within(link.to) })),
+  };
+  const labels = (state: GraphState) =>
+    partsOf(state).map(({ label, members }) => [label, members.length]);
+  assert.deepEqual(labels(robot), labels(head));
+});
+
 test("a long run is one part between its ends", () => {
   assert.deepEqual(
     partsOf(chain).map(({ label }) => label),
