@@ -40,7 +40,6 @@ class Estop(Graphs):
 
     def test_all_robots_are_stopped(self):
         processes = [self.begin(name) for name in ("one", "two")]
-        self.write_graph("[modules.pulse]\nprogram = \"bidder\"\nmode = \"x\"\n[modes]\nx = 1\n")
         self.shell("hc estop clear", 2)
         self.assertIn("several graphs are running; pass --of NAME", self.err)
         os.kill(processes[0].pid, signal.SIGSTOP)  # does not delay the stop of the other

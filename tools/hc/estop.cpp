@@ -55,7 +55,7 @@ void send_to_all(const RunningGraph& graph, const hc::GraphState& state,
       failure = failed;
     }
   }
-  if (failure) throw *failure;
+  if (failure) throw Failure(*failure);
 }
 
 /// Why a workspace does not report what it was told.
@@ -105,7 +105,7 @@ void stop_all() {
       failure = failed;
     }
   }
-  if (failure) throw *failure;
+  if (failure) throw Failure(*failure);
   if (!is_any) throw Failure(hc::Code::NotFound, "no graph with a workspace is running here");
 }
 

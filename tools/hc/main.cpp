@@ -31,8 +31,8 @@ constexpr int kUsage = 2;
 std::string version() {
   std::string text =
       hc::format("hc {}, commit {}\nfeatures:{}", HC_VERSION, tool::kCommit, HC_FEATURES);
-  if (constexpr std::string_view lacking = HC_LACKING; !lacking.empty())
-    text += hc::format("\nnot built:{}", lacking);
+  constexpr std::string_view kLacking = HC_LACKING;  // NOLINT(*-redundant-string-init): may be ""
+  if (!kLacking.empty()) text += hc::format("\nnot built:{}", kLacking);
   return text;
 }
 
@@ -59,7 +59,7 @@ constexpr const char* kOverview =
 std::string take_of(std::vector<std::string>& arguments) {
   const auto found = std::find(arguments.begin(), arguments.end(), "--of");
   if (found == arguments.end() || found + 1 == arguments.end()) return "";
-  const std::string name = found[1];
+  std::string name = found[1];
   arguments.erase(found, found + 2);
   return name;
 }

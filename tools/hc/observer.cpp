@@ -54,8 +54,8 @@ RunningGraph choose_running(const std::string& wanted) {
     if (near.size() == 1) return near.front();
   }
   if (graphs.size() == 1) return graphs.front();
-  std::vector<std::string> list;
-  for (const auto& graph : graphs) list.push_back(graph.text());
+  std::vector<std::string> list(graphs.size());
+  std::ranges::transform(graphs, list.begin(), [](const auto& graph) { return graph.text(); });
   throw Failure(hc::Code::Invalid, "several graphs are running; pass --of NAME: " + joined(list));
 }
 

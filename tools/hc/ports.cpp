@@ -75,12 +75,13 @@ std::string as_lines(const std::vector<Described>& all) {
   std::string text;
   for (const auto& each : all)
     if (const auto description = hc::parse_description(each.text))
-      each_port(each.module, *description, [&](auto& prefix, std::string kind, auto& port, auto i) {
-        auto json = nlohmann::ordered_json::parse(each.text)[kind + "s"][i];
-        json["name"] = prefix + port.name;
-        json["kind"] = kind;
-        text += json.dump() + "\n";
-      });
+      each_port(each.module, *description,
+                [&](auto& prefix, const std::string& kind, auto& port, auto i) {
+                  auto json = nlohmann::ordered_json::parse(each.text)[kind + "s"][i];
+                  json["name"] = prefix + port.name;
+                  json["kind"] = kind;
+                  text += json.dump() + "\n";
+                });
   return text;
 }
 
@@ -89,11 +90,13 @@ std::string as_table(const std::vector<Described>& all) {
   std::size_t widest = 0;
   for (const auto& each : all)
     if (const auto description = hc::parse_description(each.text))
-      each_port(each.module, *description, [&](auto& prefix, std::string kind, auto& port, auto) {
-        rows.push_back({prefix + port.name, kind == "input" ? "in" : "out",
-                        hc::in_words(port) + (port.actor ? ", moves something" : ""), port.doc});
-        widest = std::max(widest, rows.back()[0].size());
-      });
+      each_port(each.module, *description,
+                [&](auto& prefix, const std::string& kind, auto& port, auto) {
+                  rows.push_back({prefix + port.name, kind == "input" ? "in" : "out",
+                                  hc::in_words(port) + (port.actor ? ", moves something" : ""),
+                                  port.doc});
+                  widest = std::max(widest, rows.back()[0].size());
+                });
   std::string text;
   for (const auto& [name, kind, types, doc] : rows)
     text += hc::format("{:<{}}  {:<3}  {}{}\n", name, widest, kind, types,

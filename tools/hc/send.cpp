@@ -139,7 +139,7 @@ hc::Message message_of_image(const SendOptions& options) {
   ::setenv("HC_CAMERA", program.c_str(), 1);
   ::setenv("HC_IMAGE", options.image.c_str(), 1);
   FILE* pipe =
-      ::popen("exec \"$HC_CAMERA\" --count=1 --source=\"$HC_IMAGE\" --name='hc send'", "re");
+      ::popen(R"(exec "$HC_CAMERA" --count=1 --source="$HC_IMAGE" --name='hc send')", "re");
   if (pipe == nullptr || ::dup2(::fileno(pipe), STDIN_FILENO) < 0)
     throw Failure(hc::Code::System, "module camera cannot be started");
   auto source = open_source("-", kDefaultLimit);
