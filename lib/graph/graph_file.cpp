@@ -246,6 +246,7 @@ std::vector<std::string> add_recorder(Graph& graph, const std::vector<GraphPort>
   recorder.name = "recorder";
   while (graph.find(recorder.name) != nullptr) recorder.name += "_added";
   recorder.program.value = program;
+  recorder.is_recorder = true;
   for (const auto& [name, value] : parameters) recorder.parameters[name] = {value, {}};
   std::vector<std::string> inputs;
   std::string streams;

@@ -67,6 +67,7 @@ struct GraphModule {
   std::vector<Lined<std::string>> exclusive;  ///< its exclusive inputs
   std::string workspace;                      ///< the module that publishes its focus; empty: none
   bool ends_graph = false;                    ///< the graph ends when it ends with status 0
+  bool is_recorder = false;                   ///< added by `--record`
   Place place;
 };
 

@@ -84,6 +84,7 @@ void plan_module(Planning& planning, const Describe& describe, const GraphModule
   planned.restart = module.restart;
   planned.hang = std::chrono::seconds(module.hang.value);
   planned.ends_graph = module.ends_graph;
+  planned.is_recorder = module.is_recorder;
   planned.manage_uri = name + ".manage";
   if (description.control && !description.knows("unix"))
     problems.add(module.place,

@@ -51,6 +51,7 @@ struct PlannedModule {
   std::string workspace;            ///< whose focus it obeys; empty: none
   std::set<std::string> exclusive;  ///< its exclusive inputs
   bool ends_graph = false;          ///< the graph ends when it ends with status 0
+  bool is_recorder = false;  ///< its inputs end also with writers that have failed permanently
 
   void add_option(std::string option, std::string value) {
     options.insert(options.end(), {std::move(option), std::move(value)});

@@ -16,6 +16,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr auto kLongestPause = 10s;  // between images of a video, as of `hc play`
+
 void require(bool is_valid, const std::string& problem) {
   if (!is_valid) throw hc::ModuleError(hc::Error{hc::Code::Invalid, problem});
 }
@@ -101,6 +103,13 @@ void Camera::take_video() {
   }
   if (!images) return module_.stop();
   const auto& [left, right] = *images;
+  const auto pause = left.time - shown_.value_or(left.time);
+  shown_ = left.time;
+  if (*parameters_.paced && pause > kLongestPause) {
+    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(pause);
+    module_.log("skipping a pause of " + std::to_string(seconds.count()) + " s in the video");
+    start_->monotonic -= pause;
+  }
   if (!thinning_.takes(left.time, *parameters_.rate)) return;
   if (*parameters_.paced) module_.wait_until(start_->monotonic + (left.time - start_->time));
   send_both(left.image, right.image, left.time);

@@ -112,8 +112,9 @@ class Camera {
   const CameraParameters parameters_{module_};
 
   SequencePair files_;
-  std::optional<Start> start_;  // of a video
-  Pairing pairing_;             // of two videos
+  std::optional<Start> start_;     // of a video
+  std::optional<hc::Time> shown_;  // of its last image, before those left out for `rate`
+  Pairing pairing_;                // of two videos
   std::array<hc::Time, 2> last_;
   std::unique_ptr<LiveCameras> cameras_;  // instead of files
   Thinning thinning_;

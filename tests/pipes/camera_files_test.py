@@ -57,6 +57,33 @@ class CameraFiles(Pipes):
         self.assertEqual(times, sorted(set(times)))
         self.assert_near([each - times[68] for each in times[68:72]], TIMES)
 
+    def test_a_long_pause_of_a_video_is_skipped(self):
+        """A stream of which parts were put together, in Matroska: its times are free."""
+        self.draw(
+            """
+import cv2, numpy, struct
+
+def element(name, *parts):
+    content = b"".join(parts)
+    return bytes.fromhex(name) + struct.pack(">Q", 1 << 56 | len(content)) + content
+
+number = lambda value: struct.pack(">Q", value)
+track = element("ae", element("d7", number(1)), element("73c5", number(1)), element("83", b"\\1"),
+    element("86", b"V_MJPEG"), element("e0", element("b0", number(32)), element("ba", number(32))))
+clusters = []
+for i, at in enumerate((0, 100, 200, 600200, 600300)):  # [ms]
+    _, jpeg = cv2.imencode(".jpg", numpy.full((32, 32, 3), 50 * i, numpy.uint8))
+    block = element("a3", b"\\x81\\0\\0\\x80" + jpeg.tobytes())
+    clusters.append(element("1f43b675", element("e7", number(at)), block))
+header = element("1a45dfa3", element("4282", b"matroska"), element("4287", b"\\4"), element("4285", b"\\2"))
+info = element("1549a966", element("2ad7b1", number(10**6)))
+segment = element("18538067", info, element("1654ae6b", track), *clusters)
+open("gap.mkv", "wb").write(header + segment)"""
+        )
+        times = self.spacing(self.images("hc camera gap.mkv --width 4 --height 4"))
+        self.assertIn("camera: skipping a pause of 600 s in the video", self.err)
+        self.assert_near(times, [0, 100, 200, 600200, 600300])
+
     def test_two_videos_are_paired_by_their_times(self):
         """One eye has a third of the images of the other."""
         self.draw(

@@ -98,6 +98,16 @@ class Folders(Recordings):
             self.assertEqual(self.read_bytes(name), before)
             self.shell("hc info y_2" + name[1:])
 
+    def test_a_uri_is_no_place(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 3))
+        for word in ("run:9.mcap", "tcp:7001"):
+            self.shell("hc run g.toml --record " + word, 2)
+            self.assertIn("not the URI " + word, self.err)
+        self.assertIn(
+            "x.mcap",
+            self.shell("hc run g.toml --quiet --record ./run:9.mcap && mv run:9.mcap x.mcap; ls"),
+        )
+
     def test_a_place_that_cannot_be_written_is_said(self):
         self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 3))
         self.shell("hc run g.toml --record no/such/x.mcap", 1)

@@ -141,6 +141,16 @@ class Recorder(Recordings):
         runner.communicate(timeout=WATCHDOG)
         self.assertEqual(self.read("log").count("brightness: started"), 1, self.read("log"))
 
+    def test_a_graph_whose_modules_have_failed_ends_with_its_recorder(self):
+        self.write("g.toml", 'version = 1\n[modules.camera]\nparameters.source = "none.jpg"\n')
+        for place in ("x.mcap", "kept"):
+            self.shell("hc run g.toml --record " + place, self.run_failing())
+            self.assertIn("camera: failed with status", self.err)
+
+    def run_failing(self):
+        """The status of that graph without a recorder."""
+        return self.start("hc run g.toml").wait(timeout=WATCHDOG)
+
     def test_a_recorder_that_is_stopped_makes_nobody_wait(self):
         self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 400))
         runner = self.start(

@@ -104,6 +104,10 @@ class LinkCheck {
     for (const auto& [key, value] : link.policy)
       if (!uri.option(key, "").empty() && !value.value.empty())
         problems_.add(value.place, key + " is also given in " + outside.uri);
+    if (uri.scheme == "file" && uri.rest.ends_with(".mcap"))
+      problems_.add(link.place,
+                    "{} is a recording in MCAP, and links take files of messages: {} is for those",
+                    outside.uri, is_input ? "hc play" : "hc run --record");
     const std::string& module = is_input ? link.from.module : link.to.module;
     const Description* description = planning_.description_of(module);
     if (description == nullptr) return;

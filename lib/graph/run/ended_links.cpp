@@ -11,7 +11,9 @@ void EndedLinks::settle() {
     if (writer == nullptr || reader == nullptr) continue;
     if (reader->is_over() && !writer->is_over()) to_read[{link.from, link.to}] = &link;
     if (reader->is_over() || !link.reconnects) continue;
-    reader->finish_input(link.end(true), writer->status() == ModuleStatus::Ended);
+    const bool has_ended =
+        reader->plan().is_recorder ? writer->is_over() : writer->status() == ModuleStatus::Ended;
+    reader->finish_input(link.end(true), has_ended);
   }
   std::erase_if(drains_, [&](const auto& entry) { return !to_read.contains(entry.first); });
   for (const auto& [name, link] : to_read) {
