@@ -113,7 +113,7 @@ class Camera {
 
   SequencePair files_;
   std::optional<Start> start_;     // of a video
-  std::optional<hc::Time> shown_;  // of its last image, before those left out for `rate`
+  std::optional<hc::Time> shown_;  // time of the last image read
   Pairing pairing_;                // of two videos
   std::array<hc::Time, 2> last_;
   std::unique_ptr<LiveCameras> cameras_;  // instead of files

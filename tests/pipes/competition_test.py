@@ -8,7 +8,7 @@ import signal
 import socket
 import unittest
 
-from graphs import Graphs
+from graphs import STOPPABLE, Graphs
 from harness import ROOT, WATCHDOG, free_port, wait_until
 
 
@@ -191,22 +191,10 @@ class Stopped(Graphs):
     """What the robot was stopped by, outside the workspace; its rules are in modules/workspace."""
 
     LOOK = {"mode": "look", "number": 1}
-    GRAPH = """
-[modes]
-look = 1
-[workspace]
-module = "workspace"
-[modules.workspace]
-inputs.bids = "looking.bid"
-inputs.stop = "unix-listen:stop"
-[modules.looking]
-program = "bidder"
-mode = "look"
-"""
 
     def test_a_stop_is_shown_and_outlives_the_workspace(self):
         name = "stopped_%d" % os.getpid()
-        self.write_graph(self.GRAPH)
+        self.write_graph(STOPPABLE)
         process = self.start("exec hc run g.toml --as %s 2>errors" % name)
         wait_until(lambda: "workspace: focus: look" in self.read("errors"))
         messages = self.observe(process, name)

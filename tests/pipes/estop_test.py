@@ -13,28 +13,15 @@ from namespaces import move_to_own_network
 OWN = move_to_own_network()
 
 # They take an argument away.
-from graphs import Graphs  # noqa: E402
+from graphs import STOPPABLE, Graphs  # noqa: E402
 from harness import wait_until  # noqa: E402
-
-GRAPH = """
-[modes]
-look = 1
-[workspace]
-module = "workspace"
-[modules.workspace]
-inputs.bids = "looking.bid"
-inputs.stop = "unix-listen:stop"
-[modules.looking]
-program = "bidder"
-mode = "look"
-"""
 
 
 @unittest.skipUnless(OWN, "no network namespaces, and graphs of others would be stopped")
 class Estop(Graphs):
     def begin(self, name):
         # A file for each: a graph is changed when its file is written.
-        self.write(name + ".toml", "version = 1\n" + GRAPH.replace(":stop", ":%s.stop" % name))
+        self.write(name + ".toml", "version = 1\n" + STOPPABLE.replace(":stop", ":%s.stop" % name))
         process = self.start("exec hc run %s.toml 2>%s" % (name, name))
         wait_until(lambda: "workspace: focus: look" in self.read(name))
         return process

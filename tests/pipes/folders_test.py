@@ -65,7 +65,7 @@ class Folders(Recordings):
             os.kill(pid, signal.SIGKILL)
             starts = "%s: started" % module
             wait_until(lambda: self.read("log").count(starts) == kill // 2 + 2)
-            # Of what was there nothing is lost but the message that was being written.
+            # Only the last message, then unfinished, may be lost.
             before, begin = begin, path.read_bytes()
             self.assertEqual(begin[: len(before)], before)
             begin = begin[: begin.rfind(b"\n1 ") + 1]

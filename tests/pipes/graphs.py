@@ -23,6 +23,19 @@ from = "camera.left"
 """
     % DATA
 )
+# A task with the focus, and a way for stops.
+STOPPABLE = """
+[modes]
+look = 1
+[workspace]
+module = "workspace"
+[modules.workspace]
+inputs.bids = "looking.bid"
+inputs.stop = "unix-listen:stop"
+[modules.looking]
+program = "bidder"
+mode = "look"
+"""
 
 
 class Messages:
