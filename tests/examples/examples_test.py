@@ -212,7 +212,7 @@ class Examples(Pipes):
     def check_script(self, command, encoding=BINARY):
         """A script that reads images without the library: it need not go on, but end."""
         first, last = good(IMAGE, FIRST, encoding), good(IMAGE, LAST, encoding)
-        both = first + message(IMAGE, "u8", TEXT, 0, 4, b"") + last
+        both = first + message(IMAGE, "u8", encoding, 0, 4, b"") + last
         streams = {"empty": both, "framed": both + b"".join(framed(IMAGE)), **broken(IMAGE)}
         if encoding == TEXT:
             del streams["without an end"]  # awk reads whole lines
@@ -244,6 +244,21 @@ class Examples(Pipes):
         # Its answers wait for poses of the head.
         self.check_module([self.example("frames_1")], POSITION, answers=False)
         self.check_module([str(BUILD / "libexec/hypercolumn/brightness")], IMAGE)
+
+    @unittest.skipUnless(HAS_PYTHON, "the Python package was not built")
+    def test_the_readme_has_one_module_twice(self):
+        python = next(text for path, _, text in extract.blocks("python") if path.stem == "README")
+        commands = [self.example("README_1")], [self.write_program("sum", python)]
+        tables = (
+            (1, 1, b"3"),
+            (2, 1, b"3 4"),
+            (3, 2, b"3 4 5\n6 7 8.5"),
+            (0, 2, b""),
+            (1, 1, b"nan"),
+        )
+        data = b"".join(message(TABLE, "f64", TEXT, *each) for each in tables)
+        numbers = [self.run_with(command, data).out.split(b"\n")[1::2] for command in commands]
+        self.assertEqual(numbers, [[b"3", b"7", b"33.5", b"0", b"nan"]] * 2)
 
     @unittest.skipUnless(HAS_PYTHON, "the Python package was not built")
     def test_a_task_of_the_documents_does_not_read(self):
