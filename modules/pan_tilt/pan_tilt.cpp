@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pan_tilt.h"
 
+#include <cmath>
+#include <numbers>
+
+#include <hc/base/format.h>
+
 PanTilt::PanTilt(hc::Module& module) : module_(module) {
   module.on_start([this] { pass(); });
   module.every(hc::pan_tilt::Neck::kTick, [this] { pass(); });
@@ -23,6 +28,10 @@ void PanTilt::read() {
 void PanTilt::turn(const hc::MessageOf<hc::RotationKind<double>>& message) {
   neck_.set_focus(now(), module_.focus());
   const auto angles = message.numbers();
+  for (const double angle : angles.subspan(1))
+    if (std::abs(angle) > 2 * std::numbers::pi)
+      throw hc::BadMessage(
+          hc::format("{} rad is more than a turn; tilt and pan are in rad, not in degrees", angle));
   const auto& header = message.header;
   neck_.command(now(), module_.now(), {angles[2], angles[1], header.time, header.mode, header.src});
 }

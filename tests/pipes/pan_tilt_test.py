@@ -35,6 +35,13 @@ class PanTilt(Necks):
         self.assertEqual([row[3] for row in rows], [0, 0, 0, 1])
         self.assertAlmostEqual(rows[0][1], -math.sin(pan))
 
+    def test_degrees_are_refused(self):
+        self.start_both("--hold 0")
+        self.command(30.0, 0.0)
+        self.neck.wait_line("30 rad is more than a turn; tilt and pan are in rad, not in degrees")
+        self.go(0.2)
+        self.assertLess(max(pan for _, pan in self.motion.angles()), 0.2 + STEP)
+
     def stop_for(self, nanoseconds, program, meanwhile):
         """Stops a program as a debugger does, does something, and lets it continue later."""
         program.process.send_signal(signal.SIGSTOP)

@@ -62,6 +62,12 @@ class Tool(Pipes):
                 2,
                 'hc: unknown command or module "rnu", did you mean "run"?; see hc --help',
             ),
+            (
+                "hc echo a",
+                2,
+                'hc: unknown command or module "echo"; to print what a port sends: hc',
+            ),
+            ("hc topic list", 2, 'hc: unknown command or module "topic"; hc ports lists the ports'),
             ("hc describe camra", 1, 'hc describe: NotFound: no program "camra", did you mean'),
             ("touch gauge; hc ./gauge", 2, "hc: ./gauge is not executable"),
             ("hc describe ./gauge", 1, "hc describe: NotFound: ./gauge is not executable"),
