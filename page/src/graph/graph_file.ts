@@ -2,75 +2,8 @@
 // For tests: the state of a graph as its file describes it, as far as the drawing depends on it.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
+import { parse, type TomlTable as Table } from "smol-toml";
 import type { GraphLink, GraphModule, GraphState } from "../server";
-
-type Value = string | number | boolean | Value[] | Table;
-interface Table {
-  [key: string]: Value;
-}
-
-/** TOML as far as graphs of this project use it: no dates, no text or tables of several lines. */
-function tomlOf(text: string): Table {
-  const root: Table = {};
-  let table = root;
-  for (const line of text.split("\n")) {
-    const rest = line.trim();
-    if (rest === "" || rest.startsWith("#")) continue;
-    const header = /^\[([\w.]+)\]/.exec(rest);
-    if (header) table = within(root, header[1]!.split("."));
-    else new Reader(rest).pair(table);
-  }
-  return root;
-}
-
-function within(table: Table, keys: readonly string[]): Table {
-  return keys.reduce((at, key) => (at[key] ??= {}) as Table, table);
-}
-
-class Reader {
-  private at = 0;
-  constructor(private readonly text: string) {}
-
-  pair(into: Table): void {
-    const keys = this.take(/\s*([\w.]+)\s*=\s*/y).split(".");
-    within(into, keys.slice(0, -1))[keys.at(-1)!] = this.value();
-  }
-
-  private value(): Value {
-    const first = this.text[this.at]!;
-    if (first === '"') return this.take(/"((?:[^"\\]|\\.)*)"/y);
-    if (first === "[") {
-      const list: Value[] = [];
-      this.list("]", () => list.push(this.value()));
-      return list;
-    }
-    if (first === "{") {
-      const table: Table = {};
-      this.list("}", () => this.pair(table));
-      return table;
-    }
-    const word = this.take(/([\w.+-]+)/y);
-    return word === "true" || word === "false" ? word === "true" : Number(word);
-  }
-
-  private list(end: string, read: () => void): void {
-    ++this.at;
-    for (;;) {
-      this.take(/([\s,]*)/y);
-      if (this.text[this.at] === end) break;
-      read();
-    }
-    ++this.at;
-  }
-
-  private take(pattern: RegExp): string {
-    pattern.lastIndex = this.at;
-    const found = pattern.exec(this.text);
-    if (!found) throw new Error(`not read: ${this.text.slice(this.at)}`);
-    this.at = pattern.lastIndex;
-    return found[1]!;
-  }
-}
 
 const expand = (text: string): string => text.replace(/\$\{\w+:-([^}]*)\}/g, "$1");
 
@@ -82,7 +15,7 @@ interface Read {
 }
 
 function read(folder: string, file: string): Read {
-  const toml = tomlOf(readFileSync(join(folder, file), "utf8"));
+  const toml = parse(readFileSync(join(folder, file), "utf8"));
   const all: Read = { modules: [], links: [], modes: {}, workspaces: [] };
   for (const [name, included] of Object.entries((toml.graphs ?? {}) as Table)) {
     const { file: other, ...others } = included as Table;
@@ -124,7 +57,7 @@ function read(folder: string, file: string): Read {
 function linksInto(name: string, inputs: Table): GraphLink[] {
   return Object.entries(inputs).flatMap(([input, source]) => {
     const isTable = typeof source === "object" && !Array.isArray(source);
-    return [isTable ? source.from! : source]
+    return [isTable ? (source as Table).from! : source]
       .flat()
       .map((from) => linkOf(expand(from as string), `${name}.${input}`));
   });
