@@ -240,6 +240,21 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     await page.getByText("No recordings yet.").waitFor();
   });
 
+  test("the key ? opens the help, but not where text is typed", async () => {
+    await show("log");
+    const help = page.locator(".help-dialog");
+    await page.getByRole("button", { name: "Open…" }).click();
+    await page.getByRole("searchbox").press("?");
+    assert.equal(await help.isVisible(), false);
+    await page.getByRole("searchbox").fill(""); // else Escape would only empty it
+    await page.keyboard.press("Escape");
+    await page.getByRole("button", { name: "Help" }).focus();
+    await page.keyboard.press("?");
+    await help.waitFor({ state: "visible" });
+    await page.keyboard.press("Escape");
+    await help.waitFor({ state: "hidden" });
+  });
+
   test("streams are found by their type and their description", async () => {
     await page.getByRole("button", { name: "Open…" }).click();
     const dialog = page.getByRole("dialog", { name: "Open a panel" });

@@ -14,6 +14,7 @@ const keys: readonly [string, string][] = [
   ["Escape twice", "stop the robot"],
   ["Arrow keys or W A S D", "turn the head, in Drive; slowly with Shift"],
   ["Alt and an arrow key", "move a panel, from its menu ⋮ in Build"],
+  ["?", "show this help"],
 ];
 
 /** The dialog that explains the words and keys of the page. */

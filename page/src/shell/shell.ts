@@ -66,7 +66,7 @@ export class Shell {
           this.openButton,
           button("?", () => help.showModal(), {
             class: "icon",
-            title: "Help",
+            title: "Help (?)",
             "aria-label": "Help",
           }),
           themeButton(),
@@ -81,6 +81,11 @@ export class Shell {
     server.onState((state) => this.showState(state));
     server.onSession((session) => this.showSession(session));
     addEventListener("hashchange", () => this.follow());
+    addEventListener("keydown", ({ key, target }) => {
+      const isText = target instanceof HTMLElement && target.matches("input, textarea, select");
+      const isClosed = this.element.querySelector("dialog[open]") === null;
+      if (key === "?" && !isText && isClosed) help.showModal();
+    });
     this.follow();
   }
 

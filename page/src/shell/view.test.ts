@@ -22,12 +22,14 @@ const head = {
     link("rectify.right", "far.right"),
   ],
   focus: { workspace: 4 },
+  modes: {},
 } as unknown as GraphState;
 const eyes = { ...head, modules: head.modules.slice(0, 3), focus: {} };
 const plain = {
   modules: [module("a")],
   links: [link("a.x", "b.y")],
   focus: {},
+  modes: {},
 } as unknown as GraphState;
 
 /** Kinds or ports of the panels, column by column. */
@@ -50,6 +52,17 @@ test("Drive is the seat", () => {
 test("Watch shows the bids and what the robot sees beside the graph", () => {
   assert.deepEqual(shown("watch", 85), [["graph"], ["bids", "augment.left", "far.depth", "log"]]);
   assert.deepEqual(shown("watch", 24), [["graph", "bids", "augment.left", "far.depth", "log"]]);
+});
+
+test("the bids grow with the tasks, so that each has a row", () => {
+  const bids = (tasks: number) => {
+    const modes = Object.fromEntries(
+      [...Array(tasks).keys()].map((mode) => [`task_${mode}`, mode]),
+    );
+    return layoutFor("watch", { ...head, modes }, 85)[1]!.places[0];
+  };
+  assert.deepEqual(bids(5), { args: { kind: "bids" }, share: 1 });
+  assert.deepEqual(bids(8), { args: { kind: "bids" }, share: 1.6 });
 });
 
 test("without depth and virtual objects it sees with the eyes that no other pair feeds", () => {

@@ -36,6 +36,11 @@ function picturesOf(state: GraphState): PanelArgs[] {
  * @param width  of the page [em].
  */
 export function layoutFor(view: View, state: GraphState, width: number): Layout {
+  const tasks = Object.keys(state.modes).length;
+  const column = (share: number, ...panels: readonly PanelArgs[]) => ({
+    share,
+    places: panels.map((args) => ({ args, share: shareOf(args.kind, tasks) })),
+  });
   if (view === "drive") return [column(1, { kind: "seat" })];
   const seen = picturesOf(state);
   const pictures = view === "watch" ? seen : seen.map(({ title, ...args }) => args);
@@ -49,6 +54,7 @@ export function layoutFor(view: View, state: GraphState, width: number): Layout 
   return columns.filter(({ places }) => places.length > 0);
 }
 
-function column(share: number, ...panels: readonly PanelArgs[]) {
-  return { share, places: panels.map((args) => ({ args, share: args.kind === "log" ? 0.6 : 1 })) };
+/** How much of its column a panel gets: the bids so much that each task has its row. */
+function shareOf(kind: string, tasks: number): number {
+  return kind === "log" ? 0.6 : kind === "bids" ? Math.max(1, tasks / 5) : 1;
 }
