@@ -38,14 +38,12 @@ void Conversation::begin(MonotonicTime now) {
 void Conversation::end() {
   phase_ = Phase::Closed;
   awaited_.clear();
-  looks_.clear();
+  times_.open();
   bytes_.clear();
-  written_ = {};
   wanted_.reset();
   quiet_at_.reset();
   is_heading_sure_ = false;
   has_halted_ = halt_follows_ = false;
-  delay_.reset();
 }
 
 void Conversation::try_again(MonotonicTime now) {
@@ -57,7 +55,6 @@ void Conversation::try_again(MonotonicTime now) {
   phase_ = Phase::Begins;
   reader_ = {};
   place_.reset();
-  tilt_seen_.reset();
   asked_ = 0;
   overdue_ = now + kTimeOut;
   bytes_ = pan_tilt::command(kNoWord);
@@ -152,27 +149,8 @@ void Conversation::say(MonotonicTime now, const std::string& bytes,
                        std::initializer_list<Awaits> answers) {
   if (awaited_.empty()) overdue_ = now + kTimeOut;
   bytes_ += bytes;
-  written_ = std::max(written_, now) + on_line(bytes.size());
+  times_.wrote(now, bytes.size());
   awaited_.insert(awaited_.end(), answers);
-}
-
-std::chrono::nanoseconds Conversation::on_line(std::size_t bytes) const {
-  if (bytes_per_second_ <= 0) return {};
-  return duration(static_cast<double>(bytes) / bytes_per_second_);
-}
-
-/// When the unit was at the reported position.
-MonotonicTime Conversation::seen_at(MonotonicTime now, const Look& look) {
-  // When the answer began, at the latest; it is complete before its last byte, the line feed.
-  const auto begun = now - on_line(heard_bytes_ - 1);
-  if (begun < look.sent) return look.time + (now - look.time) / 2;  // the line is faster than set
-  const auto free = std::min(std::max(look.sent, heard_after_), begun);
-  const auto delay = begun - free;
-  constexpr int kRecent = 16;
-  // While earlier answers are on the line, they hide the unit's own delay.
-  if (!delay_ || free == look.sent)
-    delay_ = std::min(delay, delay_.value_or(delay) + (delay - delay_.value_or(delay)) / kRecent);
-  return look.sent + *delay_ / 2;
 }
 
 bool Conversation::awaits(Awaits answer) const {
@@ -184,7 +162,7 @@ void Conversation::look(MonotonicTime now) {
   is_look_due_ = awaits(Awaits::Pan);
   if (phase_ != Phase::Ready || is_look_due_) return;
   say(now, pan_tilt::command(kAskPan), {Awaits::Pan});
-  looks_.push_back({now, written_});
+  times_.asked(now);
   say(now, pan_tilt::command(kAskTilt), {Awaits::Tilt});
 }
 
@@ -253,8 +231,7 @@ void Conversation::hear(MonotonicTime now, const Reply& reply) {
   const Awaits awaited = awaited_.front();
   awaited_.pop_front();
   overdue_ = now + kTimeOut;
-  const auto before = std::exchange(answered_, now);
-  if (awaited == Awaits::Pan) heard_after_ = before;
+  times_.answered(now, awaited == Awaits::Pan);
   if (is_refusal) {
     remark_ = "refused: " + reply.text;
     if (awaited == Awaits::PanSet || awaited == Awaits::TiltSet) is_heading_sure_ = false;
@@ -287,22 +264,13 @@ void Conversation::hear_place(MonotonicTime now, int axis, const std::string& te
   constexpr std::size_t kFrame = 4;  // "* " and the line end
   heard_bytes_ = (axis == 0 ? 0 : heard_bytes_) + text.size() + kFrame;
   if (axis == 0) return;
-  const Look look = looks_.front();
-  looks_.pop_front();
   place_ = heard_;
-  place_time_ = look.time;
+  place_time_ = times_.heard(heard_bytes_);
   // Such a late answer was waiting to be read: its time is unknown.
-  if (now - look.time >= kTimeOut) return;
-  const auto time = seen_at(now, look);
-  gaze_ = Gaze{heard_[0] * step(0), tilt_at(time, -heard_[1] * step(1)), time};
-}
-
-/// The tilt at the time of the pan; interpolated, since its query arrived a little later.
-double Conversation::tilt_at(MonotonicTime time, double seen) {
-  const auto last = std::exchange(tilt_seen_, TiltSeen{time, seen});
-  if (!last || time <= last->time) return seen;
-  const double later = hc::seconds(on_line(kAskTilt.size() + 1));
-  return seen - (seen - last->tilt) * std::min(1.0, later / hc::seconds(time - last->time));
+  if (now - place_time_ >= kTimeOut) return;
+  const auto time = times_.seen_at(now);
+  const double tilt = -heard_[1] * step(1);
+  gaze_ = Gaze{heard_[0] * step(0), times_.tilt_at(time, tilt, kAskTilt.size() + 1), time};
 }
 
 /// Whether the unit has reached the commanded position.

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include <drivers/pan_tilt/line_times.h>
 #include <drivers/pan_tilt/protocol.h>
 #include <hc/base/clock.h>
 
@@ -19,7 +20,7 @@ namespace hc::pan_tilt {
 /// Orientation of a head [rad]: pan > 0 left, tilt > 0 down. (The unit's tilt > 0 is up.)
 struct Gaze {
   double pan = 0, tilt = 0;
-  MonotonicTime time{0};  ///< see Conversation::set_line()
+  MonotonicTime time{0};  ///< see LineTimes
 };
 
 /// Starts with `- ft ed ci`, then queries the unit's settings twice, since an error would persist,
@@ -59,11 +60,8 @@ class Conversation {
   /// Sets the speed and acceleration [rad/s, rad/s²], or the nearest possible; 0: as found at the
   /// start. While the unit refuses a pace, it is sent again every kTimeOut, and commands fail.
   void set_pace(double speed, double acceleration);
-  /// Sets the rate of bytes in each direction [1/s]; 0 (default): infinite. A unit reports its
-  /// position when the question arrives, after all earlier bytes. The answer takes time, too, and
-  /// follows earlier answers on the line. Half of the least remaining delay of the recent answers
-  /// is assumed to be before the report; what exceeds it, the host was late to read.
-  void set_line(double bytes_per_second) { bytes_per_second_ = bytes_per_second; }
+  /// Sets the rate of bytes in each direction [1/s]; 0 (default): infinite.
+  void set_line(double bytes_per_second) { times_.set_rate(bytes_per_second); }
   /// Halts a commanded motion after this time without a command, and any motion found at the start;
   /// 0: never.
   void set_hold(std::chrono::nanoseconds hold) { hold_ = hold; }
@@ -100,10 +98,6 @@ class Conversation {
   void send_wanted(MonotonicTime now);
   void send_pace(MonotonicTime now);
   [[nodiscard]] bool awaits(Awaits answer) const;
-  [[nodiscard]] std::chrono::nanoseconds on_line(std::size_t bytes) const;
-  struct Look;
-  [[nodiscard]] MonotonicTime seen_at(MonotonicTime now, const Look& look);
-  [[nodiscard]] double tilt_at(MonotonicTime time, double seen);
   [[nodiscard]] bool arrived() const;
   [[nodiscard]] bool is_late(MonotonicTime now) const;
   void halt_unheard(MonotonicTime now);
@@ -131,28 +125,14 @@ class Conversation {
   std::deque<Awaits> awaited_;
   MonotonicTime overdue_{0};  // deadline of the oldest answer
   MonotonicTime heading_since_{0}, commanded_{0};
-  double bytes_per_second_ = 0;
-  MonotonicTime written_{0};  // when all bytes have left
-  /// A query of the position.
-  struct Look {
-    MonotonicTime time;  // when written
-    MonotonicTime sent;  // when its last byte left
-  };
-  std::deque<Look> looks_;  // unanswered
+  LineTimes times_;
   bool is_look_due_ = false;
   std::optional<Places> wanted_, heading_, place_;
   MonotonicTime wanted_until_{0};
   bool is_heading_sure_ = false;  // the unit has accepted the command
   Places heard_ = {};
   std::size_t heard_bytes_ = 0;
-  MonotonicTime answered_{0}, heard_after_{0};     // the last answer; the one before heard_
-  std::optional<std::chrono::nanoseconds> delay_;  // least of recent answers
-  MonotonicTime place_time_{0};                    // when place_ was queried
-  struct TiltSeen {
-    MonotonicTime time;  // of the pan
-    double tilt;         // as reported [rad]
-  };
-  std::optional<TiltSeen> tilt_seen_;
+  MonotonicTime place_time_{0};  // when place_ was queried
   std::chrono::nanoseconds hold_{0};
 };
 
