@@ -85,8 +85,8 @@ Page::Callbacks Web::callbacks() {
       [this](bool stops_robot, Stop::Answer answer) { order_stop(stops_robot, std::move(answer)); },
       [this](hc::Level level, std::string_view line) {
         // An error of a page is not an error of the run.
-        const auto told = level == hc::Level::Notice ? level : hc::Level::Info;
-        loop_->post([this, told, kept = std::string(line)] { module_.log(kept, told); });
+        const auto as = level == hc::Level::Notice ? level : hc::Level::Info;
+        loop_->post([this, as, kept = std::string(line)] { module_.log(kept, as); });
       }};
 }
 

@@ -70,8 +70,8 @@ class FocusRules {
     return best;
   }
 
-  /// Nobody bids more; of those who bid as much it has kept the focus, or none had it and none
-  /// began later.
+  /// No person bids more than the one in focus; of equal bids it has kept the focus, or is the
+  /// earliest.
   void decided_by_persons(const Best& persons, std::int32_t focus) const {
     ASSERT_TRUE(persons.contains(focus)) << focus;
     const Bid& granted = persons.at(focus);
@@ -90,7 +90,7 @@ class FocusRules {
       EXPECT_GE(now - changed_, options_.dwell);
       EXPECT_GT(tasks[focus].salience, tasks[focus_].salience + options_.margin);
     }
-    // Nobody is kept out behind the dwell time.
+    // After the dwell time a higher bid has the focus.
     if (focus != focus_ || now - changed_ < options_.dwell) return;
     for (const auto& [mode, bid] : tasks)
       EXPECT_LE(bid.salience, tasks[focus].salience + options_.margin);

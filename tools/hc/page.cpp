@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hc page: shows again what the modules of a running graph have told the person at its terminal.
+// hc page: shows again what the modules of a running graph print for a person.
 #include "common.h"
 #include "observer.h"
 #include "verbs.h"
