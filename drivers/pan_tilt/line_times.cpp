@@ -32,7 +32,8 @@ MonotonicTime LineTimes::heard(std::size_t bytes) {
 MonotonicTime LineTimes::seen_at(MonotonicTime now) {
   // When the answer began, at the latest; it is complete before its last byte, the line feed.
   const auto begun = now - on_line(heard_bytes_ - 1);
-  if (begun < look_.sent) return look_.time + (now - look_.time) / 2;  // the line is faster than set
+  if (begun < look_.sent)
+    return look_.time + (now - look_.time) / 2;  // the line is faster than set
   const auto free = std::min(std::max(look_.sent, heard_after_), begun);
   const auto delay = begun - free;
   constexpr int kRecent = 16;

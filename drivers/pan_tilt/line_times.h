@@ -57,11 +57,11 @@ class LineTimes {
   [[nodiscard]] std::chrono::nanoseconds on_line(std::size_t bytes) const;
 
   double bytes_per_second_ = 0;
-  MonotonicTime written_{0};                        // when all bytes have left
-  MonotonicTime answered_{0}, heard_after_{0};      // the last answer; the one before the pair
-  std::deque<Look> looks_;                          // without an answer
-  Look look_;                                       // of the last pair
-  std::size_t heard_bytes_ = 0;                     // of the last pair
+  MonotonicTime written_{0};                       // when all bytes have left
+  MonotonicTime answered_{0}, heard_after_{0};     // the last answer; the one before the pair
+  std::deque<Look> looks_;                         // without an answer
+  Look look_;                                      // of the last pair
+  std::size_t heard_bytes_ = 0;                    // of the last pair
   std::optional<std::chrono::nanoseconds> delay_;  // least of recent answers
   std::optional<Tilt> tilt_;
 };

@@ -12,6 +12,14 @@
 
 namespace hc::internal {
 
+/// What the silence of a process means.
+enum class Health {
+  Responsive,  ///< it reports, or it never has
+  Blocked,     ///< it waits for the reader of an output
+  Busy,
+  Stopped,  ///< by a signal
+};
+
 /// For how long a process has not reported, and for how long it has waited for a reader.
 class Liveness {
  public:
@@ -35,11 +43,37 @@ class Liveness {
   void forget() { *this = Liveness(checked_); }
 
   [[nodiscard]] bool has_reported() const { return reported_.has_value(); }
-  /// Since the last report; it has reported.
-  [[nodiscard]] MonotonicTime since_report(MonotonicTime now) const { return now - *reported_; }
   /// Without reports, as far as checked.
   [[nodiscard]] MonotonicTime silence() const { return silence_; }
   [[nodiscard]] std::optional<MonotonicTime> blocked_since() const { return blocked_; }
+
+  /// @param stall  time without a report after which a process that has reported is not responsive.
+  /// @param usage  Usage(): of the process now; called only where it matters.
+  template <typename Measure>
+  [[nodiscard]] Health health(MonotonicTime stall, MonotonicTime now, const Measure& usage) const {
+    if (reported_ && now - *reported_ < stall) return Health::Responsive;
+    if (usage().is_stopped) return Health::Stopped;
+    if (!reported_) return Health::Responsive;
+    return blocked_ ? Health::Blocked : Health::Busy;
+  }
+
+  /// The time of silence after which the process hangs; nullopt: it does not. Spares a process in a
+  /// debugger, and one that waits for a reader.
+  ///
+  /// @param hang  0: never.
+  /// @param first_report  least time for the first report, for loading libraries; nullopt: it may
+  /// never report.
+  template <typename Measure>
+  [[nodiscard]] std::optional<MonotonicTime> hung_after(MonotonicTime hang,
+                                                        std::optional<MonotonicTime> first_report,
+                                                        const Measure& usage) const {
+    if (hang == MonotonicTime(0) || silence_ < hang) return {};
+    const Usage found = usage();
+    if (found.is_traced || (blocked_ && !found.is_stopped)) return {};
+    if (reported_ || found.is_stopped) return hang;
+    if (!first_report || silence_ < *first_report) return {};
+    return std::max(hang, *first_report);
+  }
 
   Liveness() = default;
 

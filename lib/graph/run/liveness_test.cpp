@@ -16,7 +16,61 @@ TEST(Liveness, IsSilentSinceTheLastReport) {
   EXPECT_FALSE(liveness.has_reported());
   liveness.reported(false, 11s);
   EXPECT_EQ(liveness.silence(), 0s);
-  EXPECT_EQ(liveness.since_report(13s), 2s);
+}
+
+TEST(Liveness, SaysWhatSilenceMeans) {
+  Usage usage;
+  const auto measure = [&] { return usage; };
+  Liveness liveness;
+  EXPECT_EQ(liveness.health(2s, 100s, measure), Health::Responsive) << "it may never report";
+  usage.is_stopped = true;
+  EXPECT_EQ(liveness.health(2s, 100s, measure), Health::Stopped);
+  liveness.reported(false, 100s);
+  EXPECT_EQ(liveness.health(2s, 101s, measure), Health::Responsive);
+  EXPECT_EQ(liveness.health(2s, 102s, measure), Health::Stopped);
+  usage.is_stopped = false;
+  EXPECT_EQ(liveness.health(2s, 102s, measure), Health::Busy);
+  liveness.reported(true, 102s);
+  EXPECT_EQ(liveness.health(2s, 104s, measure), Health::Blocked);
+  usage.is_stopped = true;
+  EXPECT_EQ(liveness.health(2s, 104s, measure), Health::Stopped);
+}
+
+/// Silent for so many seconds, after its last report if it has sent one.
+Liveness silent_for(int seconds, std::optional<bool> is_blocked) {
+  Liveness liveness;
+  liveness.check(true, 0s);
+  if (is_blocked) liveness.reported(*is_blocked, 0s);
+  for (int time = 1; time <= seconds; ++time) liveness.check(true, std::chrono::seconds(time));
+  return liveness;
+}
+
+TEST(Liveness, HangsAfterItsTimeUnlessItIsDebuggedOrWaitsForAReader) {
+  Usage usage;
+  const auto hung = [&](const Liveness& liveness, MonotonicTime hang = 5s) {
+    return liveness.hung_after(hang, std::nullopt, [&] { return usage; });
+  };
+  EXPECT_FALSE(hung(silent_for(4, false)));
+  EXPECT_EQ(hung(silent_for(5, false)), MonotonicTime(5s));
+  EXPECT_FALSE(hung(silent_for(5, false), 0s)) << "never";
+  EXPECT_FALSE(hung(silent_for(9, true))) << "it waits for a reader";
+  usage.is_stopped = true;
+  EXPECT_EQ(hung(silent_for(5, true)), MonotonicTime(5s));
+  usage.is_traced = true;
+  EXPECT_FALSE(hung(silent_for(9, false)));
+}
+
+TEST(Liveness, HasMoreTimeForItsFirstReport) {
+  Usage usage;
+  const auto hung = [&](int seconds, std::optional<MonotonicTime> first) {
+    return silent_for(seconds, {}).hung_after(5s, first, [&] { return usage; });
+  };
+  EXPECT_FALSE(hung(90, {})) << "it may never report";
+  EXPECT_FALSE(hung(59, 60s));
+  EXPECT_EQ(hung(60, 60s), MonotonicTime(60s));
+  EXPECT_EQ(hung(5, 1s), MonotonicTime(5s));
+  usage.is_stopped = true;
+  EXPECT_EQ(hung(5, 60s), MonotonicTime(5s));
 }
 
 TEST(Liveness, CountsALongGapBetweenChecksAsASecond) {

@@ -120,8 +120,9 @@ class Supervised {
   void ask_to_end();
   void note_dropped_lines(MonotonicTime time);
   void take_report(const Message& message);
-  void check_silent();
-  bool kill_if_hung(bool is_blocked);
+  /// Shows why it is silent, or that it is not any more.
+  void note_health(Health health);
+  void kill_if_hung();
   void note_end(int status);
   void forget_process();
   void handle_end(int status);

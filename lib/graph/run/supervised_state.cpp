@@ -30,59 +30,43 @@ void Supervised::check(MonotonicTime time) {
   opened_.close_unused(liveness_.has_reported() ? &reports_ : nullptr, time);
   send(process_.correct_clock());
   note_dropped_lines(time);
-  liveness_.check(process_.process().runs(), time);
-  if (!process_.process().runs()) return;
-  const bool is_silent = !liveness_.has_reported();
-  if (is_silent) check_silent();
+  auto& process = process_.process();
+  liveness_.check(process.runs(), time);
+  if (!process.runs()) return;
+  note_health(liveness_.health(limits_.stall, time, [&] { return process.usage(false); }));
+  kill_if_hung();
+}
+
+void Supervised::note_health(Health health) {
   const bool is_stalled = status_ == ModuleStatus::Stalled;
-  const bool is_blocked = reports_.state().blocked_row != 0;
-  if (kill_if_hung(is_blocked) || is_silent) return;
-  if (status_ != ModuleStatus::Running && !(is_stalled && is_blocked)) return;
-  if (liveness_.since_report(time) < limits_.stall) return;
-  const bool is_stopped = process_.process().usage(false).is_stopped;
-  if (is_blocked && !is_stopped) {
+  if (!is_stalled && status_ != ModuleStatus::Running && status_ != ModuleStatus::Starting) return;
+  const bool stalls = health == Health::Busy || health == Health::Stopped;
+  if (stalls == is_stalled && health != Health::Blocked) return;
+  if (stalls) {
+    change(ModuleStatus::Stalled, health == Health::Stopped ? "stopped by a signal" : "busy");
+    callbacks_.event(Level::Warning, "unresponsive: " + detail_);
+  } else {
     if (is_stalled) callbacks_.event(Level::Info, "resumed");
     const auto output = reports_.blocked_output();
-    return change(
-        ModuleStatus::Running,
-        "blocked: " + (output.empty() ? "" : "output " + output + " ") + "waits for its reader");
+    const bool is_starting = takes_commands() && !liveness_.has_reported();
+    change(is_starting ? ModuleStatus::Starting : ModuleStatus::Running,
+           health == Health::Blocked
+               ? "blocked: " + (output.empty() ? "" : "output " + output + " ") +
+                     "waits for its reader"
+               : "");
   }
-  if (is_stalled) return;
-  change(ModuleStatus::Stalled, is_stopped ? "stopped by a signal" : "busy");
-  callbacks_.event(Level::Warning, "unresponsive: " + detail_);
+  if (!liveness_.has_reported()) liveness_.excuse();
 }
 
-/// Kills a process after `hang` without a report, or stopped by a signal; returns whether it did.
-/// Spares a process in a debugger, and one that waits for a reader. The first report has more time,
-/// for loading libraries.
-bool Supervised::kill_if_hung(bool is_blocked) {
-  if (!hung_.empty() || status_ == ModuleStatus::Stopping) return false;
-  MonotonicTime patience = plan_.hang;
-  if (patience == MonotonicTime(0) || liveness_.silence() < patience) return false;
-  const auto usage = process_.process().usage(false);
-  if (usage.is_traced || (is_blocked && !usage.is_stopped)) return false;
-  if (!liveness_.has_reported() && !usage.is_stopped) {
-    if (!takes_commands()) return false;  // it may never report
-    patience = std::max(patience, limits_.first_report);
-    if (liveness_.silence() < patience) return false;
-  }
-  hung_ = "hung for " +
-          std::to_string(std::chrono::duration_cast<std::chrono::seconds>(patience).count()) + " s";
+void Supervised::kill_if_hung() {
+  if (!hung_.empty() || status_ == ModuleStatus::Stopping) return;
+  const auto first = takes_commands() ? std::optional(limits_.first_report) : std::nullopt;
+  const auto patience =
+      liveness_.hung_after(plan_.hang, first, [this] { return process_.process().usage(false); });
+  if (!patience) return;
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(*patience).count();
+  hung_ = "hung for " + std::to_string(seconds) + " s";
   process_.process().kill();
-  return true;
-}
-
-/// Asks the kernel whether a module without reports is stopped by a signal.
-void Supervised::check_silent() {
-  const bool is_stalled = status_ == ModuleStatus::Stalled;
-  const auto usual = takes_commands() ? ModuleStatus::Starting : ModuleStatus::Running;
-  if (status_ != usual && !is_stalled) return;
-  const bool is_stopped = process_.process().usage(false).is_stopped;
-  if (is_stopped == is_stalled) return;
-  liveness_.excuse();
-  change(is_stopped ? ModuleStatus::Stalled : usual, is_stopped ? "stopped by a signal" : "");
-  callbacks_.event(is_stopped ? Level::Warning : Level::Info,
-                   is_stopped ? "unresponsive: " + detail_ : "resumed");
 }
 
 void Supervised::measure(MonotonicTime time, bool with_memory) {
