@@ -49,7 +49,8 @@ Result<HeadTracker> HeadTracker::open(const std::string& host, int port, Senders
   addrinfo* found = nullptr;
   if (int status = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found);
       status != 0)
-    return Error{Code::Invalid, "host \"" + host + "\": " + ::gai_strerror(status)};
+    return Error{status == EAI_AGAIN ? Code::NotFound : Code::Invalid,
+                 "host \"" + host + "\": " + ::gai_strerror(status)};
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> addresses(found, ::freeaddrinfo);
   const std::string where = "UDP port " + std::to_string(port) + " of " + host;
   Descriptor owned(::socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));

@@ -435,9 +435,32 @@ TEST(Dds, APlaceIsChecked) {
   EXPECT_EQ(wrong("dds:a?interface=robot"),
             "Invalid: option interface takes IPv4 addresses of this host, separated by commas, "
             "not \"robot\"");
-  EXPECT_EQ(wrong("dds:a?interface=192.0.2.77"),
-            "NotFound: no network interface of this host has the address 192.0.2.77; `ip address` "
-            "lists them");
+}
+
+TEST(Dds, AnAddressThatThisHostDoesNotHaveIsWaitedFor) {
+  const auto uri = *parse_uri("dds:a?interface=192.0.2.77&wait=1");
+  Warnings warnings;
+  auto source = must(open_source(uri, warnings.options()));
+  Message message;
+  EXPECT_EQ(must(source->take(message)), Got::Nothing);
+  ASSERT_EQ(warnings.lines.size(), 1);
+  EXPECT_EQ(warnings.lines.front(), uri.text() +
+                                        ": no network interface of this host that is up has the "
+                                        "address 192.0.2.77; waiting");
+  must(source->wait());  // until `wait` is over, with an attempt each second
+  while (true) {
+    const auto got = source->take(message);
+    if (!got) {
+      EXPECT_EQ(got.error().text(), "NotFound: no writer on this topic");
+      break;
+    }
+    must(source->wait());
+  }
+  EXPECT_EQ(warnings.lines.size(), 1);
+  auto sink = must(open_sink(*parse_uri("dds:a?interface=192.0.2.77&readers=0")));
+  ASSERT_TRUE(sink->send(numbered(1, 1)));
+  EXPECT_EQ(sink->traffic().dropped_disconnect, 1);
+  EXPECT_TRUE(sink->close());
 }
 
 }  // namespace

@@ -143,4 +143,22 @@ Participant::~Participant() {
   log_of_all().remove(number_);
 }
 
+Status Entrance::begin(Place place, const Event& event) {
+  place_ = std::move(place);
+  return timer_.start(-1, [&event](auto) { event.raise(); });
+}
+
+Result<std::unique_ptr<Participant>> Entrance::open(const LinkOptions& options) {
+  constexpr std::chrono::seconds kPause{1};
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_) return std::unique_ptr<Participant>();
+  auto opened = Participant::open(place_, options.limits);
+  if (opened || opened.error().code != Code::NotFound) return opened;
+  if (!std::exchange(is_said_, true) && options.log)
+    options.log(Level::Warning, opened.error().detail + "; waiting");
+  next_ = now + kPause;
+  timer_.call_at(next_);
+  return std::unique_ptr<Participant>();
+}
+
 }  // namespace hc::dds

@@ -13,6 +13,8 @@
 #include <dds/sample.h>
 #include <hc/link/link.h>
 #include <hc/link/stream/remarks.h>
+#include <hc/os/event.h>
+#include <hc/os/reactor.h>
 
 namespace hc::dds {
 
@@ -21,7 +23,7 @@ QosOwner make_qos();
 
 class Participant {
  public:
-  /// Errors: NotFound (no such interface), System.
+  /// Errors: NotFound (this host has no such address), System.
   static Result<std::unique_ptr<Participant>> open(const Place& place, const Limits& limits);
   ~Participant();
   Participant(const Participant&) = delete;
@@ -44,6 +46,22 @@ class Participant {
   std::shared_ptr<internal::Remarks> remarks_;
   Entity domain_, participant_, topic_;
   const ddsi_sertype* type_ = nullptr;
+};
+
+/// Opens a participant once this host has the addresses of its place, which may come up after the
+/// programs have started.
+class Entrance {
+ public:
+  /// @param event  raised when it is time to call open() again; outlives this.
+  Status begin(Place place, const Event& event);
+  /// The participant; null while an address is missing, which is logged once. Errors: System.
+  Result<std::unique_ptr<Participant>> open(const LinkOptions& options);
+
+ private:
+  Place place_;
+  bool is_said_ = false;
+  Watch::TimePoint next_;
+  Watch timer_;
 };
 
 }  // namespace hc::dds

@@ -64,7 +64,9 @@ Result<std::vector<unsigned>> find_interfaces(const Place& place) {
   const std::unique_ptr<ifaddrs, decltype(&::freeifaddrs)> all(first, &::freeifaddrs);
   const auto number_of = [&](const std::string& address) {
     for (const auto* each = all.get(); each != nullptr; each = each->ifa_next) {
-      if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
+      if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET ||
+          (each->ifa_flags & IFF_UP) == 0)
+        continue;
       char text[INET_ADDRSTRLEN] = {};
       const auto* own = reinterpret_cast<const sockaddr_in*>(each->ifa_addr);
       ::inet_ntop(AF_INET, &own->sin_addr, text, sizeof text);
@@ -76,8 +78,8 @@ Result<std::vector<unsigned>> find_interfaces(const Place& place) {
   for (const auto& address : place.addresses) {
     numbers.push_back(number_of(address));
     if (numbers.back() == 0)
-      return Error{Code::NotFound, "no network interface of this host has the address " + address +
-                                       "; `ip address` lists them"};
+      return Error{Code::NotFound,
+                   "no network interface of this host that is up has the address " + address};
   }
   return numbers;
 }

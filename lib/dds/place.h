@@ -24,7 +24,7 @@ Result<Place> parse_place(const Uri& uri);
 
 /// The indices of the network interfaces of a place, loopback first.
 ///
-/// Errors: NotFound (no interface of this host has the address), System.
+/// Errors: NotFound (no interface that is up has the address), System.
 Result<std::vector<unsigned>> find_interfaces(const Place& place);
 
 /// The configuration of Cyclone DDS, in XML.

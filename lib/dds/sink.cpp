@@ -50,23 +50,13 @@ class DdsSink final : public Sink {
 
   Status begin(const Place& place) {
     event_ = HC_TRY(Event::make());
-    participant_ = HC_TRY(Participant::open(place, options_.limits));
-    const auto qos = make_qos();
-    const ListenerOwner listener(dds_create_listener(this));
-    dds_lset_publication_matched(
-        listener.get(),
-        [](dds_entity_t, const dds_publication_matched_status_t status, void* self) {
-          static_cast<DdsSink*>(self)->count_readers(status.current_count);
-        });
-    const auto writer =
-        dds_create_writer(participant_->handle(), participant_->topic(), qos.get(), listener.get());
-    if (writer < 0) return failed("writer of " + place.topic, writer);
-    writer_ = Entity(writer);
-    return keep_instance(writer, place.topic);
+    topic_ = place.topic;
+    HC_TRY(entrance_.begin(place, event_));
+    return enter();
   }
 
   Status send(const Message& message) override {
-    participant_->flush_log(options_.log);
+    HC_TRY(enter());
     const auto pieces = encoder_.encode(message);
     const std::uint64_t size = pieces[0].size() + pieces[1].size() + pieces[2].size();
     if (size > UINT32_MAX - kFrame)
@@ -123,7 +113,7 @@ class DdsSink final : public Sink {
     // no room. Once a later sample is acknowledged, it holds nothing, so the end is sent twice.
     if (outcome) outcome = await_acknowledgements();
     for (int i = 0; i < 2 && outcome; ++i) outcome = send_end();
-    participant_->flush_log(options_.log);
+    if (participant_ != nullptr) participant_->flush_log(options_.log);
     end();
     return outcome;
   }
@@ -144,6 +134,28 @@ class DdsSink final : public Sink {
   }
 
  private:
+  /// Writes the topic, once this host has the addresses.
+  Status enter() {
+    if (participant_ != nullptr) {
+      participant_->flush_log(options_.log);
+      return {};
+    }
+    participant_ = HC_TRY(entrance_.open(options_));
+    if (participant_ == nullptr) return {};
+    const auto qos = make_qos();
+    const ListenerOwner listener(dds_create_listener(this));
+    dds_lset_publication_matched(
+        listener.get(),
+        [](dds_entity_t, const dds_publication_matched_status_t status, void* self) {
+          static_cast<DdsSink*>(self)->count_readers(status.current_count);
+        });
+    const auto writer =
+        dds_create_writer(participant_->handle(), participant_->topic(), qos.get(), listener.get());
+    if (writer < 0) return failed("writer of " + topic_, writer);
+    writer_ = Entity(writer);
+    return keep_instance(writer, topic_);
+  }
+
   /// A topic without a key has one instance. Keeps it, or Cyclone DDS would create it for each
   /// sample and wake a thread to delete it.
   static Status keep_instance(dds_entity_t writer, const std::string& topic) {
@@ -185,8 +197,9 @@ class DdsSink final : public Sink {
   Status await_readers(std::unique_lock<std::mutex>& lock) {
     lock.unlock();
     auto awaited = audience_.await(event_.descriptor(), options_, [this]() -> Result<std::size_t> {
-      const std::lock_guard locked(mutex_);
       event_.clear();
+      HC_TRY(enter());
+      const std::lock_guard locked(mutex_);
       if (has_ended_) return ended();
       return readers_;
     });
@@ -247,6 +260,7 @@ class DdsSink final : public Sink {
   }
 
   Status send_end() {
+    if (participant_ == nullptr) return {};
     const auto end = make_end(participant_->type());
     {
       const std::lock_guard lock(mutex_);
@@ -297,6 +311,8 @@ class DdsSink final : public Sink {
   std::optional<Error> failed_;
 
   std::thread thread_;
+  std::string topic_;
+  Entrance entrance_;
   std::unique_ptr<Participant> participant_;
   Entity writer_;
 };

@@ -71,22 +71,15 @@ class DdsSource final : public Source {
     event_ = HC_TRY(Event::make());
     if (auto started = timer_.start(-1, [this](auto) { event_.raise(); }); !started) return started;
     if (give_up_ != TimePoint::max()) timer_.call_at(give_up_);
-    participant_ = HC_TRY(Participant::open(place, options_.limits));
-    const auto qos = make_qos();
-    const ListenerOwner listener(dds_create_listener(this));
-    dds_lset_subscription_matched(
-        listener.get(), [](dds_entity_t, const dds_subscription_matched_status_t status,
-                           void* self) { static_cast<DdsSource*>(self)->count_writers(status); });
-    const auto reader = dds_create_reader_rhc(participant_->handle(), participant_->topic(),
-                                              qos.get(), listener.get(), &cache_);
-    if (reader < 0) return failed("reader of " + place.topic, reader);
-    reader_ = Entity(reader);
-    return {};
+    topic_ = place.topic;
+    HC_TRY(entrance_.begin(place, event_));
+    return enter();
   }
 
   Result<Got> take(Message& message) override {
     message = {};
-    participant_->flush_log(options_.log);
+    HC_TRY(enter());
+    if (participant_ != nullptr) participant_->flush_log(options_.log);
     const std::lock_guard lock(mutex_);
     if (queue_.empty()) return nothing();
     auto [next, bytes] = queue_.pop({});  // the queue has no rate
@@ -142,6 +135,24 @@ class DdsSource final : public Source {
   }
 
  private:
+  /// Reads the topic, once this host has the addresses.
+  Status enter() {
+    if (participant_ != nullptr) return {};
+    event_.clear();
+    participant_ = HC_TRY(entrance_.open(options_));
+    if (participant_ == nullptr) return {};
+    const auto qos = make_qos();
+    const ListenerOwner listener(dds_create_listener(this));
+    dds_lset_subscription_matched(
+        listener.get(), [](dds_entity_t, const dds_subscription_matched_status_t status,
+                           void* self) { static_cast<DdsSource*>(self)->count_writers(status); });
+    const auto reader = dds_create_reader_rhc(participant_->handle(), participant_->topic(),
+                                              qos.get(), listener.get(), &cache_);
+    if (reader < 0) return failed("reader of " + topic_, reader);
+    reader_ = Entity(reader);
+    return {};
+  }
+
   /// Called on a thread of Cyclone DDS.
   void count_writers(const dds_subscription_matched_status_t& status) {
     const std::lock_guard lock(mutex_);
@@ -168,7 +179,7 @@ class DdsSource final : public Source {
 
   /// The result of take() with an empty queue. Call it with the mutex locked.
   Result<Got> nothing() {
-    event_.clear();
+    if (participant_ != nullptr) event_.clear();
     if (alive() > 0) return Got::Nothing;
     if (give_up_ > steady_clock::now() && !is_final_) return Got::Nothing;
     event_.raise();  // remains readable
@@ -205,6 +216,8 @@ class DdsSource final : public Source {
   TimePoint give_up_ = TimePoint::max();  // when to end; set while there is no writer
 
   Watch timer_;
+  std::string topic_;
+  Entrance entrance_;
   Cache cache_{*this};  // outlives the participant
   std::unique_ptr<Participant> participant_;
   Entity reader_;

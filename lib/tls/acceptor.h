@@ -71,6 +71,6 @@ class Acceptor {
 /// Resolves `tls:HOST:PORT`, and listens at `tls-listen:[HOST:]PORT`.
 /// Errors: Invalid, NotFound, System.
 Result<internal::Peer> find_peer(const Uri& uri);
-Result<ListeningSocket> listen(const Uri& uri);
+Result<ListeningSocket> listen(const Uri& uri, const LogSink& log);
 
 }  // namespace hc::tls

@@ -18,9 +18,9 @@ Result<internal::Peer> find_peer(const Uri& uri) {
   return peer;
 }
 
-Result<ListeningSocket> listen(const Uri& uri) {
+Result<ListeningSocket> listen(const Uri& uri, const LogSink& log) {
   auto context = HC_TRY(Context::make(uri));
-  auto listening = internal::listen_tcp(uri);
+  auto listening = internal::listen_tcp(uri, log);
   if (!listening) return listening;
   auto acceptor = std::make_shared<Acceptor>(std::move(*listening), std::move(context));
   auto readable = HC_TRY(acceptor->start());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <web/server.h>
 
+#include <netinet/in.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include <hc/os/peer_user.h>
+#include <hc/os/socket.h>
 #include <web/connection.h>
 #include <web/visitor.h>
 
@@ -26,6 +28,9 @@ namespace asio = boost::asio;
 using tcp = asio::ip::tcp;
 
 constexpr std::size_t kMaxStrangers = 128;
+
+/// As bind_socket(): an address that this host does not have yet can be bound.
+using AlsoMissing = asio::detail::socket_option::boolean<IPPROTO_IP, IP_FREEBIND>;
 
 Peer peer_of(tcp::socket& socket) {
   const auto user = tcp_peer_user(socket.native_handle(), Connected::Accepted);
@@ -58,6 +63,7 @@ class BeastServer final : public Server {
       error = {};
       acceptor_.open(place.protocol(), error);
       if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
+      if (!error) acceptor_.set_option(AlsoMissing(true), error);
       if (!error) acceptor_.bind(place, error);
       if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
       if (!error || error != asio::error::address_in_use) break;
@@ -67,6 +73,9 @@ class BeastServer final : public Server {
                    "listen on " + address + ", port " + std::to_string(first) +
                        (ports > 1 ? " to " + std::to_string(first + ports - 1) : std::string()) +
                        ": " + error.message()};
+    const auto place = acceptor_.local_endpoint();
+    if (!is_of_this_host({place.data(), static_cast<unsigned>(place.size())}))
+      shared_->log(Level::Warning, "listen " + address + ": " + kNotOfThisHost);
     return {};
   }
 

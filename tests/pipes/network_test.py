@@ -20,6 +20,7 @@ from harness import PYTHON, Pipes, WATCHDOG, free_port, listens, wait_until
 FULL = bool(os.environ.get("HC_FULL"))
 NOTICED, BACK = (4.0, 2.0) if FULL else (WATCHDOG, WATCHDOG)  # [s]
 HERE, THERE = "10.213.77.1", "10.213.77.2"
+LATE = "10.213.78.1"
 # Inside the first namespace: makes the second, ties them together, and keeps both.
 CABLE = """
 ip link set lo up
@@ -129,6 +130,72 @@ class Network(Pipes):
         self.within(self.far, self.recording() + "'tcp-listen:%s:7000?rate=50'" % THERE)
         reader = self.within(self.near, "hc cat --json 'tcp:%s:7000?reconnect=60'" % THERE)
         self.check_return(reader)
+
+    def add_address(self):
+        subprocess.run(
+            ["nsenter", "--preserve-credentials", "-t", self.near, "-U", "-n"]
+            + ["ip", "address", "add", LATE + "/32", "dev", "near"],
+            check=True,
+        )
+
+    def check_late_address(self, reader, send, said):
+        """A reader waits for an address that comes after its start, and says so once."""
+        waiting = self.within(self.near, reader % LATE + " --count 1")
+        line = waiting.stderr.readline().decode()
+        self.assertIn(said, line)
+        self.add_address()
+        sender = self.within(self.near, send % LATE)
+        out, err = waiting.communicate(timeout=WATCHDOG)
+        self.assertEqual(waiting.returncode, 0, line + err.decode())
+        self.assertEqual(err, b"")  # it was said once
+        self.assertEqual(json.loads(out)["elements"], [[5]])
+        self.assertEqual(sender.wait(timeout=WATCHDOG), 0)
+
+    NOT_YET = "this host does not have the address yet; waiting"
+
+    def test_a_tcp_address_that_comes_late_is_listened_on(self):
+        self.check_late_address(
+            "hc cat --json tcp-listen:%s:7000", "hc send 5 --out tcp:%s:7000", self.NOT_YET
+        )
+
+    def test_a_tls_address_that_comes_late_is_listened_on(self):
+        self.shell("hc key k.pem")
+        ends = "?key=k.pem&peer=k.pem"
+        self.check_late_address(
+            "hc cat --json 'tls-listen:%%s:7000%s'" % ends,
+            "hc send 5 --out 'tls:%%s:7000%s'" % ends,
+            self.NOT_YET,
+        )
+
+    def test_an_interface_of_dds_that_comes_late_is_used(self):
+        topic = "'dds:late?interface=%s'"
+        self.check_late_address(
+            "hc cat --json " + topic,
+            "hc send 5 --out " + topic,
+            "no network interface of this host that is up has the address %s; waiting" % LATE,
+        )
+
+    def test_a_page_at_an_address_that_comes_late_is_served(self):
+        self.write(
+            "g.toml",
+            "version = 1\n[modules.web]\nparameters = { listen = '%s', port = 7443 }\n" % LATE,
+        )
+        graph = self.within(self.near, "hc run g.toml 2>log")
+        wait_until(lambda: "web: listen %s: %s\n" % (LATE, self.NOT_YET) in self.read("log"))
+        self.add_address()
+        visitor = self.within(self.near, "bash -c 'exec 3<>/dev/tcp/%s/7443'" % LATE)
+        self.assertEqual(visitor.wait(timeout=WATCHDOG), 0)
+        graph.terminate()
+        graph.wait(timeout=WATCHDOG)
+        self.assertEqual(self.read("log").count("web: started"), 1)
+
+    def test_a_port_in_use_is_an_error_also_at_an_address_of_this_host(self):
+        self.within(self.near, "hc cat tcp-listen:%s:7000" % HERE)
+        table = pathlib.Path("/proc/%s/net/tcp" % self.near)
+        wait_until(lambda: ":%04X 00000000:0000 0A" % 7000 in table.read_text())
+        other = self.within(self.near, "hc cat tcp-listen:%s:7000" % HERE)
+        self.assertIn(b"Address already in use", other.communicate(timeout=WATCHDOG)[1])
+        self.assertEqual(other.returncode, 1)
 
     def test_a_head_tracker_hears_the_machine_that_is_named(self):
         send = (

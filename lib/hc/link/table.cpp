@@ -47,11 +47,9 @@ std::vector<std::string> split(std::string_view words) {
 
 /// Whether any end of any transport has this option; if so, it is not misspelt.
 bool is_option(const std::string& key) {
-  std::string all;
-  for (const Transport& transport : table())
-    all.append(" ").append(transport.source_options).append(" ").append(transport.sink_options);
-  auto words = split(all);
-  return std::find(words.begin(), words.end(), key) != words.end();
+  return std::ranges::any_of(table(), [&](const Transport& each) {
+    return std::ranges::count(split(each.source_options + " " + each.sink_options), key) > 0;
+  });
 }
 
 Result<const Transport*> find_transport(const Uri& uri) {
@@ -104,15 +102,6 @@ LinkOptions with_uri_prefix(LinkOptions options, const Uri& uri) {
 }
 
 }  // namespace
-
-namespace internal {
-
-Status check_host_port(const Uri& uri) {
-  HC_TRY(parse_host_port(uri.rest));
-  return {};
-}
-
-}  // namespace internal
 
 void add_transport(Transport transport) {
   for (const Transport& each : table())

@@ -6,7 +6,6 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/ioctl.h>
-#include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
@@ -45,10 +44,17 @@ ListeningSocket::~ListeningSocket() {
   if (descriptor && !unlink_path.empty()) ::unlink(unlink_path.c_str());
 }
 
+bool is_of_this_host(Address address) {
+  Descriptor probe(::socket(address.storage.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  reinterpret_cast<sockaddr_in&>(address.storage).sin_port = 0;  // sin6_port has the same offset
+  return ::bind(probe.get(), address.get(), address.size) == 0 || errno != EADDRNOTAVAIL;
+}
+
 Result<Descriptor> bind_socket(const Address& address, const std::string& name) {
   auto socket = HC_TRY(open_socket(address));
   int on = 1;
   ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  ::setsockopt(socket.get(), IPPROTO_IP, IP_FREEBIND, &on, sizeof on);  // of IPv6 too
   HC_TRY(
       system_call("bind", name, [&] { return ::bind(socket.get(), address.get(), address.size); }));
   return socket;

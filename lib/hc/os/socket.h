@@ -72,8 +72,12 @@ bool is_with_itself(int socket);
 /// How long to wait for a peer's answer if `wait` is 0.
 constexpr std::chrono::seconds kAnswerTime{4};
 
-/// A socket bound to an address, and a listening one; `name` is for error messages.
-/// Errors: System.
+/// Whether an address is of this host. If that cannot be tested, it is assumed to be.
+bool is_of_this_host(Address address);
+inline constexpr const char* kNotOfThisHost = "this host does not have the address yet; waiting";
+
+/// A socket bound to an address that this host has now or gets later, and a listening one; `name`
+/// is for error messages. Errors: System.
 Result<Descriptor> bind_socket(const Address& address, const std::string& name);
 Result<Descriptor> listen_on(const Address& address, const std::string& name);
 

@@ -18,19 +18,10 @@
 #include <string>
 #include <vector>
 
-#include <hc/os/descriptor.h>
+#include <hc/os/socket.h>
 
 namespace hc {
 namespace {
-
-/// Whether an address is of this host: only those can be bound. If that cannot be tested, for lack
-/// of descriptors or ports, it is assumed to be, so that its user is looked up.
-bool is_of_this_host(sockaddr_storage address) {
-  Descriptor probe(::socket(address.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  reinterpret_cast<sockaddr_in&>(address).sin_port = 0;  // sin6_port has the same offset
-  return ::bind(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
-         errno != EADDRNOTAVAIL;
-}
 
 /// An address as in /proc/net: words in hexadecimal, the port after a colon.
 std::string in_hexadecimal(std::span<const std::uint32_t> words, in_port_t port) {
@@ -64,7 +55,7 @@ std::vector<std::string> local_addresses(const sockaddr_storage& from) {
 }  // namespace
 
 Result<std::optional<uid_t>> udp_sender_user(const sockaddr_storage& from) {
-  if (!is_of_this_host(from)) return std::optional<uid_t>();
+  if (!is_of_this_host({&from, sizeof from})) return std::optional<uid_t>();
   const auto sought = local_addresses(from);
   std::optional<uid_t> user;
   for (const char* table : {"/proc/net/udp", "/proc/net/udp6"}) {

@@ -68,7 +68,7 @@ TEST_P(SocketLink, BehindAConnectionThatLivedPausesAreShortAgain) {
       do ASSERT_FALSE(*dialer.dial(now));
       while (dialer.descriptor() >= 0);
     }
-    auto listening = *GetParam().socket(*parse_uri(listen()));
+    auto listening = *GetParam().socket(*parse_uri(listen()), {});
     auto connection = *dialer.dial(now);
     for (; !connection; connection = *dialer.dial(now)) {
       ASSERT_GE(dialer.descriptor(), 0) << dialer.why();

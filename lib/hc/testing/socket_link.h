@@ -33,7 +33,7 @@ struct SocketScheme {
   std::function<Descriptor(const std::string& place)> connect;
   /// The transports of the two schemes.
   std::function<Result<internal::Peer>(const Uri&)> peer = {};
-  std::function<Result<ListeningSocket>(const Uri&)> socket = {};
+  std::function<Result<ListeningSocket>(const Uri&, const LogSink&)> socket = {};
   std::string options = {};  ///< of every end, such as "?key=eyes.pem"
   int cuts = 10'000;         ///< number of truncated streams to test
 };
@@ -87,7 +87,7 @@ class SocketLink : public ::testing::TestWithParam<SocketScheme> {
   /// Opens a listening source with these time-outs for its peers.
   [[nodiscard]] std::unique_ptr<Source> source_with(internal::PeerTimes times,
                                                     Warnings& warnings) const {
-    return must(internal::listening_source(*GetParam().socket(*parse_uri(listen())),
+    return must(internal::listening_source(*GetParam().socket(*parse_uri(listen()), {}),
                                            warnings.options(), times));
   }
   std::string place_;

@@ -93,12 +93,12 @@ Result<Peer> tcp_peer(const Uri& uri);
 Result<Peer> unix_peer(const Uri& uri);
 
 /// A socket that listens at `tcp-listen:[HOST:]PORT`, by default on loopback; `same_user` as
-/// above. Errors: Invalid, NotFound, System.
-Result<ListeningSocket> listen_tcp(const Uri& uri);
+/// above. Logs if this host does not have the address yet. Errors: Invalid, NotFound, System.
+Result<ListeningSocket> listen_tcp(const Uri& uri, const LogSink& log);
 /// A socket that listens at `unix-listen:PATH` or `unix-listen:@NAME`; a @NAME accepts only
 /// processes of this user or root. Uses the socket in kListeners with this name, if any. Errors:
 /// Invalid, System.
-Result<ListeningSocket> listen_unix(const Uri& uri);
+Result<ListeningSocket> listen_unix(const Uri& uri, const LogSink& log = {});
 
 /// The environment variable with the numbers of inherited sockets that already listen at @NAMEs,
 /// separated by blanks.
@@ -130,17 +130,17 @@ Transport dialing(std::string scheme, const std::string& options, Status (*check
 }
 
 /// The transport whose ends listen on the socket from `listen`.
-template <Result<ListeningSocket> listen(const Uri&)>
+template <Result<ListeningSocket> listen(const Uri&, const LogSink&)>
 Transport listening(std::string scheme, const std::string& options, Status (*check)(const Uri&)) {
   return {std::move(scheme),
           options,
           "readers stay wait " + options + " " + kPolicyOptions,
           [](const Uri& uri, const LinkOptions& link) -> Result<std::unique_ptr<Source>> {
-            auto socket = listen(uri);
+            auto socket = listen(uri, link.log);
             return socket ? listening_source(std::move(*socket), link) : socket.error();
           },
           [](const Uri& uri, const LinkOptions& link) -> Result<std::unique_ptr<Sink>> {
-            auto socket = listen(uri);
+            auto socket = listen(uri, link.log);
             return socket ? listening_sink(std::move(*socket), uri, link) : socket.error();
           },
           check};

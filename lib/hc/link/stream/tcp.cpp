@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `tcp:HOST:PORT` and `tcp-listen:[HOST:]PORT`: between hosts, and to netcat.
 #include <netdb.h>
-#include <sys/socket.h>
 
 #include <memory>
 #include <string>
@@ -39,6 +38,11 @@ Result<std::function<Status(int)>> admission(const Uri& uri, Connected how, cons
 
 }  // namespace
 
+Status check_host_port(const Uri& uri) {
+  HC_TRY(parse_host_port(uri.rest));
+  return {};
+}
+
 /// A name may have several addresses; localhost has two.
 Result<Peer> tcp_peer(const Uri& uri) {
   const auto place = HC_TRY(parse_host_port(uri.rest));
@@ -53,12 +57,13 @@ Result<Peer> tcp_peer(const Uri& uri) {
   return peer;
 }
 
-Result<ListeningSocket> listen_tcp(const Uri& uri) {
+Result<ListeningSocket> listen_tcp(const Uri& uri, const LogSink& log) {
   const auto place = HC_TRY(parse_host_port(uri.rest));
   const auto addresses = HC_TRY(look_up(place, AI_PASSIVE));
   ListeningSocket socket;
   socket.admit = HC_TRY(admission(uri, Connected::Accepted, kAccepted));
   socket.descriptor = HC_TRY(listen_on(addresses.front(), uri.rest));
+  if (log && !is_of_this_host(addresses.front())) log(Level::Warning, kNotOfThisHost);
   return socket;
 }
 

@@ -2,7 +2,6 @@
 // `unix:PATH` and `unix-listen:PATH`: between processes of one host. `@NAME` is in the abstract
 // namespace: it leaves no file, and accepts only processes of the same user.
 #include <fcntl.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 
@@ -79,7 +78,7 @@ Result<Peer> unix_peer(const Uri& uri) {
   return peer;
 }
 
-Result<ListeningSocket> listen_unix(const Uri& uri) {
+Result<ListeningSocket> listen_unix(const Uri& uri, const LogSink& /*log*/) {
   auto address = HC_TRY(address_of(uri));
   if (!is_abstract(uri) && is_left_behind(uri, address)) ::unlink(uri.rest.c_str());
   ListeningSocket socket;

@@ -2,7 +2,6 @@
 #include <hc/link/stream/writer.h>
 
 #include <pthread.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
