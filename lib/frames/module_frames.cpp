@@ -50,20 +50,19 @@ ModuleFrames::Name::operator frames::Frame() const {
 }
 
 frames::GraphFrames& ModuleFrames::known() {
-  if (!frames_) frames_ = value_or_end(frames::read_frames(*text_, options_.memory));
+  if (!frames_) frames_ = value_or_refuse(text_, frames::read_frames(*text_, options_.memory));
   return *frames_;
 }
 
 Eigen::Isometry3d ModuleFrames::nearest(const frames::Frame& target, const frames::Frame& source,
                                         Time time) {
-  return value_or_end(tree().nearest(target, source, given(time)));
+  return value_or_refuse(text_, tree().nearest(target, source, given(time)));
 }
 
 Eigen::Isometry3d ModuleFrames::fixed(const frames::Frame& target, const frames::Frame& source) {
-  const auto span = value_or_end(tree().known(target, source));
-  if (span != frames::TimeSpan{})
-    throw ModuleError(Error{Code::Invalid, "frames: a joint moves where a fixed one is expected"});
-  return value_or_end(lookup(target, source, Time()));
+  const auto span = value_or_refuse(text_, tree().known(target, source));
+  if (span != frames::TimeSpan{}) refuse(text_, "a joint moves where a fixed one is expected");
+  return value_or_refuse(text_, lookup(target, source, Time()));
 }
 
 Status ModuleFrames::feed(std::string_view parent, std::string_view child, Time time,

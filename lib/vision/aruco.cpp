@@ -50,7 +50,7 @@ struct ArucoFinder::Detector {
 Result<ArucoFinder> ArucoFinder::make(const std::string& dictionary) {
   const auto* named = std::ranges::find(kDictionaries, dictionary);
   if (named == std::end(kDictionaries))
-    return Error{Code::NotFound, "unknown ArUco dictionary \"" + dictionary + "\""};
+    return Error{Code::Invalid, "unknown ArUco dictionary \"" + dictionary + "\""};
   auto detector = std::make_shared<Detector>();
   keep_inner_outlines(*detector->parameters);
   detector->dictionary = pointer_to(aruco::getPredefinedDictionary(

@@ -37,12 +37,12 @@ Calibrator::Calibrator(hc::Module& module) : module_(module) {
 void Calibrator::start() {
   mounted_.emplace(frames_.fixed("head", "left_eye"), frames_.fixed("head", "right_eye"));
   tour_.emplace(*parameters_.turn);
-  const auto& file = *parameters_.calibration_file;
-  if (file.empty() || !std::filesystem::exists(file)) return;
-  read_ = hc::value_or_end(hc::vision::read_calibration(file));
+  const auto& file = parameters_.calibration_file;
+  if (file->empty() || !std::filesystem::exists(*file)) return;
+  read_ = hc::value_or_refuse(file, hc::vision::read_calibration(*file));
   cameras_ = *read_;
   if (!cameras_.head.empty())
-    finish(hc::value_or_end(HeadCalibration::of(cameras_.head)), "from " + file + ": ");
+    finish(hc::value_or_refuse(file, HeadCalibration::of(cameras_.head)), "from " + *file + ": ");
 }
 
 void Calibrator::look(hc::Time time, const Angles& measured, const hc::Message& one,

@@ -96,7 +96,7 @@ class Capture final : public ImageSequence {
   SequenceImage next() override {
     SequenceImage next;
     if (!capture_.read(next.image)) {
-      if (!any_) throw hc::ModuleError(name_ + ": no image in it");
+      if (!any_) fail("no image in it");
       return {};
     }
     if (has_times_) next.at = time_of_image();
@@ -113,7 +113,7 @@ class Capture final : public ImageSequence {
     const bool is_pipeline = name_.find('!') != std::string::npos;
     any_ = false;
     if (!capture_.open(name_, is_pipeline ? cv::CAP_GSTREAMER : cv::CAP_ANY))
-      throw hc::ModuleError(name_ + ": cannot be opened as a video, folder or image");
+      fail("cannot be opened as a video, folder or image");
     capture_.set(cv::CAP_PROP_ORIENTATION_AUTO, upright_ ? 1 : 0);
     const double rate = capture_.get(cv::CAP_PROP_FPS);
     // What has a length is a recording. A pattern of image files has no times of its own.
@@ -123,6 +123,13 @@ class Capture final : public ImageSequence {
         (fs::is_regular_file(name_, unreadable) || capture_.get(cv::CAP_PROP_FRAME_COUNT) > 0);
     has_times_ = is_recorded && rate > 0 && std::isfinite(rate);
     if (has_times_) period_ = hc::duration(1 / rate);
+  }
+
+  /// A file stays as it is; what a pipeline or URL leads to may come later.
+  [[noreturn]] void fail(const std::string& why) const {
+    std::error_code unreadable;
+    if (fs::is_regular_file(name_, unreadable)) throw unusable(name_, why);
+    throw hc::ModuleError(name_ + ": " + why);
   }
 
   /// The decoder does not know the times of all images, such as those that it gives at the end.

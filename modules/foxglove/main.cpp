@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
       throw hc::ModuleError(
           "HC_GRAPH does not name a running graph, NAME.PID; run this module in a graph, or add it "
           "to one: hc graph add foxglove foxglove");
-    auto joints = hc::value_or_end(hc::ros::GraphJoints::read(*frames));
+    auto joints = hc::value_or_refuse(frames, hc::ros::GraphJoints::read(*frames));
     service =
         hc::value_or_end(web::Service::open({*listen, static_cast<int>(*port), *tls, *hosts}, *loop,
                                             [&](std::string_view line) { module.log(line); }));

@@ -41,10 +41,11 @@ void Gaze::start() {
   controller_.emplace(parameters_, Targets(parameters_.eyes(frames_.fixed(kHead, kLeftEye),
                                                             frames_.fixed(kHead, kRightEye)),
                                            parameters_.follower(), *parameters_.distance));
-  const auto& file = *parameters_.calibration_file;
-  if (file.empty()) return;
-  hc::succeed_or_end(
-      controller_->targets.calibrate(hc::value_or_end(hc::vision::read_calibration(file))));
+  const auto& file = parameters_.calibration_file;
+  if (file->empty()) return;
+  const auto read = hc::value_or_refuse(file, hc::vision::read_calibration(*file));
+  if (const auto used = controller_->targets.calibrate(read); !used)
+    hc::refuse(file, used.error().detail);
 }
 
 void Gaze::calibrate(const hc::MessageOf<hc::TableKind<double>>& message) {

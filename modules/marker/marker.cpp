@@ -39,10 +39,11 @@ MarkerSearch::MarkerSearch(hc::Module& module) : module_(module) {
 
 void MarkerSearch::start() {
   read_parameters();
-  aruco_ = hc::value_or_end(hc::vision::ArucoFinder::make(*parameters_.dictionary));
+  const auto& dictionary = parameters_.dictionary;
+  aruco_ = hc::value_or_refuse(dictionary, hc::vision::ArucoFinder::make(*dictionary));
   apriltag_.emplace(*parameters_.decimate);
-  if (const auto& file = *parameters_.calibration_file; !file.empty())
-    calibration_ = hc::value_or_end(hc::vision::read_calibration(file));
+  if (const auto& file = parameters_.calibration_file; !file->empty())
+    calibration_ = hc::value_or_refuse(file, hc::vision::read_calibration(*file));
 }
 
 void MarkerSearch::read_parameters() {

@@ -37,11 +37,9 @@ int main(int argc, char** argv) {
   module.on_start([&] {
     const hc::audio::Format format{static_cast<int>(*rate), static_cast<int>(*channels)};
     if (!hc::audio::coord_of(format.rate))
-      throw hc::ModuleError(
-          hc::Error{hc::Code::Invalid, "parameter rate: " + std::to_string(*rate) +
-                                           " is not 8000, 16000, 22050, 44100 or 48000"});
+      hc::refuse(rate, std::to_string(*rate) + " is not 8000, 16000, 22050, 44100 or 48000");
     if (!file->empty()) {
-      from_file.emplace(hc::value_or_end(FileEar::open(*file, format, module.now())));
+      from_file.emplace(hc::value_or_refuse(file, FileEar::open(*file, format, module.now())));
       return module.generate(send_from_file);
     }
     from_device.emplace(*device, format,

@@ -18,11 +18,12 @@ Rectify::Rectify(hc::Module& module) : module_(module) {
 }
 
 void Rectify::start() {
-  const auto& file = *parameters_.calibration_file;
-  if (file.empty()) return;
-  calibration_ = hc::value_or_end(hc::vision::read_calibration(file));
+  const auto& file = parameters_.calibration_file;
+  if (file->empty()) return;
+  calibration_ = hc::value_or_refuse(file, hc::vision::read_calibration(*file));
   if (!calibration_->head.empty())
-    mounting_.calibration = hc::value_or_end(hc::gaze::HeadCalibration::of(calibration_->head));
+    mounting_.calibration =
+        hc::value_or_refuse(file, hc::gaze::HeadCalibration::of(calibration_->head));
 }
 
 void Rectify::mount(const hc::MessageOf<hc::TableKind<double>>& message) {

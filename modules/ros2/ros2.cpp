@@ -85,7 +85,8 @@ void Ros2::start() {
     refuse("neither publish nor subscribe names a topic: publish=eyes.left=/left");
   if (!is_node(*parameters_.node))
     refuse("node: \"" + *parameters_.node + "\" may contain only letters, digits and _");
-  joints_ = hc::value_or_end(hc::ros::GraphJoints::read(*parameters_.frames));
+  joints_ =
+      hc::value_or_refuse(parameters_.frames, hc::ros::GraphJoints::read(*parameters_.frames));
   participant_ = hc::value_or_end(Participant::open(parameters_.participant(), warn_));
   for (const auto& each : subscribed) subscribe(each);
   const auto graph = hc::own_graph();

@@ -53,13 +53,11 @@ void StereoCalibration::start() {
   views_.emplace(hc::value_or_end(hc::vision::BoardViews::make(
       parameters_.sought_board(), static_cast<std::size_t>(*parameters_.views),
       *parameters_.dictionary)));
-  const auto& file = *parameters_.calibration_file;
+  const auto& file = parameters_.calibration_file;
   // A file that is not a calibration is not to be overwritten after all views have been taken.
-  if (std::filesystem::is_regular_file(file) && !std::filesystem::is_empty(file)) {
-    auto read = hc::vision::read_calibration(file);
-    if (!read)
-      throw hc::ModuleError(
-          hc::Error{read.error().code, read.error().detail + "; remove it or name another file"});
+  if (std::filesystem::is_regular_file(*file) && !std::filesystem::is_empty(*file)) {
+    auto read = hc::vision::read_calibration(*file);
+    if (!read) hc::refuse(file, read.error().detail + "; remove it or name another file");
     calibration_ = *read;
   }
 }
@@ -68,7 +66,8 @@ void StereoCalibration::draw_board() const {
   const auto& file = *parameters_.print;
   const auto print =
       hc::value_or_end(hc::vision::print_of(parameters_.sought_board(), *parameters_.dictionary));
-  hc::succeed_or_end(hc::replace_file(file, hc::vision::pdf_of(print)));
+  if (const auto drawn = hc::replace_file(file, hc::vision::pdf_of(print)); !drawn)
+    hc::refuse(parameters_.print, drawn.error().detail);
   module_.log(hc::format("{}: {:.0f} x {:.0f} mm, to be printed without scaling", file,
                          1000 * print.paper.width, 1000 * print.paper.height));
   module_.stop();

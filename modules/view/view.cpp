@@ -58,9 +58,9 @@ ImageView::ImageView(hc::Module& module) : module_(module) {
 void ImageView::start() {
   const auto &window = *parameters_.window, &save = *parameters_.save;
   std::string why = "no display";
-  if (*parameters_.min > *parameters_.max) throw hc::ModuleError("min is above max");
+  if (*parameters_.min > *parameters_.max) hc::refuse(parameters_.min, "it is above max");
   if (!save.empty() && !Saver::is_place(save))
-    throw hc::ModuleError("save: " + save + " is neither a .png nor a folder/");
+    hc::refuse(parameters_.save, save + " is neither a .png nor a folder/");
   if (window == "yes" || (window == "auto" && save.empty())) {
     auto opened = hc::vision::Display::open(static_cast<int>(*parameters_.monitor));
     if (opened)

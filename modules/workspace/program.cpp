@@ -116,7 +116,8 @@ Program::Program(hc::Module& module) : module_(module) {
 
 void Program::start() {
   read_names([](auto names) { return std::optional(hc::value_or_end(std::move(names))); });
-  workspace_.brake.restore(hc::value_or_end(hc::parse_stops(*parameters_.stops)));
+  workspace_.brake.restore(
+      hc::value_or_refuse(parameters_.stops, hc::parse_stops(*parameters_.stops)));
   if (workspace_.brake.is_stopped())
     module_.log(workspace_.brake.reason(module_.monotonic()) + ", before the restart");
 }

@@ -59,6 +59,7 @@ class Parameter {
   explicit Parameter(std::shared_ptr<const ParameterState> state) : state_(std::move(state)) {}
   const T& operator*() const { return std::get<T>(state_->value); }
   const T* operator->() const { return &**this; }
+  [[nodiscard]] const std::string& name() const { return state_->name; }
   /// Whether the user, or the graph, has given it.
   [[nodiscard]] bool is_set() const { return state_->is_set; }
 

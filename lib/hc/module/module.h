@@ -55,6 +55,24 @@ inline void succeed_or_end(const Status& status) {
   if (!status) throw ModuleError(status.error());
 }
 
+/// Ends the module with status 2, since a restart would find the same: a parameter has a value, or
+/// names a file, that cannot be used.
+/// @param why  may begin with the parameter's name.
+template <typename P>
+[[noreturn]] void refuse(const Parameter<P>& parameter, const std::string& why) {
+  const auto name = parameter.name() + ": ";
+  throw ModuleError(Error{Code::Invalid, why.starts_with(name) ? why : "parameter " + name + why});
+}
+
+/// The value of a result that depends only on a parameter, such as the contents of the file that it
+/// names; a failed one ends the module with status 2. A device that may be plugged in later is no
+/// such value: wait for it.
+template <typename T, typename P>
+T value_or_refuse(const Parameter<P>& parameter, Result<T> result) {
+  if (!result) refuse(parameter, result.error().detail);
+  return std::move(*result);
+}
+
 /// Thrown by a handler, or by what it calls, since the message that it got says what it cannot use:
 /// that message is dropped, counted (`bad`) and logged, once for each input, and the module goes
 /// on.
