@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gives each link of a checked graph its two ends.
 #include <arpa/inet.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +11,7 @@
 #include <graph/plan/planning.h>
 #include <graph/plan/routes.h>
 #include <hc/base/uri.h>
+#include <hc/link/policy.h>
 
 namespace hc::internal {
 namespace {
@@ -362,6 +364,17 @@ class LinkPlanner {
   std::map<std::string, Sender> senders_;  // by name
 };
 
+/// Whether modules may make the shared memory of a link: to the limit of the size of files
+/// (ulimit -f), which they inherit, it is a file.
+bool may_share_memory(const GraphLink& link) {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_FSIZE, &limit);
+  const auto given = link.policy.find("memory");
+  const auto policy = parse_policy(
+      {"shm", "", {{"memory", given == link.policy.end() ? "64M" : given->second.value}}});
+  return limit.rlim_cur == RLIM_INFINITY || !policy || policy->memory <= limit.rlim_cur;
+}
+
 }  // namespace
 
 const LinkTransport* transport_of(const Planning& planning, const GraphLink& link) {
@@ -376,12 +389,15 @@ const LinkTransport* transport_of(const Planning& planning, const GraphLink& lin
   const bool is_between = planning.is_between_hosts(link);
   for (const auto& each : kTransports) {
     const bool may_be = is_between ? each.name == via : each.name != "tls" && each.name != "dds";
+    if (each.name == "shm" && !may_share_memory(link)) continue;
     if (may_be && from.knows(each.writer) && to.knows(each.reader)) return &each;
   }
   return nullptr;
 }
 
 void plan_links(Planning& planning) {
+  if (!std::ranges::all_of(planning.graph.links, may_share_memory))
+    planning.problems.warn({}, "ulimit -f is below the shared memory of links; they use sockets");
   LinkPlanner(planning).run();
 }
 

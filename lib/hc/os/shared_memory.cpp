@@ -30,8 +30,8 @@ Result<SharedMemory> SharedMemory::make(std::uint64_t bytes, std::uint64_t reser
     return ::memfd_create("hypercolumn", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   }));
   const int number = memory.descriptor_.get();
-  HC_TRY(
-      system_call("ftruncate", "", [&] { return ::ftruncate(number, static_cast<off_t>(bytes)); }));
+  HC_TRY(system_call("ftruncate", "shared memory, which ulimit -f limits",
+                     [&] { return ::ftruncate(number, static_cast<off_t>(bytes)); }));
   memory.data_ = HC_TRY(map_bytes(number, bytes, PROT_READ | PROT_WRITE));
   memory.bytes_ = bytes;
   // Advice only: fewer pages to set up and to look up when writing images.
