@@ -13,6 +13,15 @@ namespace hc::record {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+bool is_missing(const std::string& path) {
+  std::error_code unknown;
+  return !fs::exists(path, unknown) && !unknown;
+}
+
+}  // namespace
+
 Result<std::unique_ptr<Writer>> Writer::open(const Place& place, const WriterOptions& options) {
   if (place.kind != Place::Kind::Mcap &&
       (options.split > 0 || options.keep > 0 || options.last.count() > 0))
@@ -241,6 +250,17 @@ Status Writer::end() {
   return status;
 }
 
+Status Writer::look() const {
+  std::vector<std::string> paths;
+  for (const auto& file : files_) paths.push_back(file.path);
+  if (mcap_ != nullptr && options_.split == 0 && options_.last.count() == 0)
+    paths.push_back(written_.place);
+  for (const auto& path : paths)
+    if (is_missing(path))
+      return Error{Code::NotFound, path + " was removed or renamed while it was written"};
+  return {};
+}
+
 const Written& Writer::close() {
   if (std::exchange(is_closed_, true)) return written_;
   auto ended = end();
@@ -250,6 +270,7 @@ const Written& Writer::close() {
     written_.files = mcap_->files();
     written_.lost += mcap_->lost();
   }
+  std::erase_if(written_.files, is_missing);
   written_.messages -= written_.lost;
   return written_;
 }

@@ -47,7 +47,7 @@ struct Written {
   /// The folder or file, which may differ from the requested one; with `split` or `last`, the name
   /// without number.
   std::string place;
-  std::vector<std::string> files;  ///< files with contents
+  std::vector<std::string> files;  ///< files with contents that are still there
   std::uint64_t messages = 0;      ///< written
   std::uint64_t bytes = 0;         ///< of the elements of all messages passed
   std::uint64_t lost = 0;          ///< messages passed but not written
@@ -90,6 +90,10 @@ class Writer {
 
   /// With `last`: writes the messages in memory to a new file and logs its name or the error.
   void save();
+
+  /// Whether the files are still at their places: a removed one is written, but lost. Those of
+  /// `split` and `last` are not checked. Errors: NotFound.
+  [[nodiscard]] Status look() const;
 
   /// Writes all buffered data and closes the files.
   const Written& close();

@@ -88,6 +88,7 @@ StreamRecorder::StreamRecorder(hc::Module& module, const std::vector<StreamName>
   module.on_readable([this] { return has_failed_ ? -1 : loop_->descriptor(); },
                      [this] { hc::succeed_or_end(loop_->turn(std::chrono::milliseconds(0))); });
   module.on_readable([this] { return signals_; }, [this] { save_when_signalled(); });
+  module.every(std::chrono::seconds(1), [this] { look(); });
   module.on_end([this] { end(); });
 }
 
@@ -100,12 +101,20 @@ void StreamRecorder::start() {
                 severity == hc::Level::Error ? hc::Level::Error : hc::Level::Info);
   };
   const auto place = parameters_.place(options);
-  recording_ = hc::value_or_end(hc::record::Writer::open(place, options));
+  const bool is_folder = place.kind == hc::record::Place::Kind::Folder;
+  recording_ = hc::value_or_refuse(is_folder ? parameters_.folder : parameters_.file,
+                                   hc::record::Writer::open(place, options));
   if (const auto& now = recording_->written().place; now != place.path)
     module_.log("recording continues in " + now, hc::Level::Notice);
-  const bool is_folder = place.kind == hc::record::Place::Kind::Folder;
   if (const auto own = hc::own_graph(); own && !is_folder)
     metadata_.emplace(graph_.emplace(*loop_, *own), *recording_);
+}
+
+void StreamRecorder::look() {
+  const auto there = recording_->look();
+  if (!there && !std::exchange(has_failed_, true))
+    module_.log(there.error().detail + "; what is recorded there from now on may be lost",
+                hc::Level::Error);
 }
 
 void StreamRecorder::save_when_signalled() {
@@ -116,6 +125,7 @@ void StreamRecorder::save_when_signalled() {
 
 void StreamRecorder::end() {
   graph_.reset();
+  look();
   const auto& written = recording_->close();
   fail_once(written.status);
   if (written.files.empty()) return module_.log("nothing saved", hc::Level::Result);

@@ -84,6 +84,7 @@ class StreamRecorder {
  private:
   void start();
   void save_when_signalled();
+  void look();
   void end();
   void fail_once(const hc::Status& status);
 

@@ -105,6 +105,37 @@ class Recorder(Recordings):
         self.assertTrue(seqs)
         self.assertEqual(seqs, list(range(len(seqs))))
 
+    def test_a_place_that_cannot_be_recorded_to_is_tried_once(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 3))
+        self.shell("mkdir folder.mcap; touch plain")
+        self.shell("hc run g.toml --record folder.mcap", 1)
+        self.assertEqual(self.err.count("recorder: Invalid: parameter file: "), 1, self.err)
+        self.assertIn("recorder: failed with status 2", self.err)
+        for place in ("plain/x.mcap", "plain/kept"):
+            self.shell("hc run g.toml --record " + place, 1)
+            self.assertRegex(self.err, "^hc run: System: plain[^ ]*: Not a directory\n$")
+        self.shell("hc run g.toml --record ''", 2)
+        self.assertIn('--record takes a folder or FILE.mcap, not ""', self.err)
+
+    def test_a_recording_that_is_removed_is_not_reported_as_there(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 0))
+        for place, file in (("x.mcap", "x.mcap"), ("kept", "kept/camera.left.mtp")):
+            runner = self.start("exec hc run g.toml --record %s 2>log" % place)
+            wait_until(lambda: os.path.exists(self.path(file)) and self.recorders())
+            self.shell("rm -r " + place)
+            wait_until(lambda: "was removed or renamed while it was written" in self.read("log"))
+            runner.send_signal(signal.SIGTERM)
+            out = runner.communicate(timeout=WATCHDOG)[0].decode()
+            self.assertEqual(runner.returncode, 1, self.read("log"))
+            self.assertNotIn("messages in " + place, out)
+            self.assertEqual(self.read("log").count("error: "), 1, self.read("log"))
+
+    def test_links_use_sockets_where_shared_memory_exceeds_the_limit_of_files(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 3))
+        self.shell("ulimit -f 20000; hc check g.toml && hc run g.toml")
+        self.assertIn("ulimit -f is below the shared memory of links; they use sockets", self.err)
+        self.assertEqual(len(self.seqs("mean.mtp")), 3)
+
     def test_the_last_time_is_saved_on_a_signal_and_on_a_condition(self):
         process = self.start(CAMERA + " | hc record x.mcap --last 30s")
         line = process.stderr.readline().decode()

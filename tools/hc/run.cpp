@@ -108,7 +108,7 @@ void check_name(const RunOptions& options) {
 /// Fails if the folder is not writable, before any module starts.
 void check_writable(const std::filesystem::path& folder, std::error_code failed) {
   const auto path = folder.empty() ? "." : folder.string();
-  if (!failed && ::access(path.c_str(), W_OK | X_OK) != 0)
+  if (!failed && ::access((path + "/").c_str(), W_OK | X_OK) != 0)
     failed.assign(errno, std::generic_category());
   if (failed) throw Failure(hc::Code::System, path + ": " + failed.message());
 }
@@ -237,7 +237,11 @@ void add_run(CLI::App& app) {
       ->needs(page);
   verb->add_flag("--quiet", options->quiet, "log errors only");
   verb->add_flag("--links", options->links, "at the end, print the messages of each link");
-  verb->callback([options] { run(*options); });
+  verb->callback([options, record] {
+    if (record->count() > 0 && options->record.empty())
+      throw Failure(hc::Code::Invalid, "--record takes a folder or FILE.mcap, not \"\"");
+    run(*options);
+  });
 }
 
 }  // namespace tool
