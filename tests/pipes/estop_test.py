@@ -33,9 +33,11 @@ class Estop(Graphs):
         os.kill(processes[0].pid, signal.SIGSTOP)  # does not delay the stop of the other
         stopping = self.start("exec hc estop")
         line = stopping.stderr.readline().decode()
-        self.assertRegex(line, r"^hc estop: two\.\d+ is stopped\n$")
+        hint = r" is stopped; hc estop clear --of %s lets it move again\n$"
+        self.assertRegex(line, r"^hc estop: two\.\d+" + hint % "two")
         os.kill(processes[0].pid, signal.SIGCONT)
-        self.assertRegex(stopping.stderr.readline().decode(), r"^hc estop: one\.\d+ is stopped\n$")
+        line = stopping.stderr.readline().decode()
+        self.assertRegex(line, r"^hc estop: one\.\d+" + hint % "one")
         self.assertEqual(stopping.wait(), 0)
         for process in processes:
             self.stop(process)
@@ -45,10 +47,12 @@ class Estop(Graphs):
     def test_one_robot_is_stopped_and_let_go(self):
         name = "head"
         process = self.begin(name)
+        self.shell("hc graph stop " + name, 2)
+        self.assertIn('did you mean "--of %s"?' % name, self.err)
         estop = "hc estop --of " + name
         for _ in range(2):
             self.shell(estop)
-            self.assertRegex(self.err, r"^hc estop: %s\.\d+ is stopped\n$" % name)
+            self.assertRegex(self.err, r"^hc estop: %s\.\d+ is stopped; hc estop clear" % name)
             self.assertIn(", stopped", self.shell("hc ps"))
         self.assertIn("stopped by a program outside the graph", self.read(name))
         self.shell(estop + " clear")

@@ -26,6 +26,17 @@ class Tool(Pipes):
                 "directory; shipped graphs: clocked_track, depth, depth_stereo, fleet_camera, ",
             ),
             (
+                "hc run hed",
+                1,
+                "hc run: NotFound: hed: cannot be read: No such file or directory, did you mean "
+                '"head"?',
+            ),
+            (
+                "hc new module camera",
+                2,
+                'hc new: Invalid: "camera" is a module of Hypercolumn, which hc and graphs would ',
+            ),
+            (
                 "hc camera --widht 1",
                 2,
                 'camera: Invalid: no option "--widht", did you mean "--width"?',

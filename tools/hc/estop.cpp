@@ -65,9 +65,11 @@ std::string why_not(const hc::GraphState& state, bool clears) {
     if (state.stopped.contains(workspace) == clears &&
         find_module(state, workspace).status != hc::ModuleStatus::Running)
       return what + workspace + " does not run, or hangs";
-  return what + (clears
-                     ? "a source repeats its stop, as a page does; clear it there, the log names it"
-                     : "the workspace does not report it");
+  return what +
+         (clears
+              ? "a source repeats its stop, as a page does; clear it there: the log names it, hc "
+                "page prints the URL of a page"
+              : "the workspace does not report it");
 }
 
 /// Sends to all workspaces of a graph, and waits until they report that the robot is stopped, or
@@ -83,7 +85,9 @@ bool estop(const RunningGraph& graph, bool clears) {
     const bool is_done = clears ? state->stopped.empty() && waited >= kRepetition
                                 : state->stopped.size() == state->focus.size();
     if (is_done) {
-      say("hc estop: " + graph.text() + (clears ? " may move" : " is stopped"));
+      say("hc estop: " + graph.text() +
+          (clears ? " may move"
+                  : " is stopped; hc estop clear --of " + graph.name + " lets it move again"));
       return true;
     }
     if (waited > kConfirmation) throw Failure(hc::Code::Closed, why_not(*state, clears));

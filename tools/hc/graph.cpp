@@ -2,6 +2,7 @@
 #include "graph.h"
 
 #include <hc/base/format.h>
+#include <hc/base/suggestion.h>
 #include <hosts/hosts.h>
 
 #include "common.h"
@@ -22,9 +23,13 @@ std::unique_ptr<hc::Hosts> make_hosts() {
 }
 
 hc::LoadedGraph without_problems(std::string_view verb, hc::Result<hc::LoadedGraph> loaded) {
-  if (!loaded && loaded.error().code == hc::Code::NotFound)
-    throw Failure(loaded.error().code,
-                  loaded.error().detail + "; shipped graphs: " + joined(shipped_graphs()));
+  if (!loaded && loaded.error().code == hc::Code::NotFound) {
+    const auto& detail = loaded.error().detail;  // "NAME: cannot be read: …"
+    const auto meant = hc::suggestion(detail.substr(0, detail.find(':')), shipped_graphs());
+    throw Failure(
+        loaded.error().code,
+        detail + (meant.empty() ? "; shipped graphs: " + joined(shipped_graphs()) : meant));
+  }
   if (!loaded) throw Failure(loaded.error());
   if (loaded->plan) return std::move(*loaded);
   for (const auto& line : loaded->problems) say(hc::format("hc {}: error: {}", verb, line));

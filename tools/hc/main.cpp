@@ -17,6 +17,7 @@
 #include <transports/all.h>
 
 #include "common.h"
+#include "observer.h"
 #include "verbs.h"
 #include "words.h"
 
@@ -119,7 +120,7 @@ std::string meant_command(const std::string& word) {
   return "";
 }
 
-/// A suggestion for an unknown option of a verb.
+/// A suggestion for an unknown option of a verb, or for the name of a running graph.
 std::string meant_option(const CLI::App& app) {
   const CLI::App* verb = &app;
   while (!verb->get_subcommands().empty()) verb = verb->get_subcommands().back();
@@ -128,6 +129,11 @@ std::string meant_option(const CLI::App& app) {
     for (const auto& name : option->get_lnames()) known.push_back("--" + name);
   for (const auto& word : app.remaining(true))
     if (word.starts_with("--")) return hc::suggestion(word.substr(0, word.find('=')), known);
+  const bool has_of = std::ranges::find(known, "--of") != known.end();
+  for (const auto& word : app.remaining(true))
+    for (const auto& graph : tool::find_running())
+      if (has_of && (graph.name == word || graph.text() == word))
+        return ", did you mean \"--of " + word + "\"?";
   return "";
 }
 

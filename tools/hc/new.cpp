@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // hc new: creates a module outside this project, from templates built into this program.
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -105,6 +106,12 @@ void begin(const NewOptions& options) {
                   hc::format("a module's name must be snake_case of at most {} letters, "
                              "not \"{}\"",
                              kMaxModuleName, options.name));
+  const auto shipped = module_names();
+  if (std::ranges::find(shipped, options.name) != shipped.end())
+    throw Failure(hc::Code::Invalid,
+                  hc::format("\"{}\" is a module of Hypercolumn, which hc and graphs would run "
+                             "instead of the new one; choose another name",
+                             options.name));
   const fs::path folder = (fs::path(options.folder) / options.name).lexically_normal();
   std::error_code error;
   if (fs::exists(fs::symlink_status(folder, error)))
