@@ -62,7 +62,7 @@ class Messages(Pipes):
     def test_view_saves_in_the_place_of_no_recording(self):
         image = "hc camera %s/aloeL.jpg --count 1 --width 8 --height 6 | " % DATA
         self.shell("hc send 1 > kept.mtp")
-        self.shell(image + "hc view --save kept.mtp", 1)
+        self.shell(image + "hc view --save kept.mtp", 2)
         self.assertIn("save: kept.mtp is neither a .png nor a folder/", self.err)
         self.shell(image + "hc view kept.mtp", 2)
         self.assertIn('one argument too many: "kept.mtp"', self.err)
