@@ -23,8 +23,8 @@ class MarkedBoardFinder {
  public:
   /// @param dictionary  of a ChArUco board, as for ArucoFinder.
   ///
-  /// Errors: Invalid (a board that is wrong or has no markers, or more than the dictionary);
-  /// NotFound (dictionary).
+  /// Errors: Invalid (a board that is wrong or has no markers, or more than the dictionary; an
+  /// unknown dictionary).
   static Result<MarkedBoardFinder> make(const Board& board, const std::string& dictionary);
 
   /// Finds the corners that both images show: at least eight, over a tenth of the board.

@@ -127,7 +127,7 @@ TEST(MarkedBoard, another_dictionary_is_another_board) {
   const cv::Mat image = drawn(kCharuco);
   EXPECT_FALSE(finder_of(kCharuco, "5X5_250").find(image, image));
   EXPECT_FALSE(finder_of(kGrid).find(image, image));
-  EXPECT_EQ(refused(MarkedBoardFinder::make(kCharuco, "9X9_9")).code, Code::NotFound);
+  EXPECT_EQ(refused(MarkedBoardFinder::make(kCharuco, "9X9_9")).code, Code::Invalid);
   const Board large{12, 9, 0.025, BoardKind::Charuco, 0.018};
   EXPECT_EQ(refused(MarkedBoardFinder::make(large, "4X4_50")).detail,
             "the dictionary has 50 markers, the board 54");

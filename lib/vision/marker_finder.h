@@ -18,7 +18,7 @@ class ArucoFinder {
  public:
   /// @param dictionary  OpenCV's name without DICT_: "4X4_50", "6X6_250", "ARUCO_ORIGINAL".
   ///
-  /// Errors: NotFound.
+  /// Errors: Invalid (an unknown dictionary).
   static Result<ArucoFinder> make(const std::string& dictionary);
 
   /// Whether the dictionary has so many markers. Errors: Invalid (it has fewer).

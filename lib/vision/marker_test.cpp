@@ -282,7 +282,7 @@ TEST(Finders, ImagesWithoutMarkersAndUnknownDictionaries) {
   AprilTagFinder apriltag(1);
   EXPECT_TRUE(apriltag.find(noise).empty());
   EXPECT_TRUE(apriltag.find(cv::Mat(4, 4, CV_8U, cv::Scalar(0))).empty());
-  EXPECT_EQ(ArucoFinder::make("9X9_1").error().code, Code::NotFound);
+  EXPECT_EQ(ArucoFinder::make("9X9_1").error().code, Code::Invalid);
 }
 
 /// Corners of a marker that is tilted by an angle, straight ahead.

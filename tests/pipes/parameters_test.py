@@ -36,7 +36,11 @@ REFUSED = (
     ("rectify", "--calibration_file=/", "calibration_file"),
     ("simulator", "--frames=x", "frames"),
     ("stereo_calibration", "--calibration_file=broken", "calibration_file"),
-    ("stereo_calibration", "--board=charuco --square=2 --marker_size=1 --dictionary=x", "dictionary"),
+    (
+        "stereo_calibration",
+        "--board=charuco --square=2 --marker_size=1 --dictionary=x",
+        "dictionary",
+    ),
     ("stereo_calibration", "--print=plain/x.pdf", "print"),
     ("view", "--window=no --save=x.mtp", "save"),
     ("view", "--window=no --save=x.png --min=2 --max=1", "min"),
