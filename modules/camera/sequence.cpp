@@ -153,10 +153,15 @@ bool is_folder(const std::string& name) {
   return fs::is_directory(name, unreadable);
 }
 
+/// Whether a file is an image, or has its name and is empty or damaged.
+bool is_image(const std::string& path) {
+  return cv::haveImageReader(path) || cv::haveImageWriter(path);
+}
+
 Paths images_in(const std::string& folder) {
   Paths paths;
   for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file() && cv::haveImageReader(entry.path().string()))
+    if ((entry.is_regular_file() || !entry.exists()) && is_image(entry.path().string()))
       paths.push_back(entry.path());
   if (paths.empty()) throw unusable(folder, "no images in this folder");
   std::ranges::sort(paths, hc::natural_less, [](const fs::path& path) { return path.string(); });
@@ -183,7 +188,7 @@ std::unique_ptr<ImageSequence> open_sequence(const std::string& name, const Read
   if (is_path && !fs::exists(name, unreadable))
     throw unusable(name, "no such file, folder or camera");
   if (is_folder(name)) return std::make_unique<ImageFiles>(images_in(name), reading);
-  if (fs::is_regular_file(name, unreadable) && cv::haveImageReader(name))
+  if (fs::is_regular_file(name, unreadable) && is_image(name))
     return std::make_unique<ImageFiles>(Paths{name}, reading);
   return std::make_unique<Capture>(name, reading.upright);
 }

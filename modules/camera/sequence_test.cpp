@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
+#include <hc/module/module.h>
+
 namespace {
 
 TEST(ImageSequence, an_image_is_read_again_when_its_file_has_changed) {
@@ -63,6 +65,32 @@ TEST(ImageSequence, a_file_that_is_being_replaced_stays_as_it_was) {
   write(200, 1);
   EXPECT_EQ(next(), 200);
   std::filesystem::remove(path);
+}
+
+TEST(ImageSequence, no_image_is_skipped) {
+  const auto folder =
+      std::filesystem::path(testing::TempDir()) / ("n_" + std::to_string(::getpid()));
+  std::filesystem::create_directory(folder);
+  cv::imwrite((folder / "1.png").string(), cv::Mat(2, 2, CV_8UC3, cv::Scalar::all(9)));
+  std::ofstream(folder / "notes.txt") << "not an image";
+  const auto refusal = [](const std::string& name) -> std::string {
+    try {
+      const auto sequence = open_sequence(name, {});
+      while (!sequence->next().image.empty()) continue;
+    } catch (const hc::ModuleError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(folder), "");
+  const std::string empty = folder / "2.jpg", away = folder / "3.png";
+  std::ofstream{empty};
+  for (const auto& name : {std::string(folder), empty})
+    EXPECT_NE(refusal(name).find(empty + ": not a readable image"), std::string::npos) << name;
+  std::filesystem::remove(empty);
+  std::filesystem::create_symlink("nosuch.png", away);
+  EXPECT_NE(refusal(folder).find(away + ": not a readable image"), std::string::npos);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

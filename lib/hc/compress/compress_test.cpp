@@ -95,6 +95,21 @@ TEST(CheckJpeg, DamageIsFoundAndWhatFollowsTheImageIsIgnored) {
   EXPECT_FALSE(check_jpeg(bytes));
 }
 
+TEST(CheckJpeg, PixelsThatAreLeftOverAreDamage) {
+  const Message packed = must(compress(gradient(3), Encoding::Jpeg));
+  const auto with = [&](const std::vector<std::byte>& added) {
+    std::vector<std::byte> bytes(packed.elements.begin(), packed.elements.end());
+    bytes.insert(bytes.end() - 2, added.begin(), added.end());  // before the end marker
+    return bytes;
+  };
+  EXPECT_TRUE(check_jpeg(with(std::vector<std::byte>(30))));
+  std::vector<std::byte> pixels;
+  for (std::uint8_t i = 0; i < 30; ++i) pixels.push_back(std::byte(i));
+  const auto damaged = check_jpeg(with(pixels));
+  ASSERT_FALSE(damaged);
+  EXPECT_TRUE(damaged.error().detail.starts_with("Corrupt JPEG data: "));
+}
+
 TEST(Expand, R36_R37_EveryCutIsRefused) {
   for (Encoding encoding : {Encoding::Zstd, Encoding::Jpeg}) {
     auto packed = compress(gradient(1), encoding);

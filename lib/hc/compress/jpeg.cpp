@@ -9,6 +9,7 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
+#include <algorithm>
 #include <csetjmp>
 #include <cstdlib>
 #include <optional>
@@ -44,10 +45,20 @@ void fail_on_warning(j_common_ptr info, int level) {
   if (level < 0) fail(info);
 }
 
+/// Whether the bytes that were skipped before a marker are all the same, as some cameras fill up
+/// their images. Others are pixels that a damaged image has no place for.
+bool is_filled(j_common_ptr info) {
+  constexpr std::ptrdiff_t kMarker = 2;  // [byte]
+  const JOCTET* end = reinterpret_cast<j_decompress_ptr>(info)->src->next_input_byte - kMarker;
+  const std::span skipped(end - info->err->msg_parm.i[0], end);
+  return std::ranges::all_of(skipped, [&](JOCTET each) { return each == skipped[0]; });
+}
+
 /// The same, except for warnings of files whose image is complete.
 void fail_on_damage(j_common_ptr info, int level) {
   const int code = info->err->msg_code;
-  if (code != JWRN_EXTRANEOUS_DATA && code != JWRN_JFIF_MAJOR) fail_on_warning(info, level);
+  if (code == JWRN_JFIF_MAJOR || (code == JWRN_EXTRANEOUS_DATA && is_filled(info))) return;
+  fail_on_warning(info, level);
 }
 
 jpeg_error_mgr* install(ErrorHandler& handler) {
