@@ -4,6 +4,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <assimp/DefaultIOSystem.h>
 #include <algorithm>
 #include <array>
 #include <assimp/Importer.hpp>
@@ -49,6 +50,23 @@ Eigen::Vector3f colour_of(float r, float g, float b, bool is_linear) {
   return is_linear ? Eigen::Vector3f(srgb(r), srgb(g), srgb(b)) : Eigen::Vector3f(r, g, b);
 }
 
+/// Replaces normals that are zero or not numbers, as some programs write them, by those of the
+/// triangles around.
+void mend_normals(Mesh& mesh) {
+  const auto is_normal = [](const Eigen::Vector3f& n) { return n.allFinite() && !n.isZero(0); };
+  std::vector<Eigen::Vector3f> sums(mesh.vertices.size(), Eigen::Vector3f::Zero());
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const auto at = [&](std::size_t corner) {
+      return mesh.vertices[mesh.indices[i + corner]].position;
+    };
+    const Eigen::Vector3f normal = (at(1) - at(0)).cross(at(2) - at(0));  // longer if it is larger
+    for (std::size_t corner = 0; corner < 3; ++corner) sums[mesh.indices[i + corner]] += normal;
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    if (!is_normal(mesh.vertices[i].normal) && is_normal(sums[i]))
+      mesh.vertices[i].normal = sums[i].stableNormalized();
+}
+
 /// @param is_linear  its colours are linear, as those of glTF.
 Mesh mesh_of(const aiMesh& from, bool is_linear) {
   Mesh mesh;
@@ -69,13 +87,14 @@ Mesh mesh_of(const aiMesh& from, bool is_linear) {
     if (face.mNumIndices == 3)
       mesh.indices.insert(mesh.indices.end(), face.mIndices, face.mIndices + 3);
   }
+  mend_normals(mesh);
   return mesh;
 }
 
 /// The file that a model names: on Windows with backslashes, in glTF as a part of a URI.
-fs::path file_named(std::string name, const fs::path& folder) {
+std::string file_named(std::string name) {
   std::error_code none;
-  if (fs::exists(folder / name, none)) return folder / name;
+  if (fs::exists(name, none)) return name;
   std::ranges::replace(name, '\\', '/');
   std::string plain;
   for (std::size_t i = 0; i < name.size(); ++i) {
@@ -85,15 +104,26 @@ fs::path file_named(std::string name, const fs::path& folder) {
     plain += is_escape ? static_cast<char>(std::stoi(name.substr(i + 1, 2), nullptr, 16)) : name[i];
     if (is_escape) i += 2;
   }
-  return folder / (fs::exists(folder / plain, none) ? plain : name);
+  return fs::exists(plain, none) ? plain : name;
 }
+
+/// The files of a model, such as the buffers of glTF.
+class Files : public Assimp::DefaultIOSystem {
+ public:
+  bool Exists(const char* name) const override {
+    return DefaultIOSystem::Exists(file_named(name).c_str());
+  }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    return DefaultIOSystem::Open(file_named(name).c_str(), mode);
+  }
+};
 
 /// The file of a texture, embedded or in the model's folder; empty if there is none.
 std::vector<std::uint8_t> texture_file(const aiScene& scene, const char* name,
                                        const fs::path& folder) {
   const aiTexture* inside = scene.GetEmbeddedTexture(name);
   if (inside == nullptr) {
-    const auto path = file_named(name, folder);
+    const auto path = file_named(folder / name);
     std::error_code none;
     if (!fs::is_regular_file(path, none)) return {};
     std::ifstream file(path, std::ios::binary);
@@ -148,6 +178,7 @@ Result<std::vector<Part>> read_model(const std::string& path) {
   const unsigned normals = ending == ".stl" ? aiProcess_ForceGenNormals | aiProcess_GenNormals
                                             : unsigned{aiProcess_GenSmoothNormals};
   Assimp::Importer importer;
+  importer.SetIOHandler(new Files);  // which it deletes
   const aiScene* scene = importer.ReadFile(
       path, normals | aiProcess_Triangulate | aiProcess_PreTransformVertices |
                 aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_FlipUVs);

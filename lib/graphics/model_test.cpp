@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 
@@ -82,6 +83,18 @@ TEST_F(Models, the_sides_of_an_stl_are_flat) {
     EXPECT_EQ(vertex.normal, Eigen::Vector3f(0, 0, 1));
 }
 
+TEST_F(Models, wrong_normals_are_replaced) {
+  const auto parts =
+      read_model(write("side.obj",
+                       "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 0\nvn nan nan nan\nvn 0 0.6 0.8\n"
+                       "f 1//1 2//2 3//3\n"));
+  ASSERT_TRUE(parts) << parts.error().text();
+  for (const auto& vertex : parts->front().mesh.vertices)
+    EXPECT_TRUE(vertex.normal.isApprox(vertex.position.y() == 0 ? Eigen::Vector3f(0, 0, 1)
+                                                                : Eigen::Vector3f(0, 0.6F, 0.8F)))
+        << vertex.position.transpose();
+}
+
 TEST_F(Models, vertices_have_colours) {
   auto parts =
       read_model(write("rgb.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 0.5\nf 1 2 3\n"));
@@ -89,20 +102,33 @@ TEST_F(Models, vertices_have_colours) {
   EXPECT_EQ(parts->front().mesh.vertices.at(2).colour, Eigen::Vector3f(0, 0, 0.5));
 }
 
-TEST_F(Models, colours_of_gltf_are_linear) {
-  // One triangle; positions as base64 of little-endian floats.
-  auto parts =
-      read_model(write("grey.gltf", R"({"asset": {"version": "2.0"}, "scene": 0,
+/// A glTF of one triangle, whose positions are little-endian floats.
+std::string gltf(const std::string& buffer) {
+  return R"({"asset": {"version": "2.0"}, "scene": 0,
  "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
  "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.2, 1, 0, 1]}}],
  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
                 "min": [0, 0, 0], "max": [1, 1, 0]}],
  "bufferViews": [{"buffer": 0, "byteLength": 36}],
- "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,)"
-                                    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}"));
+ "buffers": [{"byteLength": 36, "uri": ")" +
+         buffer + "\"}]}";
+}
+
+TEST_F(Models, colours_of_gltf_are_linear) {
+  const auto parts =
+      read_model(write("grey.gltf", gltf("data:application/octet-stream;base64,"
+                                         "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA")));
   ASSERT_TRUE(parts) << parts.error().text();
   EXPECT_EQ(parts->front().texture.at<cv::Vec3b>(0, 0), cv::Vec3b(124, 255, 0));
+}
+
+TEST_F(Models, a_buffer_of_gltf_is_named_as_in_a_uri) {
+  constexpr std::array<float, 9> kTriangle{0, 0, 0, 1, 0, 0, 0, 1, 0};
+  write("my buffer.bin", {reinterpret_cast<const char*>(kTriangle.data()), sizeof kTriangle});
+  const auto parts = read_model(write("triangle.gltf", gltf("my%20buffer.bin")));
+  ASSERT_TRUE(parts) << parts.error().text();
+  EXPECT_EQ(parts->front().mesh.indices.size(), 3U);
 }
 
 TEST_F(Models, a_damaged_texture_is_refused) {
