@@ -27,7 +27,8 @@ struct Gathered {
 };
 
 void take(Gathered& gathered, const espeak_EVENT& event) {
-  const double time = event.audio_position * 1e-3;
+  // Where it speaks fast, eSpeak NG reports some words a few ms before the end of the last one.
+  const double time = std::max(gathered.last, event.audio_position * 1e-3);
   if (event.type == espeakEVENT_WORD || event.type == espeakEVENT_END) {
     auto& words = gathered.speech.words;
     if (!words.empty() && words.back().end <= words.back().start) words.back().end = time;
