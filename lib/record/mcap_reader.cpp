@@ -102,7 +102,14 @@ class McapReader final : public Reader {
   Result<std::vector<StreamInfo>> streams(StreamDetail) override {
     return streams_of(reader_.summary());
   }
-  Result<std::map<std::string, mcap::StringMap>> metadata() override { return reader_.metadata(); }
+  Result<std::vector<mcap::MetadataRecord>> metadata() override { return reader_.metadata(); }
+  [[nodiscard]] std::string profile() const override { return reader_.summary().profile; }
+  void for_each_channel(const TakeChannel& take) const override {
+    const auto& summary = reader_.summary();
+    for (const auto& [id, channel] : summary.channels)
+      if (reader_.is_selected(id))
+        take({{}, &channel, schema_of(summary, channel), {}, nullptr}, *this);
+  }
 
  private:
   /// The next message and its companion, in either order; a companion without a message is returned

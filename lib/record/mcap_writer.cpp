@@ -176,13 +176,17 @@ std::uint16_t McapWriter::copied_channel(const mcap::StoredMessage& message, con
     if (here.empty()) here = take_name(topics_, topic);
     return here;
   };
-  // Topics of streams stay separate; other topics with the same name and definition are merged.
+  // Channels of streams, and of one file, stay separate; others of several files are merged if they
+  // have the same topic and definition.
   if (stream == copy.metadata.end() && companion == copy.metadata.end()) {
-    auto& other = other_channels_[{copy.topic, copy.encoding + key_of(schema)}];
+    std::string key = copy.encoding + key_of(schema);
+    if (const auto before = copied_counts_[{from, copy.topic + '\0' + key}]++; before > 0)
+      key += '\0' + std::to_string(before);
+    auto& other = other_channels_[{copy.topic, key}];
     if (other == 0) {
       const bool is_common =
           copy.topic == kStaticFrames || copy.topic == kFrames || copy.topic == kLog;
-      if (!is_common) copy.topic = take_name(topics_, copy.topic);
+      if (!is_common) copy.topic = topic_here(copy.topic);
       other = add_channel(std::move(copy), schema);
     }
     return number = other;
@@ -204,6 +208,11 @@ void McapWriter::add_copy(const mcap::StoredMessage& message, const void* from) 
   const auto& record = message.record;
   add(copied_channel(message, from), record.sequence, record.log_time, record.publish_time,
       {{}, message.data, {}});
+}
+
+void McapWriter::copy_channel(const mcap::StoredMessage& message, const void* from) {
+  const std::lock_guard lock(chunk_mutex_);
+  if (last_channel_ < kMostChannels) copied_channel(message, from);
 }
 
 Status McapWriter::copy(const StoredPair& pair, const void* from) {

@@ -54,6 +54,8 @@ class McapWriter {
   Status write(std::size_t stream, const Message& message, Time log_time);
   /// Copies a message of another file. `from` identifies the file. Errors: as write().
   Status copy(const StoredPair& pair, const void* from);
+  /// Copies a channel of another file, if there is room.
+  void copy_channel(const mcap::StoredMessage& message, const void* from);
   /// Writes a log line to /rosout, with ros::Encoder::encode_log().
   Status log(Time time, const LogLine& line);
   Status metadata(const std::string& name, const mcap::StringMap& words);
@@ -123,6 +125,8 @@ class McapWriter {
   // For channels and topics of other files: their numbers and names in this file.
   std::map<const mcap::ChannelRecord*, std::uint16_t> copied_;
   std::map<std::pair<const void*, std::string>, std::string> copied_topics_;
+  // How many channels of a file without a stream have the same definition.
+  std::map<std::pair<const void*, std::string>, std::size_t> copied_counts_;
   std::mutex chunk_mutex_;  // guards the next two; locked before mutex_
   mcap::ChunkBuilder chunk_;
   std::chrono::steady_clock::time_point chunk_begun_;

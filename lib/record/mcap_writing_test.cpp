@@ -115,6 +115,41 @@ TEST_F(McapWriting, AMessageIsInTheChunkOfItsCompanion) {
   EXPECT_EQ(pairs, 20);
 }
 
+TEST_F(McapWriting, ACopyHasAllThatAFileOfOthersHas) {
+  {
+    auto file = *mcap::File::create(in("x.mcap"), "ros1");
+    ASSERT_TRUE(file.add(mcap::SchemaRecord{1, "Chatter", "ros1msg", "string data"}));
+    // Two publishers of a topic, and one that sends nothing.
+    for (std::uint16_t id = 1; id <= 3; ++id)
+      ASSERT_TRUE(file.add(mcap::ChannelRecord{
+          id, 1, id == 3 ? "/idle" : "/chat", "ros1", {{"callerid", std::to_string(id)}}}));
+    for (const char* word : {"1", "2"})
+      ASSERT_TRUE(file.add(mcap::MetadataRecord{"a", {{"x", word}}}));
+    mcap::ChunkBuilder chunk;
+    const std::array data{std::byte(7)};
+    const std::span<const std::byte> pieces[] = {data};
+    for (std::uint16_t id = 1; id <= 2; ++id) chunk.add({id, 0, id, id}, pieces);
+    ASSERT_TRUE(file.add(chunk.pack()));
+    ASSERT_TRUE(file.close());
+  }
+  WriterOptions options;
+  options.profile = "ros1";
+  ASSERT_EQ(copied({in("x.mcap")}, "y.mcap", options).status.has_value(), true);
+  auto copy = *mcap::Reader::open(in("y.mcap"));
+  const auto& summary = copy.summary();
+  EXPECT_EQ(summary.profile, "ros1");
+  EXPECT_EQ(summary.metadata, (std::vector<std::string>{"a", "a"}));
+  std::map<std::string, std::pair<std::string, std::uint64_t>> channels;
+  for (const auto& [id, channel] : summary.channels)
+    channels[channel.metadata.at("callerid")] = {
+        channel.topic, summary.counts.contains(id) ? summary.counts.at(id) : 0};
+  EXPECT_EQ(channels,
+            (decltype(channels){{"1", {"/chat", 1}}, {"2", {"/chat", 1}}, {"3", {"/idle", 0}}}));
+  // The channels of two files are merged.
+  ASSERT_TRUE(copied({in("x.mcap"), in("y.mcap")}, "z.mcap").status);
+  EXPECT_EQ(summary_of(in("z.mcap")).channels.size(), 3U);
+}
+
 TEST_F(McapWriting, StreamsThatHaveNoRoomInAFileAreDropped) {
   std::vector<std::string> said;
   auto options = chunks_of(1 << 20);

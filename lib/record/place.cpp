@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include <hc/base/place_word.h>
 #include <hc/os/new_file.h>
 
 namespace hc::record {
@@ -34,33 +35,33 @@ std::string Place::name() const {
   if (!stream.empty()) return stream;
   if (kind == Kind::Link) return uri.scheme == "-" ? "messages" : uri.rest;
   const auto file = fs::path(path).filename();
-  return file.extension() == ".mtp" || file.extension() == ".mcap" ? file.stem() : file;
+  return file.extension() == ".mtp" || is_mcap_path(path) ? file.stem() : file;
 }
 
 Place place_of(std::string_view word) {
   Place place;
   std::error_code missing;
-  const auto uri = parse_uri(word);
-  // A word that is not a URI is a file: "2025-11-25T13:00:00.mcap", "odd?name".
-  const bool is_uri =
-      uri && (uri->scheme != "file" || uri->options.empty() || !fs::exists(word, missing));
-  place.uri = is_uri ? *uri : Uri{"file", std::string(word), {}};
+  const auto uri = parse_place_word(word);
+  place.uri = uri ? *uri : Uri{"file", std::string(word), {}};
   if (place.uri.scheme != "file") {
     place.kind = Place::Kind::Link;
     return place;
   }
   place.path = place.uri.rest;
   place.stream = place.uri.option("stream", "");
-  if (place.path.ends_with(".mcap"))
+  if (is_mcap_path(place.path))
     place.kind = Place::Kind::Mcap;
   else if (place.path.ends_with('/') || fs::is_directory(place.path, missing))
     place.kind = Place::Kind::Folder;
   return place;
 }
 
-Place place_of_streams(std::string_view word) {
+Result<Place> place_of_streams(std::string_view word) {
   Place place = place_of(word);
-  if (place.kind == Place::Kind::Link) place.path = word;
+  if (place.kind == Place::Kind::Link)
+    return Error{Code::Invalid, place.text() +
+                                    " is a link; a recording is a folder or FILE.mcap; write "
+                                    "./NAME for a name that starts like a link"};
   if (place.kind != Place::Kind::Mcap) place.kind = Place::Kind::Folder;
   return place;
 }
@@ -69,7 +70,7 @@ Place free_place(Place place, bool is_numbered) {
   if (place.kind == Place::Kind::Folder)
     place.path = free_name(place.path, "", has_no_recording);
   else if (!is_numbered)
-    place.path = free_name(place.path, ".mcap", has_no_contents);
+    place.path = free_name(place.path, fs::path(place.path).extension().string(), has_no_contents);
   return place;
 }
 

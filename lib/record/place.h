@@ -29,12 +29,13 @@ struct Place {
 };
 
 /// `-` and words that begin with a scheme, such as `tcp:`, are links; all others are paths, with
-/// any characters. A path is MCAP if it ends in ".mcap", and a folder if it is one or ends in "/";
+/// any characters. A path is MCAP if it is_mcap_path(), and a folder if it is one or ends in "/";
 /// both may have `?stream=NAME` appended.
 Place place_of(std::string_view word);
 
 /// As place_of(), for a recording of several streams: anything but MCAP is a folder.
-Place place_of_streams(std::string_view word);
+/// Errors: Invalid (a link).
+Result<Place> place_of_streams(std::string_view word);
 
 /// This place, or the first one of PATH_2, PATH_3, … without a recording.
 /// @param is_numbered  for numbered files, which are always free.

@@ -82,14 +82,24 @@ class MergedReader final : public Reader {
     }
     return all;
   }
-  Result<std::map<std::string, mcap::StringMap>> metadata() override {
-    std::map<std::string, mcap::StringMap> all;
+  Result<std::vector<mcap::MetadataRecord>> metadata() override {
+    std::vector<mcap::MetadataRecord> all;
     for (auto& file : files_) {
       auto metadata = file.reader->metadata();
       if (!metadata) return metadata.error();
-      all.merge(*metadata);
+      std::ranges::move(*metadata, std::back_inserter(all));
     }
     return all;
+  }
+  [[nodiscard]] std::string profile() const override {
+    const auto first = files_.front().reader->profile();
+    return std::ranges::all_of(files_,
+                               [&](const auto& file) { return file.reader->profile() == first; })
+               ? first
+               : "";
+  }
+  void for_each_channel(const TakeChannel& take) const override {
+    for (const auto& file : files_) file.reader->for_each_channel(take);
   }
 
  private:

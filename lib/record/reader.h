@@ -4,7 +4,7 @@
 // truncated files are read as far as possible. An object is used on one thread.
 
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +13,7 @@
 
 #include <hc/link/link.h>
 #include <record/mcap/reader.h>
+#include <record/mcap/storage.h>
 #include <record/place.h>
 
 namespace hc::record {
@@ -87,12 +88,20 @@ class Reader : public Source {
   virtual void start_at(Time log_time) = 0;
 
   virtual Result<std::vector<StreamInfo>> streams(StreamDetail detail = StreamDetail::Names) = 0;
-  /// The latest metadata of each name, for MCAP.
-  virtual Result<std::map<std::string, mcap::StringMap>> metadata() {
-    return std::map<std::string, mcap::StringMap>();
+  /// All metadata, for MCAP; the latest of a name counts.
+  virtual Result<std::vector<mcap::MetadataRecord>> metadata() {
+    return std::vector<mcap::MetadataRecord>();
   }
 
-  // For Writer::copy().
+  // For copying.
+
+  /// The profile of MCAP files; empty if they have several. For other formats it is that of files
+  /// that are written here.
+  [[nodiscard]] virtual std::string profile() const { return mcap::StorageOptions().profile; }
+  /// Calls a function with each channel of MCAP that is read, as a message without data, and with
+  /// the reader of its file.
+  using TakeChannel = std::function<void(const mcap::StoredMessage&, const Reader&)>;
+  virtual void for_each_channel(const TakeChannel&) const {}
 
   /// The reader of the file that has the next message; valid after next_time().
   virtual Reader& front() { return *this; }

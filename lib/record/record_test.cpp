@@ -16,7 +16,7 @@ Result<std::unique_ptr<Writer>> open_folder(const std::string& folder,
                                             const std::vector<std::string>& streams) {
   WriterOptions options;
   options.streams = streams;
-  return Writer::open(place_of_streams(folder), options);
+  return Writer::open(*place_of_streams(folder), options);
 }
 
 /// A message with this size of elements [byte].
@@ -62,7 +62,7 @@ TEST_F(Recorded, AnErrorLeavesWhatWasThere) {
   WriterOptions options;
   options.streams = {"eyes.left", "eyes.right", std::string(300, 'x')};
   options.append = true;
-  EXPECT_EQ(Writer::open(place_of_streams(kept), options).error().code, Code::System);
+  EXPECT_EQ(Writer::open(*place_of_streams(kept), options).error().code, Code::System);
   EXPECT_TRUE(fs::exists(kept + "/eyes.left.mtp"));
   EXPECT_FALSE(fs::exists(kept + "/eyes.right.mtp"));
 }
@@ -340,7 +340,7 @@ TEST_F(InOrder, ThatGoOnContinueTheirFiles) {
   options.streams = {"a.out"};
   options.append = true;
   for (int i = 0; i < 3; ++i) {
-    auto writer = writer_of(place_of_streams(kept), options);
+    auto writer = writer_of(*place_of_streams(kept), options);
     ASSERT_TRUE(writer->add(0, at(kNow, i)));
   }
   EXPECT_EQ(count(kept + "/a.out.mtp"), 3U);
@@ -350,6 +350,7 @@ TEST_F(InOrder, NamesAndLinksAreToldApart) {
   using Kind = Place::Kind;
   fs::create_directories(kept);
   for (const auto& [word, kind] : {std::pair<std::string, Kind>{"x.mcap", Kind::Mcap},
+                                   {"RUN.MCAP", Kind::Mcap},
                                    {"2025-11-25T13:00:00.mcap", Kind::Mcap},
                                    {"Run 1: eyes.mcap", Kind::Mcap},
                                    {"./run:1.mcap", Kind::Mcap},
@@ -368,7 +369,11 @@ TEST_F(InOrder, NamesAndLinksAreToldApart) {
   EXPECT_EQ(place_of("13:00.mcap").path, "13:00.mcap");
   EXPECT_EQ(place_of("x.mcap?stream=a.b").stream, "a.b");
   EXPECT_EQ(place_of("x.mcap?stream=a.b").path, "x.mcap");
-  EXPECT_EQ(place_of_streams("kept").kind, Kind::Folder);
+  EXPECT_EQ(place_of("RUN.MCAP").name(), "RUN");
+  EXPECT_EQ(place_of_streams("kept")->kind, Kind::Folder);
+  EXPECT_EQ(place_of_streams("13:00")->kind, Kind::Folder);
+  for (const char* link : {"-", "tcp:robot:7000", "run:1"})
+    EXPECT_EQ(place_of_streams(link).error().code, Code::Invalid) << link;
   for (const char* word : {"run:1.mcap", "tcp:robot:7000", "x.mcap?stream=a", "x.mcap?split=3"})
     EXPECT_EQ(Writer::open(place_of(word), {}).error().code, Code::Invalid) << word;
 }

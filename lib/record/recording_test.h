@@ -71,7 +71,7 @@ inline mcap::Summary summary_of(const std::string& path, const mcap::ReaderLimit
 inline std::map<std::string, std::uint64_t> topics_of(const mcap::Summary& summary) {
   std::map<std::string, std::uint64_t> counts;
   for (const auto& [id, channel] : summary.channels)
-    if (summary.counts.contains(id)) counts[channel.topic] = summary.counts.at(id);
+    if (summary.counts.contains(id)) counts[channel.topic] += summary.counts.at(id);
   return counts;
 }
 
@@ -95,6 +95,7 @@ class Recordings : public ::testing::Test {
     auto writer = writer_of(in(name), options);
     auto reader = Reader::open(places, {}, writer->copied_topics());
     EXPECT_TRUE(reader) << reader.error().text();
+    EXPECT_TRUE(writer->copy_head(**reader));
     for (auto copied = Result<bool>(true); copied && *copied;) copied = writer->copy(**reader);
     EXPECT_TRUE(writer->close().status);
     return writer->written();

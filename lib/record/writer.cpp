@@ -185,6 +185,14 @@ Status Writer::add(std::size_t stream, const Message& message, Time log_time) {
   return added;
 }
 
+Status Writer::copy_head(Reader& reader) {
+  if (mcap_ == nullptr) return {};
+  for (const auto& each : HC_TRY(reader.metadata())) HC_TRY(metadata(each.name, each.words));
+  reader.for_each_channel(
+      [&](const auto& message, const Reader& file) { mcap_->copy_channel(message, &file); });
+  return {};
+}
+
 Result<bool> Writer::copy(Reader& reader) {
   auto next = reader.next_time();
   if (!next) return next.error();

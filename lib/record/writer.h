@@ -80,6 +80,9 @@ class Writer {
 
   /// The topics that must be read from MCAP files for copy().
   [[nodiscard]] Topics copied_topics() const { return mcap_ ? Topics::All : Topics::Mtp; }
+  /// Copies the metadata and channels of a recording from MCAP to MCAP, also channels without a
+  /// message, before the first copy(). Errors: also those of the reader.
+  Status copy_head(Reader& reader);
   /// Copies the next message of a recording with its stream and log time, byte for byte from MCAP
   /// to MCAP. False at the end. Errors: also those of the reader.
   Result<bool> copy(Reader& reader);

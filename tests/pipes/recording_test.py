@@ -34,6 +34,21 @@ class Recording(Pipes):
             )
             self.assertIn("hc play: skipping a pause of 20075 d (--gap)\n", self.err)
 
+    def test_durations_are_numbers(self):
+        self.write_recording()
+        for option in (
+            "--gap nan",
+            "--gap inf",
+            "--from nan",
+            "--to -1",
+            "--speed nan",
+            "--speed inf",
+        ):
+            self.shell("hc play r.mtp " + option, 2)
+            self.assertIn(option.split()[0], self.err)
+        for command in ("record r.mtp x.mcap --last nan", "trace a.b --duration nan"):
+            self.shell("hc " + command, 2)
+
     def test_names_with_a_colon_are_files_in_every_verb(self):
         name = "2025-11-25T13:00:00.mcap"
         self.shell("hc send 1 | hc record " + name)
@@ -44,6 +59,13 @@ class Recording(Pipes):
             self.assertEqual(self.shell("hc cat --json " + name).count("\n"), 1)
         self.shell("hc send 1 | hc record run:1.mcap", 2)
         self.assertIn("run:1.mcap is a link", self.err)
+        # The same for a module's own links.
+        self.shell("hc send --type rgb_image --scalar u8 1 2 3 | hc record 15:00.mtp")
+        self.shell("hc brightness --in 15:00.mtp --out 16:00.mtp")
+        self.assertEqual(self.shell("hc cat --json 16:00.mtp").count("\n"), 1)
+        self.shell("hc brightness --in 15:00.mtp --out X.MCAP", 2)
+        self.assertIn("links do not write MCAP", self.err)
+        self.shell("hc brightness --in 15:00.mtp --out 'tcp:x?y'", 2)
 
     def test_play_keeps_the_time_of_the_recording(self):
         self.write_recording()

@@ -6,11 +6,11 @@
 namespace tool {
 
 GraphRecording::GraphRecording(const std::string& place)
-    : place_(hc::record::place_of_streams(place)) {
+    : place_(value_or_fail(hc::record::place_of_streams(place))) {
   auto reader = open_recording({place_}, kDefaultLimit);
   for (const auto& stream : value_or_fail(reader->streams(), place)) outputs_.insert(stream.name);
-  auto graph = value_or_fail(reader->metadata(), place)["hypercolumn.graph"];
-  graph_file_ = graph["file"];
+  for (auto& [name, words] : value_or_fail(reader->metadata(), place))
+    if (name == "hypercolumn.graph") graph_file_ = words["file"];
 }
 
 std::string GraphRecording::place_of(const std::string& output) const {

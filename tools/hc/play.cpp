@@ -130,9 +130,11 @@ void add_play(CLI::App& app) {
   verb->add_flag("--loop", options->loop, "repeat without end");
   verb->add_option("--gap", options->gap, "longest pause to keep; longer ones are skipped [s]")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  verb->add_option("--from", options->from, "start there [s from the first message]");
-  verb->add_option("--to", options->to, "stop there [s from the first message]");
+      ->check(number_in(0, kLongest));
+  verb->add_option("--from", options->from, "start there [s from the first message]")
+      ->check(number_in(0, kLongest));
+  verb->add_option("--to", options->to, "stop there [s from the first message]")
+      ->check(number_in(0, kLongest));
   add_limit(*verb, options->limit);
   verb->callback([options] { run(*options); });
 }

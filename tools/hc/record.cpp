@@ -128,6 +128,8 @@ class Recording {
     options.split = value_or_fail(hc::mcap::parse_bytes(options_.split), "--split");
     options.keep = value_or_fail(hc::mcap::parse_bytes(options_.keep), "--keep");
     options.last = hc::duration(options_.last);
+    if (reader_ != nullptr && (links_.empty() || reader_->profile() != options.profile))
+      options.profile = links_.empty() ? reader_->profile() : "";
     if (!options_.when.empty()) options.when = hc::record::place_of(options_.when).name();
     options.log = [](hc::Level severity, std::string_view line) {
       say((severity == hc::Level::Error ? "hc record: error: " : "hc record: ") +
@@ -137,9 +139,7 @@ class Recording {
     if (writer_->written().place != place.path)
       say(hc::format("hc record: {} stays as it is; continuing in {}", place.path,
                      writer_->written().place));
-    if (reader_ != nullptr)
-      for (const auto& [name, words] : value_or_fail(reader_->metadata(), read_))
-        check(writer_->metadata(name, words));
+    if (reader_ != nullptr) check(writer_->copy_head(*reader_));
     if (options_.last == 0) return;
     std::signal(SIGUSR1, [](int) { save_requested = 1; });
     has_keys_ = ::isatty(STDIN_FILENO) == 1 &&
@@ -217,7 +217,8 @@ void add_record(CLI::App& app) {
                    "of .mcap: remove the oldest files above this many bytes (10G)");
   verb->add_option("--last", options->last,
                    "of .mcap: keep the last seconds in memory; Enter or SIGUSR1 saves them [s]")
-      ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1.0}}));
+      ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1.0}}))
+      ->check(number_in(0, kLongest));
   verb->add_option("--when", options->when,
                    "one of --in: save when its first number becomes non-zero");
   add_of(*verb, options->of);

@@ -120,11 +120,8 @@ void take_record(const RunOptions& options, hc::LoadOptions& load) {
     if (!value.empty())
       load.recorder[name] =
           name == "last" && value.ends_with('s') ? value.substr(0, value.size() - 1) : value;
-  if (hc::record::place_of(options.record).kind == hc::record::Place::Kind::Link)
-    throw Failure(hc::Code::Invalid, "--record takes a folder or FILE.mcap, not the URI " +
-                                         options.record + "; a path may begin with ./");
   const bool is_numbered = load.recorder.contains("split") || load.recorder.contains("last");
-  const auto given = hc::record::place_of_streams(options.record);
+  const auto given = value_or_fail(hc::record::place_of_streams(options.record), "--record");
   const bool is_mcap = given.kind == hc::record::Place::Kind::Mcap;
   if (!is_mcap && !load.recorder.empty())
     throw Failure(hc::Code::Invalid, "--" + load.recorder.begin()->first +

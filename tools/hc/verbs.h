@@ -11,6 +11,9 @@
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
 
+#include <hc/base/format.h>
+#include <hc/base/text.h>
+
 namespace tool {
 
 /// For options that are whole numbers: CLI11 would read -1 as the largest number, and print ranges
@@ -22,6 +25,19 @@ inline CLI::Validator whole_number() {
                        : "\"" + text + "\" is not a whole number from 0 on";
           },
           "", "whole_number"};
+}
+
+inline constexpr double kLongest = 1e9;  ///< duration on the command line [s]
+
+/// A number in a range, which excludes nan and inf.
+inline CLI::Validator number_in(double least, double most) {
+  return {[least, most](const std::string& text) {
+            double number = 0;
+            return hc::read_number(text, number) && number >= least && number <= most
+                       ? std::string()
+                       : hc::format("\"{}\" is not a number from {:g} to {:g}", text, least, most);
+          },
+          "", "number"};
 }
 
 /// Options that several verbs have.

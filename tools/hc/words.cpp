@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include <hc/base/format.h>
+#include <hc/base/place_word.h>
 #include <hc/contract/description.h>
 #include <hc/os/program.h>
 
@@ -16,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_recording_name(const std::string& word) {
-  return word.ends_with(".mtp") || word.ends_with(".mcap");
+  return word.ends_with(".mtp") || hc::is_mcap_path(word);
 }
 
 /// Whether a word can be MODULE.PORT.

@@ -5,6 +5,7 @@
 
 #include <graph/plan/planning.h>
 #include <hc/base/format.h>
+#include <hc/base/place_word.h>
 #include <hc/base/uri.h>
 #include <hc/contract/conversion.h>
 #include <hc/link/link.h>
@@ -104,7 +105,7 @@ class LinkCheck {
     for (const auto& [key, value] : link.policy)
       if (!uri.option(key, "").empty() && !value.value.empty())
         problems_.add(value.place, key + " is also given in " + outside.uri);
-    if (uri.scheme == "file" && uri.rest.ends_with(".mcap"))
+    if (uri.scheme == "file" && is_mcap_path(uri.rest))
       problems_.add(link.place,
                     "{} is a recording in MCAP, and links take files of messages: {} is for those",
                     outside.uri, is_input ? "hc play" : "hc run --record");

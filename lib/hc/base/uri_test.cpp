@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <hc/base/place_word.h>
+
 namespace hc {
 namespace {
 
@@ -38,6 +40,27 @@ TEST(Uri, RefusesWhatIsNone) {
     EXPECT_EQ(uri.error().code, Code::Invalid);
     EXPECT_EQ(uri.error().detail.find('\n'), std::string::npos);
   }
+}
+
+TEST(PlaceWord, IsALinkOrAFile) {
+  for (const char* word :
+       {"2025-11-25T13:00:00.mtp", "Run 1: eyes.mtp", "13:00.mtp", "A:b", "x?y"}) {
+    const auto place = parse_place_word(word);
+    ASSERT_TRUE(place) << word;
+    EXPECT_EQ(place->scheme, "file") << word;
+    EXPECT_EQ(place->rest, word);
+  }
+  EXPECT_EQ(parse_place_word("-")->scheme, "-");
+  EXPECT_EQ(parse_place_word("tcp:robot:7000?keep=3")->option("keep", ""), "3");
+  EXPECT_EQ(parse_place_word("x.mtp?append=1")->rest, "x.mtp");
+  for (const char* wrong : {"", "tcp:x?a", "file:x?a"})
+    EXPECT_FALSE(parse_place_word(wrong)) << wrong;
+}
+
+TEST(PlaceWord, McapIsKnownByItsEnding) {
+  for (const char* path : {"x.mcap", "X.MCAP", ".mcap"}) EXPECT_TRUE(is_mcap_path(path)) << path;
+  for (const char* path : {"", "mcap", "x.mcap/", "x.mtp"})
+    EXPECT_FALSE(is_mcap_path(path)) << path;
 }
 
 TEST(HostPort, ReadsNamesAddressesAndPorts) {

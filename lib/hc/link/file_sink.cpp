@@ -10,6 +10,7 @@
 
 #include <algorithm>
 
+#include <hc/base/place_word.h>
 #include <hc/link/stream/ends.h>
 #include <hc/link/transports.h>
 #include <hc/mtp/stream_reader.h>
@@ -116,7 +117,7 @@ class OptionalFile final : public Sink {
 }  // namespace
 
 Result<std::unique_ptr<Sink>> open_file_sink(const Uri& uri, const LinkOptions& options) {
-  if (uri.rest.ends_with(".mcap"))
+  if (is_mcap_path(uri.rest))
     return Error{Code::Invalid, "links do not write MCAP; use hc record " + uri.rest};
   auto is_set = [&](const char* key) {
     const auto number = number_option(uri, key, 0);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <tuple>
 
+#include <hc/base/place_word.h>
 #include <hc/base/suggestion.h>
 #include <hc/base/text.h>
 #include <hc/contract/trace.h>
@@ -309,7 +310,7 @@ Result<PortLink> parse_port_link(const Module& module, bool is_input, const std:
                                  : split_port(ModuleAccess::outputs(module), "output", text));
     std::tie(link.port, uri) = split;
   }
-  link.uri = HC_TRY(parse_uri(uri));
+  link.uri = HC_TRY(parse_place_word(uri));
   return link;
 }
 

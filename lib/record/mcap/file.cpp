@@ -10,13 +10,13 @@
 #include <hc/os/new_file.h>
 
 namespace hc::mcap {
-Result<File> File::create(const std::string& path) {
+Result<File> File::create(const std::string& path, std::string_view profile) {
   auto begun = begin_file(path);
   if (!begun) return begun.error();
   File file(std::move(begun->path), std::move(begun->descriptor));
   RecordWriter out;
   out.append(std::as_bytes(std::span(kMagic)));
-  out.add(Opcode::Header, "ros2", "hypercolumn " HC_VERSION);
+  out.add(Opcode::Header, profile, "hypercolumn " HC_VERSION);
   if (auto written = file.write(out.bytes); !written) return written.error();
   return file;
 }

@@ -7,6 +7,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,7 +20,7 @@ namespace hc::mcap {
 class File {
  public:
   /// Creates a file like begin_file(), never over an existing one. Errors: those of begin_file().
-  static Result<File> create(const std::string& path);
+  static Result<File> create(const std::string& path, std::string_view profile = "ros2");
 
   // Errors of all: System. The file is then unchanged and can be closed.
 

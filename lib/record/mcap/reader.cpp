@@ -206,13 +206,16 @@ Status Reader::scan_record(const RecordPlace& place, bool is_counted) {
   constexpr std::uint64_t kHead = 64, kEntry = 16, kMaxName = 4096;
   const bool declares = place.opcode == Opcode::Schema || place.opcode == Opcode::Channel;
   const bool is_metadata = place.opcode == Opcode::Metadata;
-  const std::uint64_t most = declares ? place.length : is_metadata ? kMaxName : kHead;
+  const bool has_name = is_metadata || place.opcode == Opcode::Header;
+  const std::uint64_t most = declares ? place.length : has_name ? kMaxName : kHead;
   auto content = read(place.content(), std::min(place.length, most), limits_.summary_bytes);
   if (!content) return content.error();
   if (declares) return declare(place, *content);
   const bool is_behind_chunk = !parts_.empty() && parts_.back().is_chunk;
   RecordReader reader(*content);
-  if (is_metadata) {
+  if (place.opcode == Opcode::Header) {
+    reader.get(summary_.profile);
+  } else if (is_metadata) {
     metadata_.push_back(place);
     reader.get(summary_.metadata.emplace_back());
   } else if (place.opcode == Opcode::Chunk) {
@@ -251,18 +254,16 @@ void Reader::count_contents() {
   }
 }
 
-Result<std::map<std::string, StringMap>> Reader::metadata() {
-  std::map<std::string, StringMap> all;
+Result<std::vector<MetadataRecord>> Reader::metadata() {
+  std::vector<MetadataRecord> all;
   std::uint64_t kept = 0;
   for (const auto& place : metadata_) {
     auto content = read(place.content(), place.length, limits_.summary_bytes - kept);
     if (!content) return content.error();
     kept += content->size();
     RecordReader reader(*content);
-    std::string name;
-    StringMap words;
-    reader.get(name, words);
-    all[name] = std::move(words);
+    auto& record = all.emplace_back();
+    reader.get(record.name, record.words);
     if (!reader.is_good()) return damaged(kTooShort, place.at);
   }
   return all;

@@ -27,6 +27,7 @@ struct ReaderLimits {
 };
 
 struct Summary {
+  std::string profile;  ///< "ros2"; empty: none
   std::map<std::uint16_t, SchemaRecord> schemas;
   std::map<std::uint16_t, ChannelRecord> channels;
   std::map<std::uint16_t, std::uint64_t> counts;  ///< of messages, by channel
@@ -60,11 +61,14 @@ class Reader {
 
   /// Grows while chunks are read, by schemas and channels that are declared only in them.
   [[nodiscard]] const Summary& summary() const { return summary_; }
-  /// The latest metadata of each name. Errors: Malformed, TooLarge, System.
-  Result<std::map<std::string, StringMap>> metadata();
+  /// All metadata, in file order. Errors: Malformed, TooLarge, System.
+  Result<std::vector<MetadataRecord>> metadata();
 
   /// Reads only these channels; chunks without them are skipped if their index is complete.
   void select(std::set<std::uint16_t> channels) { selected_ = std::move(channels); }
+  [[nodiscard]] bool is_selected(std::uint16_t channel) const {
+    return !selected_ || selected_->contains(channel);
+  }
   /// Skips messages before this time, and chunks that contain only such messages.
   void start_at(std::uint64_t log_time);
 

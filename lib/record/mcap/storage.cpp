@@ -66,7 +66,7 @@ Result<Storage> Storage::make(const std::string& file, const StorageOptions& opt
 /// A single file has the given name; files of a sequence are numbered.
 Status Storage::begin_file(std::uint64_t time) {
   if (is_numbered()) number_ = std::max(number_, highest_number(name_)) + 1;
-  auto file = File::create(is_numbered() ? numbered(name_, number_) : name_);
+  auto file = File::create(is_numbered() ? numbered(name_, number_) : name_, options_.profile);
   if (!file) return file.error();
   file_ = std::move(*file);
   if (!is_numbered()) name_ = file_->path();

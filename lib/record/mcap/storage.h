@@ -23,6 +23,7 @@ struct StorageOptions {
   std::uint64_t keep = 0;   ///< remove the oldest files beyond this total size [byte]; 0: never
   /// > 0: keep messages of this duration in memory; each save() writes them to a file.
   std::chrono::nanoseconds last{0};
+  std::string profile = "ros2";
 };
 
 /// A message that remains valid, such as fixed frames ("latched" in ROS).
