@@ -132,7 +132,7 @@ class Ports(Graphs):
         self.assertEqual(links, [])
 
     def test_what_an_input_does_not_take_is_refused(self):
-        self.shell("hc send 1 2 --to brightness.image", 1)
+        self.shell("hc send 1 2 --type table --to brightness.image", 1)
         self.assertIn("brightness.image: R17 info: table does not fit", self.err)
         for to, reason in (
             ("brightness.imag", 'no input "brightness.imag", did you mean "brightness.image"?'),
@@ -141,6 +141,8 @@ class Ports(Graphs):
             ("brightness.focus", "decides on the focus"),
         ):
             self.refused("hc send 1 --to " + to, reason)
+        reason = "brightness.image takes an image, and numbers alone do not say of what size"
+        self.refused("hc send 1 2 3 --to brightness.image", reason)
         self.refused("hc send 1 --mode 3 --to brightness.image", "--to and --mode exclude")
         self.refused("hc send 1 --out x.mtp --to brightness.image", "excludes")
 

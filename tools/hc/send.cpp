@@ -82,6 +82,13 @@ hc::Message message_of_elements(const hc::Header& header, const std::vector<std:
   return std::move(draft).finish();
 }
 
+/// Whether an input takes images of any size.
+bool is_shapeless_image(const hc::PortType& type) {
+  const bool is_image = type.info.type == hc::MatrixType::RgbImage ||
+                        type.info.type == hc::MatrixType::IntensityImage;
+  return is_image && type.width == 0 && type.height == 0;
+}
+
 hc::Message message_of_numbers(const SendOptions& options) {
   hc::Header header;
   header.info.type = type_named(options.type);
@@ -89,6 +96,14 @@ hc::Message message_of_numbers(const SendOptions& options) {
                              hc::Scalar::U8, hc::Scalar::F64);
   // Without options, the numbers are what the input takes.
   const bool is_free = !options.has_type && !options.has_shape;
+  if (is_free && !options.taken.empty() && is_shapeless_image(options.taken.front()))
+    throw Failure(hc::Code::Invalid,
+                  hc::format("{} takes an image, and numbers alone do not say of what size: give "
+                             "--image FILE or --npy FILE, or --type {} --scalar {} --components {} "
+                             "--width WIDTH with the numbers",
+                             options.to, hc::name(options.taken.front().info.type),
+                             hc::name(options.taken.front().info.scalar),
+                             options.taken.front().info.components));
   if (const auto* type = is_free && !options.taken.empty() ? &options.taken.front() : nullptr)
     if (const auto shape = hc::shape_of(*type, options.numbers.size())) {
       header.info = type->info;
