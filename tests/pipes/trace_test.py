@@ -111,6 +111,7 @@ class Tracing(Graphs):
         )
         self.shell("hc trace last.out --of " + self.name, 2)
         self.assertIn('no linked port "last.out", did you mean', self.err)
+        self.assertIn("or trace one of last.in\n", self.err)
         self.shell("hc trace", 2)
         self.assertNotIn("trace", self.stop(process)[1])
 

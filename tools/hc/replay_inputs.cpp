@@ -16,6 +16,12 @@ using What = hc::TraceEvent::What;
 
 constexpr std::size_t kStepsAtOnce = 1000;  // per message
 
+/// Whether a link has its messages in another form than its output.
+bool changes_messages(hc::Uri uri) {
+  const auto conversion = hc::take_conversion(uri);
+  return (conversion && !conversion->is_none()) || !uri.option("bandwidth", "").empty();
+}
+
 bool is_step(const hc::TraceEvent& event) {
   if (event.what == What::Took) return event.port == kFocus;
   return event.what == What::Began || event.what == What::Set || event.what == What::Read;
@@ -57,15 +63,55 @@ std::vector<hc::TraceEvent> RecordedTrace::steps() const {
   return steps;
 }
 
+void RecordedTrace::cut_before(const hc::TraceEvent& event) {
+  const auto found = std::ranges::find_if(events, [&](const auto& each) {
+    return each.what == event.what && each.port == event.port && each.number == event.number &&
+           each.moment == event.moment && each.key() == event.key();
+  });
+  events.erase(found, events.end());
+}
+
+void Feed::add(std::int64_t seq, hc::Uri uri) {
+  auto conversion = value_or_fail(hc::take_conversion(uri), output);
+  if (!uri.option("bandwidth", "").empty())
+    hindrance =
+        "images from " + output + " were adapted to a bandwidth, and recorded as they were before";
+  conversions.insert_or_assign(seq, std::move(conversion));
+}
+
+void Feed::add_changes(const RecordedTrace& trace, const std::string& reader) {
+  std::int64_t next = 0;
+  for (const auto& event : trace.events) {
+    if (event.port != output.substr(output.find('.') + 1)) continue;
+    if (event.what == What::Sent) next = event.seq + 1;
+    if (event.what != What::Linked && event.what != What::Unlinked) continue;
+    auto uri = hc::parse_uri(event.value);
+    if (!uri) continue;
+    // A link that changes messages does not share its end, whose name has both ports (link_plan).
+    const bool is_named = uri->rest.find("." + output + ".") != std::string::npos;
+    if (is_named ? !uri->rest.ends_with("." + output + "." + reader) : !changes_messages(*uri))
+      continue;
+    if (!is_named || trace.was_restarted) {
+      hindrance = "the form of messages from " + output + " was changed while it was recorded";
+      return;
+    }
+    add(next, event.what == What::Linked ? *uri : hc::Uri());
+  }
+}
+
 template <typename IsWanted>
 void Feed::write(const GraphRecording& recording, const fs::path& to,
                  const IsWanted& is_wanted) const {
   auto source = recording.open(output);
   auto sink = open_file_sink(to);
   hc::Message message;
+  const auto conversion_of = [&](const hc::Message& sent) {
+    const auto after = conversions.upper_bound(sent.header.seq);
+    return after == conversions.begin() ? hc::Conversion() : std::prev(after)->second;
+  };
   while (recording.receive(*source, message, output))
     if (is_wanted(message.header) &&
-        !send(*sink, value_or_fail(hc::convert(message, conversion), output), to))
+        !send(*sink, value_or_fail(hc::convert(message, conversion_of(message)), output), to))
       return;
   if (auto closed = sink->close(); !closed) throw Failure(to.string(), closed.error());
 }
@@ -74,8 +120,9 @@ void Feed::write_all(const GraphRecording& recording, const fs::path& to) const 
   write(recording, to, [](const hc::Header&) { return true; });
 }
 
-void Feed::write_handled(const GraphRecording& recording, std::vector<hc::TraceEvent>& steps,
-                         const fs::path& to) const {
+std::optional<hc::TraceEvent> Feed::write_handled(const GraphRecording& recording,
+                                                  std::vector<hc::TraceEvent>& steps,
+                                                  const fs::path& to) const {
   const auto is_of_link = [&](const auto& step) {
     return step.what == What::Began && step.port == port && step.number == number;
   };
@@ -86,8 +133,18 @@ void Feed::write_handled(const GraphRecording& recording, std::vector<hc::TraceE
     const auto key = hc::MessageKey::of(header);
     return handled.contains(key) && found.insert(key).second;
   });
-  std::erase_if(steps,
-                [&](const auto& step) { return is_of_link(step) && !found.contains(step.key()); });
+  const auto is_found = [&](const auto& step) {
+    return is_of_link(step) && found.contains(step.key());
+  };
+  const auto is_missing = [&](const auto& step) {
+    return is_of_link(step) && !found.contains(step.key());
+  };
+  const auto first = std::ranges::find_if(steps, is_found);
+  const auto missing = std::find_if(first, steps.end(), is_missing);
+  const auto result = missing == steps.end() ? std::nullopt : std::optional(*missing);
+  steps.erase(missing, steps.end());
+  std::erase_if(steps, is_missing);
+  return result;
 }
 
 void write_steps(const std::vector<hc::TraceEvent>& steps, const fs::path& to) {

@@ -4,10 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include <hc/base/uri.h>
 #include <hc/compress/convert.h>
 #include <hc/contract/trace.h>
 
@@ -31,21 +34,32 @@ struct RecordedTrace {
   /// The steps to replay: the start, as an event with only a moment, then each handler, each change
   /// of a parameter, and each reading of the clock.
   [[nodiscard]] std::vector<hc::TraceEvent> steps() const;
+  /// Drops an event and all after it.
+  void cut_before(const hc::TraceEvent& event);
 };
 
 /// A link by which recorded messages go to a module again.
 struct Feed {
-  std::string output;         ///< their sender
-  std::string port;           ///< the module's input
-  std::int32_t number = 0;    ///< among the links of the port
-  hc::Conversion conversion;  ///< what the link does to them, which the recording is without
-  bool is_adapted = false;    ///< to a bandwidth: in what form is unknown
+  std::string output;       ///< their sender
+  std::string port;         ///< the module's input
+  std::int32_t number = 0;  ///< among the links of the port
+  /// What the link does to them, which the recording is without; from the message with this `seq`.
+  std::map<std::int64_t, hc::Conversion> conversions = {};
+  std::string hindrance = {};  ///< why the messages that it sent are unknown; empty: they are known
+
+  /// Adds what a link with this URI does. @param seq  of its first message.
+  void add(std::int64_t seq, hc::Uri uri);
+  /// Adds what commands changed while the graph was recorded.
+  /// @param trace  of the sender. @param reader  "MODULE.PORT".
+  void add_changes(const RecordedTrace& trace, const std::string& reader);
 
   /// Writes its messages to a file, as the link sends them.
   void write_all(const GraphRecording& recording, const std::filesystem::path& to) const;
-  /// Writes those that were handled; drops steps whose message was not recorded.
-  void write_handled(const GraphRecording& recording, std::vector<hc::TraceEvent>& steps,
-                     const std::filesystem::path& to) const;
+  /// Writes those that were handled; drops steps whose message was not recorded, where none before
+  /// was. The first one after these is returned: its message came from elsewhere, or was lost.
+  std::optional<hc::TraceEvent> write_handled(const GraphRecording& recording,
+                                              std::vector<hc::TraceEvent>& steps,
+                                              const std::filesystem::path& to) const;
 
  private:
   template <typename IsWanted>

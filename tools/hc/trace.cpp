@@ -75,9 +75,17 @@ void check_port(const std::string& port, const Links& links) {
   for (const auto& [from, to] : links)
     for (const auto& each : {from, to})
       if (each.find(':') == std::string::npos) known.push_back(each);
-  if (std::ranges::find(known, port) == known.end())
-    throw Failure(hc::Code::Invalid,
-                  "no linked port \"" + port + "\"" + hc::suggestion(port, known));
+  if (std::ranges::find(known, port) != known.end()) return;
+  std::vector<std::string> linked;
+  for (const auto& each : std::set(known.begin(), known.end()))
+    if (module_of(each) == module_of(port)) linked.push_back(each);
+  const std::string hint = linked.empty()
+                               ? ""
+                               : "; only messages over a link are traced: link it (hc graph link) "
+                                 "or trace one of " +
+                                     joined(linked);
+  throw Failure(hc::Code::Invalid,
+                "no linked port \"" + port + "\"" + hc::suggestion(port, known) + hint);
 }
 
 Collected collect(const TraceOptions& options) {
@@ -285,7 +293,7 @@ void add_trace(CLI::App& app) {
       ->expected(0, 2);
   add_of(*verb, options->of);
   verb->add_option("--duration", options->duration, "time to trace a running graph [s]")
-      ->check(CLI::Range(0.1, 3600.0));
+      ->check(number_in(0.1, 3600));
   verb->add_option("--recording", options->recording,
                    "folder or .mcap of hc run --record, instead of a running graph");
   verb->add_option("--graph", options->graph.file,

@@ -12,11 +12,17 @@
 namespace hc {
 namespace {
 
-constexpr std::array<std::string_view, 7> kWhats = {"took", "began", "ended", "sent",
-                                                    "lost", "set",   "read"};
+constexpr std::array<std::string_view, 9> kWhats = {"took", "began", "ended",  "sent",    "lost",
+                                                    "set",  "read",  "linked", "unlinked"};
 
-/// The rest of the row of a parameter.
-std::optional<TraceEvent> parse_set(TraceEvent event, std::string_view row) {
+/// Whether an event is a change, with a value and without a message.
+bool is_change(TraceEvent::What what) {
+  using What = TraceEvent::What;
+  return what == What::Set || what == What::Linked || what == What::Unlinked;
+}
+
+/// The rest of the row of a change.
+std::optional<TraceEvent> parse_change(TraceEvent event, std::string_view row) {
   std::int64_t moment = 0;
   if (!read_number(take_until(row, ' '), moment) || moment < 0) return std::nullopt;
   event.moment = unix_time(moment);
@@ -30,7 +36,7 @@ std::optional<TraceEvent> parse_event(std::string_view row) {
   if (!what) return std::nullopt;
   event.what = *what;
   event.port = take_until(row, ' ');
-  if (*what == TraceEvent::What::Set) return parse_set(std::move(event), row);
+  if (is_change(*what)) return parse_change(std::move(event), row);
   if (event.port == "-") event.port.clear();
   auto take = [&](auto& number) { return read_number(take_until(row, ' '), number); };
   std::int64_t time = 0, moment = 0;
@@ -50,7 +56,7 @@ Message make_trace(std::span<const TraceEvent> events) {
   for (const auto& event : events) {
     std::string& row = rows.emplace_back(kWhats[static_cast<std::size_t>(event.what)]);
     row.append(" ").append(event.port.empty() ? "-" : event.port);
-    if (event.what == TraceEvent::What::Set) {
+    if (is_change(event.what)) {
       row.append(" ").append(std::to_string(unix_nanoseconds(event.moment)));
       row.append(" ").append(event.value);
       continue;

@@ -25,16 +25,19 @@ struct MessageKey {
   auto operator<=>(const MessageKey&) const = default;
 };
 
-/// An event in the life of a message, a change of a parameter, or a reading of the clock.
+/// An event in the life of a message, a change of a parameter or an output's link, or a reading of
+/// the clock.
 struct TraceEvent {
   enum class What {
-    Took,   ///< an input took the message from its link
-    Began,  ///< a handler began; with an empty port, that of a timer or the generator
-    Ended,  ///< the handler returned
-    Sent,   ///< an output passed the message to its links
-    Lost,   ///< too many events: `seq` of them were not recorded
-    Set,    ///< the parameter `port` was given another value
-    Read,   ///< the module read its clock, which was `moment`
+    Took,      ///< an input took the message from its link
+    Began,     ///< a handler began; with an empty port, that of a timer or the generator
+    Ended,     ///< the handler returned
+    Sent,      ///< an output passed the message to its links
+    Lost,      ///< too many events: `seq` of them were not recorded
+    Set,       ///< the parameter `port` was given another value
+    Read,      ///< the module read its clock, which was `moment`
+    Linked,    ///< the output `port` was linked to the URI `value` by a command
+    Unlinked,  ///< such a link was removed
   };
   What what = What::Took;
   std::string port;
@@ -46,13 +49,14 @@ struct TraceEvent {
   /// kGenerator.
   std::int32_t number = 0;
   static constexpr std::int32_t kGenerator = -1;
-  std::string value = {};  ///< of a parameter, as text
+  std::string value = {};  ///< of a parameter, as text; the URI of a link
   [[nodiscard]] MessageKey key() const { return {src, seq, time}; }
   bool operator==(const TraceEvent&) const = default;
 };
 
 /// A string with a row "took PORT SRC SEQ TIME MOMENT" per event, followed by the number unless it
-/// is 0; an empty port is "-". A change of a parameter is "set NAME MOMENT VALUE".
+/// is 0; an empty port is "-". A change of a parameter is "set NAME MOMENT VALUE", of a link
+/// "linked PORT MOMENT URI".
 Message make_trace(std::span<const TraceEvent> events);
 /// Malformed rows are ignored.
 std::vector<TraceEvent> read_trace(const Message& message);

@@ -19,11 +19,14 @@ TEST(Trace, IsReadAsItWasWritten) {
       {What::Lost, "", 0, 12, Time(), unix_time(2004)},
       {What::Set, "modes", 0, 0, Time(), unix_time(2005), 0, "read=5, track=4"},
       {What::Set, "file", 0, 0, Time(), unix_time(2006), 0, ""},
-      {What::Read, "", 0, 0, Time(), unix_time(2007)}};
+      {What::Read, "", 0, 0, Time(), unix_time(2007)},
+      {What::Unlinked, "out", 0, 0, Time(), unix_time(2008), 0, "shm:a?readers=1"},
+      {What::Linked, "out", 0, 0, Time(), unix_time(2009), 0, "shm:a?as=jpeg&quality=5"}};
   const Message message = make_trace(events);
   EXPECT_EQ(rows_of(message)[0], "took image 3 7 1000 2000");
   EXPECT_EQ(rows_of(message)[1], "began - 0 0 0 2001 2");
   EXPECT_EQ(rows_of(message)[5], "set modes 2005 read=5, track=4");
+  EXPECT_EQ(rows_of(message)[9], "linked out 2009 shm:a?as=jpeg&quality=5");
   EXPECT_EQ(read_trace(message), events);
 }
 

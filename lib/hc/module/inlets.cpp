@@ -2,6 +2,7 @@
 #include <hc/module/inlets.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include <hc/module/ending.h>
@@ -58,10 +59,12 @@ void Module::Inlets::open(const Uri& uri, std::vector<internal::InputState*> inp
   Inlet inlet{.uri = uri.text(), .source = opener_.open(opened, inputs.front()->name)};
   inlet.inputs = std::move(inputs);
   inlet.is_latest = is_latest;
+  std::set<std::int32_t> numbers;
   for (const auto& each : inlets_) {
     if (each.is_same(inlet)) inlet.route = each.route;
-    if (each.inputs == inlet.inputs) ++inlet.number;
+    if (each.inputs == inlet.inputs) numbers.insert(each.number);
   }
+  while (numbers.contains(inlet.number)) ++inlet.number;  // a link that is changed keeps its own
   inlet.count(1);
   inlets_.push_back(std::move(inlet));
   sets_.begin(inlets_.back());

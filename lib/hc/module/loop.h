@@ -52,9 +52,6 @@ struct Module::Loop {
     schedule_->read_clock();
     return *now.message_time;
   }
-  void note_set(const std::string& parameter, const std::string& value) {
-    trace.note_set(parameter, value);
-  }
 
   // For its schedule.
 

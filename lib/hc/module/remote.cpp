@@ -110,7 +110,7 @@ Status Module::Remote::set_parameter(const std::string& name, const std::string&
     if (parameter->options.fixed)
       return Error{Code::Invalid, "parameter " + name + " is fixed while the module runs"};
     HC_TRY(parameter->set(value));
-    module_.loop_->note_set(name, value);
+    module_.loop_->trace.note_change(TraceEvent::What::Set, name, value);
     report_parameters();
     return {};
   }
@@ -124,6 +124,7 @@ Status Module::Remote::link(bool is_input, const std::string& text) {
   } catch (const ModuleError& error) {
     return Error{Code::System, error.what()};
   }
+  note(TraceEvent::What::Linked, is_input, link);
   report_links();
   return {};
 }
@@ -136,8 +137,15 @@ Status Module::Remote::unlink(bool is_input, const std::string& text) {
   report_counters();  // the last of this link
   if (is_input && !inlets_.remove(link)) return unknown;
   if (!is_input) outlets_.remove(link, outlet);
+  note(TraceEvent::What::Unlinked, is_input, link);
   report_links();
   return {};
+}
+
+void Module::Remote::note(TraceEvent::What what, bool is_input,
+                          const internal::PortLink& link) const {
+  if (!is_input && !link.is_trace)
+    module_.loop_->trace.note_change(what, module_.outputs_[link.port]->name, link.uri.text());
 }
 
 void Module::Remote::send(Report report, Message message) {

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include <hc/contract/command.h>
+#include <hc/contract/trace.h>
+#include <hc/module/arguments.h>
 #include <hc/module/inlets.h>
 #include <hc/module/management.h>
 #include <hc/module/outlets.h>
@@ -43,6 +45,8 @@ class Module::Remote {
   Status carry_out(const ModuleCommand& command);
   Status link(bool is_input, const std::string& text);
   Status unlink(bool is_input, const std::string& text);
+  /// Notes a change of an output's link in the trace: its form of messages may be another.
+  void note(TraceEvent::What what, bool is_input, const internal::PortLink& link) const;
   void report_parameters();
   void send(Report report, Message message);
 

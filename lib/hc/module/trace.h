@@ -31,9 +31,9 @@ class Trace {
       add({what, {}, 0, 0, {}, clock_.wall(), number});
   }
 
-  /// Notes that a parameter was given another value.
-  void note_set(const std::string& parameter, const std::string& value) {
-    if (is_linked()) add({TraceEvent::What::Set, parameter, 0, 0, {}, clock_.wall(), 0, value});
+  /// Notes a change: another value of a parameter, or the URI of a link that came or went.
+  void note_change(TraceEvent::What what, const std::string& name, const std::string& value) {
+    if (is_linked()) add({what, name, 0, 0, {}, clock_.wall(), 0, value});
   }
 
   /// The wall clock, of which the reading is noted.
