@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <record/mcap/reader.h>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <iterator>
 
@@ -41,59 +37,16 @@ bool knows_channels(const Summary& summary) {
 
 }  // namespace
 
-Error Reader::truncated(std::uint64_t at) const {
-  return {Code::Truncated, "MCAP: the file is truncated, as after a crash; " + std::to_string(at) +
-                               " of its " + std::to_string(size_) +
-                               " bytes are complete and have been read"};
-}
-
 Result<Reader> Reader::open(const std::string& path, const ReaderLimits& limits) {
-  Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-  if (!descriptor) return system_error("open", path);
-  struct stat status {};
-  if (::fstat(descriptor.get(), &status) != 0) return system_error("fstat", path);
-  if (!S_ISREG(status.st_mode))
-    return Error{Code::Unsupported, path + ": a recording in MCAP is a file, not a pipe or device"};
-  Reader reader(path, std::move(descriptor), static_cast<std::uint64_t>(status.st_size), limits);
-  auto magic = reader.read(0, kMagic.size(), kMagic.size());
-  if (!magic && magic.error().code != Code::Truncated) return magic.error();
-  if (!magic || std::memcmp(magic->data(), kMagic.data(), kMagic.size()) != 0)
-    return Error{Code::Malformed, path + ": not an MCAP file"};
+  auto file = InputFile::open(path);
+  if (!file) return file.error();
+  Reader reader(std::move(*file), limits);
   auto chunks = reader.read_summary();
   if (!chunks) return chunks.error();
   if (auto scanned = reader.scan(*chunks); !scanned) return scanned.error();
   reader.count_contents();
   std::ranges::stable_sort(reader.parts_, {}, &Part::first);
   return reader;
-}
-
-Result<std::vector<std::byte>> Reader::read(std::uint64_t at, std::uint64_t size,
-                                            std::uint64_t limit) {
-  if (size > limit)
-    return Error{Code::TooLarge, "MCAP: a record of " + std::to_string(size) + " bytes at byte " +
-                                     std::to_string(at) + ", more than the limit of " +
-                                     std::to_string(limit)};
-  if (at > size_ || size > size_ - at) return truncated(at);
-  std::vector<std::byte> bytes(size);
-  for (std::size_t done = 0; done < bytes.size();) {
-    const auto got = system_call("read", path_, [&] {
-      return ::pread(descriptor_.get(), bytes.data() + done, bytes.size() - done,
-                     static_cast<off_t>(at + done));
-    });
-    if (!got) return got.error();
-    if (*got == 0) return truncated(at);  // the file has been truncated
-    done += static_cast<std::size_t>(*got);
-  }
-  return bytes;
-}
-
-Result<Reader::RecordPlace> Reader::record_at(std::uint64_t at) {
-  auto head = read(at, kRecordHead, kRecordHead);
-  if (!head) return head.error();
-  RecordPlace place{{}, at, 0};
-  RecordReader(*head).get(place.opcode, place.length);
-  if (place.length > size_ - place.content()) return truncated(at);
-  return place;
 }
 
 Status Reader::declare(const RecordPlace& place, std::span<const std::byte> content) {
@@ -131,9 +84,9 @@ void Reader::add_chunk(const Part& chunk) {
 Result<std::vector<Reader::Part>> Reader::read_summary() {
   std::vector<Part> chunks;
   const std::uint64_t tail = kRecordHead + kFooterLength + kMagic.size();
-  if (size_ < kMagic.size() + tail) return chunks;
-  const std::uint64_t footer_at = size_ - tail;
-  auto end = read(footer_at, tail, tail);
+  if (file_.size() < kMagic.size() + tail) return chunks;
+  const std::uint64_t footer_at = file_.size() - tail;
+  auto end = file_.read(footer_at, tail, tail);
   if (!end) return end.error();
   RecordReader footer(*end);
   Opcode opcode{};
@@ -149,10 +102,10 @@ Result<std::vector<Reader::Part>> Reader::read_summary() {
   // Record by record, since the summary of a recording of days is long.
   std::uint32_t found_crc = 0;
   for (std::uint64_t at = begin; at < footer_at;) {
-    auto place = record_at(at);
+    auto place = file_.record_at(at);
     if (!place) return place.error();
     if (place->end() > footer_at) return damaged("a record of the summary is cut short", at);
-    auto bytes = read(at, place->end() - at, limits_.summary_bytes);
+    auto bytes = file_.read(at, place->end() - at, limits_.summary_bytes);
     if (!bytes) return bytes.error();
     found_crc = crc32(*bytes, found_crc);
     const auto content = std::span(*bytes).subspan(kRecordHead);
@@ -193,7 +146,7 @@ Status Reader::scan(const std::vector<Part>& chunks) {
       scanned_ = known->indexed;
       continue;
     }
-    auto place = record_at(scanned_);
+    auto place = file_.record_at(scanned_);
     if (!place && place.error().code != Code::Truncated) return place.error();
     summary_.is_whole = place.has_value();
     if (!place || place->opcode == Opcode::DataEnd || place->opcode == Opcode::Footer) return {};
@@ -208,7 +161,7 @@ Status Reader::scan_record(const RecordPlace& place, bool is_counted) {
   const bool is_metadata = place.opcode == Opcode::Metadata;
   const bool has_name = is_metadata || place.opcode == Opcode::Header;
   const std::uint64_t most = declares ? place.length : has_name ? kMaxName : kHead;
-  auto content = read(place.content(), std::min(place.length, most), limits_.summary_bytes);
+  auto content = file_.read(place.content(), std::min(place.length, most), limits_.summary_bytes);
   if (!content) return content.error();
   if (declares) return declare(place, *content);
   const bool is_behind_chunk = !parts_.empty() && parts_.back().is_chunk;
@@ -258,7 +211,7 @@ Result<std::vector<MetadataRecord>> Reader::metadata() {
   std::vector<MetadataRecord> all;
   std::uint64_t kept = 0;
   for (const auto& place : metadata_) {
-    auto content = read(place.content(), place.length, limits_.summary_bytes - kept);
+    auto content = file_.read(place.content(), place.length, limits_.summary_bytes - kept);
     if (!content) return content.error();
     kept += content->size();
     RecordReader reader(*content);
@@ -273,12 +226,12 @@ Result<bool> Reader::is_skipped(const Part& part) {
   if (part.last < start_) return true;
   if (!selected_ || !part.is_chunk) return false;
   for (std::uint64_t at = part.end;;) {
-    auto place = record_at(at);
+    auto place = file_.record_at(at);
     // If the file ends here, further indexes may be missing.
     if (!place) return place.error().code == Code::Truncated ? Result<bool>(false) : place.error();
     if (place->opcode != Opcode::MessageIndex) return at > part.end;
     std::uint16_t channel = 0;
-    auto bytes = read(place->content(), sizeof channel, sizeof channel);
+    auto bytes = file_.read(place->content(), sizeof channel, sizeof channel);
     if (!bytes) return bytes.error();
     RecordReader(*bytes).get(channel);
     if (selected_->contains(channel)) return false;
@@ -288,7 +241,7 @@ Result<bool> Reader::is_skipped(const Part& part) {
 
 Result<std::vector<Reader::Pending>> Reader::open(
     const Part& part, const std::function<bool(const MessageRecord&)>& is_wanted) {
-  auto read_bytes = read(part.at, part.end - part.at, limits_.chunk_bytes);
+  auto read_bytes = file_.read(part.at, part.end - part.at, limits_.chunk_bytes);
   if (!read_bytes) return read_bytes.error();
   const auto owner = std::make_shared<const std::vector<std::byte>>(std::move(*read_bytes));
   Bytes bytes{*owner, owner};
@@ -331,7 +284,7 @@ Result<bool> Reader::fill() {
       return true;
     if (!has_part) {
       if (summary_.is_whole || std::exchange(is_truncation_reported_, true)) return false;
-      return truncated(scanned_);
+      return file_.truncated(scanned_);
     }
     const Part& part = parts_[next_part_++];
     position_ += part.end - part.at;

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include <hc/base/result.h>
-#include <hc/os/descriptor.h>
 #include <record/mcap/chunk.h>
+#include <record/mcap/input_file.h>
 
 namespace hc::mcap {
 
@@ -82,18 +82,12 @@ class Reader {
   /// The log time of the next message. Errors: as next(), each of them once.
   Result<std::optional<std::uint64_t>> next_time();
 
-  [[nodiscard]] int descriptor() const { return descriptor_.get(); }
-  [[nodiscard]] std::uint64_t size() const { return size_; }
+  [[nodiscard]] int descriptor() const { return file_.descriptor(); }
+  [[nodiscard]] std::uint64_t size() const { return file_.size(); }
   /// The part of the file that next() has read. [byte]
   [[nodiscard]] std::uint64_t position() const { return position_; }
 
  private:
-  struct RecordPlace {
-    Opcode opcode{};
-    std::uint64_t at = 0, length = 0;  // offset of the record, size of its content
-    [[nodiscard]] std::uint64_t content() const { return at + kRecordHead; }
-    [[nodiscard]] std::uint64_t end() const { return content() + length; }
-  };
   /// The unit of reading: a chunk, or a run of messages outside of chunks.
   struct Part {
     std::uint64_t first = 0, last = 0;  // log times
@@ -112,13 +106,8 @@ class Reader {
     std::shared_ptr<OpenPart> part;
   };
 
-  Reader(std::string path, Descriptor descriptor, std::uint64_t size, const ReaderLimits& limits)
-      : path_(std::move(path)), descriptor_(std::move(descriptor)), size_(size), limits_(limits) {}
+  Reader(InputFile file, const ReaderLimits& limits) : file_(std::move(file)), limits_(limits) {}
 
-  [[nodiscard]] Error truncated(std::uint64_t at) const;
-  Result<std::vector<std::byte>> read(std::uint64_t at, std::uint64_t size, std::uint64_t limit);
-  /// The record at an offset. Errors: Truncated, System.
-  Result<RecordPlace> record_at(std::uint64_t at);
   /// Adds a schema or channel to the summary. Errors: Malformed, TooLarge.
   Status declare(const RecordPlace& place, std::span<const std::byte> content);
   /// Reads the summary section, if there is one. Returns the chunks that it indexes, or none if it
@@ -140,9 +129,7 @@ class Reader {
   Result<bool> fill();
   void pop();
 
-  std::string path_;
-  Descriptor descriptor_;
-  std::uint64_t size_ = 0;
+  InputFile file_;
   ReaderLimits limits_;
   std::uint64_t declared_ = 0;  // schemas and channels [byte]
   Summary summary_;
