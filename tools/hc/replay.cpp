@@ -125,7 +125,7 @@ class Replay {
     std::size_t compared = 0;
     for (const auto& module : plan_.modules) {
       if (hc::stop_requested()) throw Failure(0);
-      const auto& trace = trace_of(module.name);
+      const auto trace = RecordedTrace::read(recording_, module.name);
       const auto reason = why_not(module, trace);
       if (!reason.empty()) {
         print(hc::format("{}: not run: {}\n", module.name, reason));
@@ -201,7 +201,7 @@ class Replay {
       if (link.to != module.name + "." + end.port || link.reader_uri != end.uri) continue;
       feed.output = link.from;
       if (auto uri = hc::parse_uri(link.sender_uri)) feed.add(0, std::move(*uri));
-      feed.add_changes(trace_of(link.from.substr(0, link.from.find('.'))), link.to);
+      feed.add_changes(changes_of(link.from.substr(0, link.from.find('.'))), link.to);
       break;
     }
     return feed;
@@ -245,13 +245,20 @@ class Replay {
     return "";
   }
 
-  const RecordedTrace& trace_of(const std::string& module) const {
-    const auto [found, is_new] = traces_.try_emplace(module);
-    if (is_new) found->second = RecordedTrace::read(recording_, module);
+  /// The trace of a module if commands changed its links; else one without events, which takes no
+  /// memory.
+  const RecordedTrace& changes_of(const std::string& module) const {
+    const auto [found, is_new] = changes_.try_emplace(module);
+    if (!is_new) return found->second;
+    auto trace = RecordedTrace::read(recording_, module);
+    if (std::ranges::any_of(trace.events, [](const auto& event) {
+          return event.what == What::Linked || event.what == What::Unlinked;
+        }))
+      found->second = std::move(trace);
     return found->second;
   }
 
-  std::vector<std::string> command_of(const hc::PlannedModule& module, RecordedTrace trace) {
+  std::vector<std::string> command_of(const hc::PlannedModule& module, const RecordedTrace& trace) {
     std::vector<std::string> words = {module.program};
     words.insert(words.end(), module.options.begin(), module.options.end());
     for (const auto& [key, value] : module.parameters) words.push_back("--" + key + "=" + value);
@@ -263,21 +270,33 @@ class Replay {
       words.insert(words.end(), {option, link});
       if (!end.route.empty()) words.insert(words.end(), {"--route", link + " " + end.route});
     };
-    inputs_.clear();
+    taken_.clear();
+    auto whole = trace.whole();
+    std::string cut;  // where the replay ends before the recording
     for (const auto& end : module.ends) {
       if (!end.is_input) continue;
       const auto feed = feed_of(module, end);
       const auto file = folder_ / hc::format("{}.{}.{}.in", module.name, end.port, feed.number);
-      inputs_.emplace_back(end.port, file);
-      if (!is_known)
+      if (!is_known) {
         feed.write_all(recording_, file);
-      else if (const auto missing = feed.write_handled(recording_, steps, file))
-        cut(trace, *missing, module, feed);
+        taken_[end.port] += count(file);
+      } else if (const auto missing = feed.write_handled(recording_, steps, file)) {
+        whole = trace.before(*missing);
+        cut = hc::format(
+            "{}: replayed up to {:.3f} s: a message that it took then at {} is not in "
+            "the recording of {}\n",
+            module.name, hc::seconds(missing->moment - trace.events[0].moment), feed.port,
+            feed.output);
+      }
       add("--in", end, file);
     }
+    print(cut);
+    for (const auto& step : steps)
+      if (step.what == What::Began && !step.port.empty() && step.port != kFocus)
+        ++taken_[step.port];
     if (is_known)
       for (const auto& port : recorded_outputs(module)) last_[module.name + "." + port] = -1;
-    for (const auto& event : trace.whole())
+    for (const auto& event : whole)
       if (event.what == What::Sent) last_[module.name + "." + event.port] = event.seq;
     for (const auto& port : recorded_outputs(module)) {
       const auto end = std::ranges::find_if(
@@ -292,33 +311,23 @@ class Replay {
     return words;
   }
 
+  /// The messages in a file.
+  static std::uint64_t count(const fs::path& file) {
+    const auto source = open_file_source(file, kDefaultLimit);
+    std::uint64_t messages = 0;
+    for (hc::Message message; receive(*source, message, file);) ++messages;
+    return messages;
+  }
+
   /// Prints how many messages a module that was run has got and sent.
   void print_counts(const hc::PlannedModule& module) const {
-    const auto count = [](const fs::path& file) {
-      const auto source = open_file_source(file, kDefaultLimit);
-      std::uint64_t messages = 0;
-      for (hc::Message message; receive(*source, message, file);) ++messages;
-      return messages;
-    };
-    for (const auto& [port, file] : inputs_)
-      print(hc::format("{}.{}: {} taken\n", module.name, port, counted(count(file), "message")));
+    for (const auto& [port, messages] : taken_)
+      print(hc::format("{}.{}: {} taken\n", module.name, port, counted(messages, "message")));
     for (const auto& port : recorded_outputs(module)) {
       const auto name = module.name + "." + port;
       const auto file = folder_ / (name + ".mtp");
       print(hc::format("{}: {} sent\n", name, counted(count(file), "message")));
     }
-  }
-
-  /// Ends the replay of a module where it handled a message that the recording lacks.
-  static void cut(RecordedTrace& trace, const hc::TraceEvent& missing,
-                  const hc::PlannedModule& module, const Feed& feed) {
-    trace.cut_before(missing);
-    print(
-        hc::format("{}: replayed up to {:.3f} s: a message that it took then at {} is not in the "
-                   "recording of {}\n",
-                   module.name,
-                   trace.events.empty() ? 0 : hc::seconds(missing.moment - trace.events[0].moment),
-                   feed.port, feed.output));
   }
 
   void run_module(const hc::PlannedModule& module, const RecordedTrace& trace) {
@@ -383,8 +392,8 @@ class Replay {
   hc::Plan plan_;
   fs::path folder_;  // removed at the end, unless given
   Settings numbers_, shares_;
-  std::vector<std::pair<std::string, fs::path>> inputs_;  // of the module that was run last
-  mutable std::map<std::string, RecordedTrace> traces_;   // by module, as far as they were needed
+  std::map<std::string, std::uint64_t> taken_;  // messages of the module that was run last, by port
+  mutable std::map<std::string, RecordedTrace> changes_;  // see changes_of()
   std::map<std::string, std::int64_t> last_;  // last `seq` sent in a complete step, by output
 };
 

@@ -63,12 +63,12 @@ std::vector<hc::TraceEvent> RecordedTrace::steps() const {
   return steps;
 }
 
-void RecordedTrace::cut_before(const hc::TraceEvent& event) {
-  const auto found = std::ranges::find_if(events, [&](const auto& each) {
-    return each.what == event.what && each.port == event.port && each.number == event.number &&
-           each.moment == event.moment && each.key() == event.key();
+std::span<const hc::TraceEvent> RecordedTrace::before(const hc::TraceEvent& step) const {
+  const auto end = std::ranges::find_if(events, [&](const auto& each) {
+    return is_step(each) && each.port == step.port && each.number == step.number &&
+           each.moment == step.moment && each.key() == step.key();
   });
-  events.erase(found, events.end());
+  return {events.begin(), end};
 }
 
 void Feed::add(std::int64_t seq, hc::Uri uri) {
@@ -81,9 +81,15 @@ void Feed::add(std::int64_t seq, hc::Uri uri) {
 
 void Feed::add_changes(const RecordedTrace& trace, const std::string& reader) {
   std::int64_t next = 0;
+  bool is_handling = false, is_in_order = true;
   for (const auto& event : trace.events) {
+    if (event.what == What::Began || event.what == What::Ended)
+      is_handling = event.what == What::Began;
     if (event.port != output.substr(output.find('.') + 1)) continue;
-    if (event.what == What::Sent) next = event.seq + 1;
+    if (event.what == What::Sent) {
+      is_in_order = is_in_order && event.seq >= next;  // a router passes on those of others
+      next = event.seq + 1;
+    }
     if (event.what != What::Linked && event.what != What::Unlinked) continue;
     auto uri = hc::parse_uri(event.value);
     if (!uri) continue;
@@ -91,7 +97,8 @@ void Feed::add_changes(const RecordedTrace& trace, const std::string& reader) {
     const bool is_named = uri->rest.find("." + output + ".") != std::string::npos;
     if (is_named ? !uri->rest.ends_with("." + output + "." + reader) : !changes_messages(*uri))
       continue;
-    if (!is_named || trace.was_restarted) {
+    // While a link is waited for, the change may be before or behind a message.
+    if (!is_named || trace.was_restarted || is_handling || !is_in_order) {
       hindrance = "the form of messages from " + output + " was changed while it was recorded";
       return;
     }

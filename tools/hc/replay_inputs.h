@@ -31,11 +31,11 @@ struct RecordedTrace {
   /// The events up to the end of the last complete step. The module was stopped during the rest, or
   /// did not report it; the rest is not replayed.
   [[nodiscard]] std::span<const hc::TraceEvent> whole() const;
+  /// The events before a step.
+  [[nodiscard]] std::span<const hc::TraceEvent> before(const hc::TraceEvent& step) const;
   /// The steps to replay: the start, as an event with only a moment, then each handler, each change
   /// of a parameter, and each reading of the clock.
   [[nodiscard]] std::vector<hc::TraceEvent> steps() const;
-  /// Drops an event and all after it.
-  void cut_before(const hc::TraceEvent& event);
 };
 
 /// A link by which recorded messages go to a module again.
@@ -45,7 +45,7 @@ struct Feed {
   std::int32_t number = 0;  ///< among the links of the port
   /// What the link does to them, which the recording is without; from the message with this `seq`.
   std::map<std::int64_t, hc::Conversion> conversions = {};
-  std::string hindrance = {};  ///< why the messages that it sent are unknown; empty: they are known
+  std::string hindrance = {};  ///< why the messages that it sent are unknown; empty: none
 
   /// Adds what a link with this URI does. @param seq  of its first message.
   void add(std::int64_t seq, hc::Uri uri);
@@ -55,8 +55,9 @@ struct Feed {
 
   /// Writes its messages to a file, as the link sends them.
   void write_all(const GraphRecording& recording, const std::filesystem::path& to) const;
-  /// Writes those that were handled; drops steps whose message was not recorded, where none before
-  /// was. The first one after these is returned: its message came from elsewhere, or was lost.
+  /// Writes those that were handled. Drops the first steps if their messages were not recorded, and
+  /// all from the next such one on, which is returned: its message came from elsewhere, or was
+  /// lost.
   std::optional<hc::TraceEvent> write_handled(const GraphRecording& recording,
                                               std::vector<hc::TraceEvent>& steps,
                                               const std::filesystem::path& to) const;
