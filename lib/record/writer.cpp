@@ -258,7 +258,7 @@ Status Writer::end() {
   return status;
 }
 
-Status Writer::look() const {
+Status Writer::check_places() const {
   std::vector<std::string> paths;
   for (const auto& file : files_) paths.push_back(file.path);
   if (mcap_ != nullptr && options_.split == 0 && options_.last.count() == 0)
@@ -271,8 +271,10 @@ Status Writer::look() const {
 
 const Written& Writer::close() {
   if (std::exchange(is_closed_, true)) return written_;
-  auto ended = end();
-  if (written_.status) written_.status = ended;
+  const auto found = check_places();
+  const auto ended = end();
+  for (const auto& status : {ended, found})
+    if (written_.status) written_.status = status;
   for (const auto& file : files_) written_.files.push_back(file.path);
   if (mcap_ != nullptr) {
     written_.files = mcap_->files();

@@ -94,9 +94,9 @@ class Writer {
   /// With `last`: writes the messages in memory to a new file and logs its name or the error.
   void save();
 
-  /// Whether the files are still at their places: a removed one is written, but lost. Those of
-  /// `split` and `last` are not checked. Errors: NotFound.
-  [[nodiscard]] Status look() const;
+  /// Fails if a file was removed or renamed, since what is written to it is lost. Those of `split`
+  /// and `last` are not checked. Errors: NotFound.
+  [[nodiscard]] Status check_places() const;
 
   /// Writes all buffered data and closes the files.
   const Written& close();

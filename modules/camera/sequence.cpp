@@ -28,8 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A missing or wrong file, which a restart would not cure.
-hc::ModuleError unusable(const std::string& name, const std::string& why) {
-  return hc::ModuleError(hc::Error{hc::Code::Invalid, name + ": " + why});
+[[noreturn]] void refuse(const std::string& name, const std::string& why) {
+  hc::refuse(name + ": " + why);
 }
 
 /// The bytes of a JPEG file; none of another file.
@@ -74,7 +74,7 @@ class ImageFiles final : public ImageSequence {
       image_ = std::move(*image);
       stamp_ = stamp;
     } else if (paths_.size() > 1 || image_.empty()) {
-      throw unusable(path, image.error().detail);
+      refuse(path, image.error().detail);
     } else {
       reading_.log("not readable", path + ": " + image.error().detail + ": stays as it was");
     }
@@ -128,7 +128,7 @@ class Capture final : public ImageSequence {
   /// A file stays as it is; what a pipeline or URL leads to may come later.
   [[noreturn]] void fail(const std::string& why) const {
     std::error_code unreadable;
-    if (fs::is_regular_file(name_, unreadable)) throw unusable(name_, why);
+    if (fs::is_regular_file(name_, unreadable)) refuse(name_, why);
     throw hc::ModuleError(name_ + ": " + why);
   }
 
@@ -163,7 +163,7 @@ Paths images_in(const std::string& folder) {
   for (const auto& entry : fs::directory_iterator(folder))
     if ((entry.is_regular_file() || !entry.exists()) && is_image(entry.path().string()))
       paths.push_back(entry.path());
-  if (paths.empty()) throw unusable(folder, "no images in this folder");
+  if (paths.empty()) refuse(folder, "no images in this folder");
   std::ranges::sort(paths, hc::natural_less, [](const fs::path& path) { return path.string(); });
   return paths;
 }
@@ -185,8 +185,7 @@ std::unique_ptr<ImageSequence> open_sequence(const std::string& name, const Read
   // Not a pipeline, a URL, or a pattern like frame_%04d.png.
   const bool is_path =
       name.find_first_of("!%") == std::string::npos && name.find("://") == std::string::npos;
-  if (is_path && !fs::exists(name, unreadable))
-    throw unusable(name, "no such file, folder or camera");
+  if (is_path && !fs::exists(name, unreadable)) refuse(name, "no such file, folder or camera");
   if (is_folder(name)) return std::make_unique<ImageFiles>(images_in(name), reading);
   if (fs::is_regular_file(name, unreadable) && is_image(name))
     return std::make_unique<ImageFiles>(Paths{name}, reading);
@@ -198,8 +197,7 @@ SequencePair open_sequences(const std::string& left, const std::string& right,
   if (!is_folder(left) || !is_folder(right))
     return {open_sequence(left, reading), open_sequence(right, reading)};
   auto partners = partners_of(images_in(left), images_in(right));
-  if (partners.left.empty())
-    throw unusable(right, "no image has the name or the number of one in " + left);
+  if (partners.left.empty()) refuse(right, "no image has the name or the number of one in " + left);
   return {std::make_unique<ImageFiles>(std::move(partners.left), reading),
           std::make_unique<ImageFiles>(std::move(partners.right), reading),
           remark_on(partners.alone)};

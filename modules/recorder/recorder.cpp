@@ -14,16 +14,6 @@
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& what) {
-  throw hc::ModuleError(hc::Error{hc::Code::Invalid, what});
-}
-
-std::uint64_t bytes_of(const std::string& parameter, const std::string& text) {
-  const auto bytes = hc::mcap::parse_bytes(text);
-  if (!bytes) refuse(parameter + ": " + bytes.error().detail);
-  return *bytes;
-}
-
 /// A descriptor from which SIGUSR1 is read.
 int open_signals() {
   sigset_t saves;
@@ -58,8 +48,8 @@ hc::record::WriterOptions RecorderParameters::options() const {
   hc::record::WriterOptions options;
   options.append = *append;
   options.frames = *frames;
-  options.split = bytes_of("split", *split);
-  options.keep = bytes_of("keep", *keep);
+  options.split = hc::value_or_refuse(split, hc::mcap::parse_bytes(*split));
+  options.keep = hc::value_or_refuse(keep, hc::mcap::parse_bytes(*keep));
   options.last = hc::duration(*last);
   options.when = *when;
   return options;
@@ -67,9 +57,9 @@ hc::record::WriterOptions RecorderParameters::options() const {
 
 hc::record::Place RecorderParameters::place(const hc::record::WriterOptions& options) const {
   const bool is_folder = !folder->empty();
-  if (is_folder && !file->empty()) refuse("give either `file` or `folder`");
+  if (is_folder && !file->empty()) hc::refuse("give either `file` or `folder`");
   if (is_folder && (options.split > 0 || options.keep > 0 || *last > 0 || !when->empty()))
-    refuse("`split`, `keep`, `last` and `when` are for `file`");
+    hc::refuse("`split`, `keep`, `last` and `when` are for `file`");
   hc::record::Place place;
   place.kind = is_folder ? hc::record::Place::Kind::Folder : hc::record::Place::Kind::Mcap;
   place.path = is_folder ? *folder : file->empty() ? "recording.mcap" : *file;
@@ -111,8 +101,8 @@ void StreamRecorder::start() {
 }
 
 void StreamRecorder::look() {
-  const auto there = recording_->look();
-  if (!there && !std::exchange(has_failed_, true))
+  const auto there = recording_->check_places();
+  if (!there && !std::exchange(is_removed_, true))
     module_.log(there.error().detail + "; what is recorded there from now on may be lost",
                 hc::Level::Error);
 }
@@ -125,9 +115,8 @@ void StreamRecorder::save_when_signalled() {
 
 void StreamRecorder::end() {
   graph_.reset();
-  look();
   const auto& written = recording_->close();
-  fail_once(written.status);
+  if (!is_removed_) fail_once(written.status);
   if (written.files.empty()) return module_.log("nothing saved", hc::Level::Result);
   std::string text = hc::format("{} message{} in {}", written.messages,
                                 written.messages == 1 ? "" : "s", written.place);
@@ -146,5 +135,5 @@ void StreamRecorder::fail_once(const hc::Status& status) {
 
 int StreamRecorder::finish(int status) const {
   // In a graph a failed recorder keeps running, and the graph reports the failure at its end.
-  return status == 0 && has_failed_ && !hc::own_graph() ? 1 : status;
+  return status == 0 && (has_failed_ || is_removed_) && !hc::own_graph() ? 1 : status;
 }

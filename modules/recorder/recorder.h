@@ -98,5 +98,5 @@ class StreamRecorder {
   const std::unique_ptr<hc::Loop> loop_;
   std::optional<GraphMetadata> metadata_;
   std::optional<hc::GraphClient> graph_;  // none: not in a graph, or not recorded
-  bool has_failed_ = false;
+  bool has_failed_ = false, is_removed_ = false;
 };

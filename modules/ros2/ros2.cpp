@@ -12,10 +12,6 @@
 
 namespace {
 
-[[noreturn]] void refuse(std::string what) {
-  throw hc::ModuleError(hc::Error{hc::Code::Invalid, std::move(what)});
-}
-
 std::string environment(const char* name, const char* otherwise) {
   const char* value = std::getenv(name);
   return value == nullptr || *value == '\0' ? otherwise : value;
@@ -26,7 +22,7 @@ std::uint32_t domain_of(std::int64_t parameter) {
   if (parameter >= 0) return static_cast<std::uint32_t>(parameter);
   const std::string text = environment("ROS_DOMAIN_ID", "0");
   std::uint32_t domain = 0;
-  if (!hc::read_number(text, domain)) refuse("ROS_DOMAIN_ID is \"" + text + "\", not a number");
+  if (!hc::read_number(text, domain)) hc::refuse("ROS_DOMAIN_ID is \"" + text + "\", not a number");
   return domain;
 }
 
@@ -82,9 +78,9 @@ void Ros2::start() {
   const auto published = hc::value_or_end(parse_publish(*parameters_.publish));
   const auto subscribed = hc::value_or_end(parse_subscribe(*parameters_.subscribe));
   if (published.empty() && subscribed.empty())
-    refuse("neither publish nor subscribe names a topic: publish=eyes.left=/left");
+    hc::refuse("neither publish nor subscribe names a topic: publish=eyes.left=/left");
   if (!is_node(*parameters_.node))
-    refuse("node: \"" + *parameters_.node + "\" may contain only letters, digits and _");
+    hc::refuse("node: \"" + *parameters_.node + "\" may contain only letters, digits and _");
   joints_ =
       hc::value_or_refuse(parameters_.frames, hc::ros::GraphJoints::read(*parameters_.frames));
   participant_ = hc::value_or_end(Participant::open(parameters_.participant(), warn_));

@@ -55,13 +55,16 @@ inline void succeed_or_end(const Status& status) {
   if (!status) throw ModuleError(status.error());
 }
 
-/// Ends the module with status 2, since a restart would find the same: a parameter has a value, or
-/// names a file, that cannot be used.
-/// @param why  may begin with the parameter's name.
+/// Ends the module with status 2, since a restart would find the same: its arguments, or the files
+/// that they name, cannot be used.
+[[noreturn]] inline void refuse(const std::string& why) {
+  throw ModuleError(Error{Code::Invalid, why});
+}
+/// The same because of a parameter. @param why  may begin with the parameter's name.
 template <typename P>
 [[noreturn]] void refuse(const Parameter<P>& parameter, const std::string& why) {
   const auto name = parameter.name() + ": ";
-  throw ModuleError(Error{Code::Invalid, why.starts_with(name) ? why : "parameter " + name + why});
+  refuse(why.starts_with(name) ? why : "parameter " + name + why);
 }
 
 /// The value of a result that depends only on a parameter, such as the contents of the file that it
