@@ -94,7 +94,7 @@ TEST_F(McapWriting, TheSummarySaysWhatIsThere) {
 TEST_F(McapWriting, AMessageIsInTheChunkOfItsCompanion) {
   const auto all = record_images(in("x.mcap"), 20, chunks_of(1 << 20));
   auto writer = writer_of(in("y.mcap"), chunks_of(1));
-  auto reader = *Reader::open({place_of(in("x.mcap"))}, {}, writer->copied_topics());
+  auto reader = *Reader::open({must(place_of(in("x.mcap")))}, {}, writer->copied_topics());
   const auto live = *writer->add_stream("live");
   for (auto copied = Result<bool>(true); copied && *copied;) {
     copied = writer->copy(*reader);

@@ -38,11 +38,10 @@ std::string Place::name() const {
   return file.extension() == ".mtp" || is_mcap_path(path) ? file.stem() : file;
 }
 
-Place place_of(std::string_view word) {
+Result<Place> place_of(std::string_view word) {
   Place place;
   std::error_code missing;
-  const auto uri = parse_place_word(word);
-  place.uri = uri ? *uri : Uri{"file", std::string(word), {}};
+  place.uri = HC_TRY(parse_place_word(word));
   if (place.uri.scheme != "file") {
     place.kind = Place::Kind::Link;
     return place;
@@ -57,7 +56,7 @@ Place place_of(std::string_view word) {
 }
 
 Result<Place> place_of_streams(std::string_view word) {
-  Place place = place_of(word);
+  Place place = HC_TRY(place_of(word));
   if (place.kind == Place::Kind::Link)
     return Error{Code::Invalid, place.text() +
                                     " is a link; a recording is a folder or FILE.mcap; write "

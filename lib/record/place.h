@@ -31,10 +31,12 @@ struct Place {
 /// `-` and words that begin with a scheme, such as `tcp:`, are links; all others are paths, with
 /// any characters. A path is MCAP if it is_mcap_path(), and a folder if it is one or ends in "/";
 /// both may have `?stream=NAME` appended.
-Place place_of(std::string_view word);
+///
+/// Errors: Invalid (a link with a part that it cannot have, or the empty word).
+Result<Place> place_of(std::string_view word);
 
 /// As place_of(), for a recording of several streams: anything but MCAP is a folder.
-/// Errors: Invalid (a link).
+/// Errors: Invalid (a link, or the empty word).
 Result<Place> place_of_streams(std::string_view word);
 
 /// This place, or the first one of PATH_2, PATH_3, … without a recording.

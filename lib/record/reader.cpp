@@ -171,7 +171,7 @@ Result<std::unique_ptr<Reader>> Reader::open(const std::vector<Place>& places,
 }
 
 Result<std::unique_ptr<Source>> open_source(std::string_view word, const LinkOptions& options) {
-  const auto place = place_of(word);
+  const Place place = HC_TRY(place_of(word));
   if (place.kind == Place::Kind::Link || place.kind == Place::Kind::File)
     return hc::open_source(place.uri, options);
   auto reader = Reader::open({place}, options);

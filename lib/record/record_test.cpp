@@ -76,7 +76,7 @@ TEST_F(Recorded, NothingIsLeftBehindWhereNoDescriptorsAre) {
     const rlimit limit{most, before.rlim_max};
     ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
     is_open = open_folder(kept, {"eyes.left"}).has_value();
-    EXPECT_EQ(Writer::open(place_of(empty), {}).has_value(), is_open) << most;
+    EXPECT_EQ(Writer::open(must(place_of(empty)), {}).has_value(), is_open) << most;
     ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
     EXPECT_EQ(fs::exists(kept), is_open) << most;
     EXPECT_TRUE(fs::exists(empty)) << most;
@@ -216,7 +216,7 @@ TEST_F(InOrder, AMessageWithoutATimeGoesWithTheOneBefore) {
 
 TEST_F(InOrder, AFifoIsReadOnce) {
   ASSERT_EQ(::mkfifo(in("x.mtp").c_str(), 0600), 0);
-  auto reader = Reader::open({place_of(in("x.mtp"))}, {});
+  auto reader = Reader::open({must(place_of(in("x.mtp")))}, {});
   ASSERT_TRUE(reader) << reader.error().text();
   std::ofstream fifo(in("x.mtp"), std::ios::binary);  // holds up to 1 MiB
   for (int i = 0; i < 4; ++i) {
@@ -328,7 +328,7 @@ TEST_F(InOrder, AFileThatIsCutOffEndsThatStreamAlone) {
   EXPECT_EQ(whole.error->code, Code::Truncated);
   EXPECT_TRUE(whole.error->detail.starts_with(cut + ": ")) << whole.error->detail;
   // Counting reports it, too.
-  const auto counted = *(*Reader::open({place_of(kept)}, {}))->streams(StreamDetail::Counts);
+  const auto counted = *(*Reader::open({must(place_of(kept))}, {}))->streams(StreamDetail::Counts);
   EXPECT_TRUE(counted.at(0).status);
   EXPECT_EQ(counted.at(1).messages, 1U);
   ASSERT_FALSE(counted.at(1).status);
@@ -365,17 +365,19 @@ TEST_F(InOrder, NamesAndLinksAreToldApart) {
                                    {"-", Kind::Link},
                                    {"tcp:robot:7000", Kind::Link},
                                    {"run:1.mcap", Kind::Link}})
-    EXPECT_EQ(place_of(word).kind, kind) << word;
-  EXPECT_EQ(place_of("13:00.mcap").path, "13:00.mcap");
-  EXPECT_EQ(place_of("x.mcap?stream=a.b").stream, "a.b");
-  EXPECT_EQ(place_of("x.mcap?stream=a.b").path, "x.mcap");
-  EXPECT_EQ(place_of("RUN.MCAP").name(), "RUN");
+    EXPECT_EQ(must(place_of(word)).kind, kind) << word;
+  EXPECT_EQ(must(place_of("13:00.mcap")).path, "13:00.mcap");
+  EXPECT_EQ(must(place_of("x.mcap?stream=a.b")).stream, "a.b");
+  EXPECT_EQ(must(place_of("x.mcap?stream=a.b")).path, "x.mcap");
+  EXPECT_EQ(must(place_of("RUN.MCAP")).name(), "RUN");
+  for (const char* word : {"", "tcp:robot:7000?x"})
+    EXPECT_EQ(place_of(word).error().code, Code::Invalid) << word;
   EXPECT_EQ(place_of_streams("kept")->kind, Kind::Folder);
   EXPECT_EQ(place_of_streams("13:00")->kind, Kind::Folder);
   for (const char* link : {"-", "tcp:robot:7000", "run:1"})
     EXPECT_EQ(place_of_streams(link).error().code, Code::Invalid) << link;
   for (const char* word : {"run:1.mcap", "tcp:robot:7000", "x.mcap?stream=a", "x.mcap?split=3"})
-    EXPECT_EQ(Writer::open(place_of(word), {}).error().code, Code::Invalid) << word;
+    EXPECT_EQ(Writer::open(must(place_of(word)), {}).error().code, Code::Invalid) << word;
 }
 
 }  // namespace

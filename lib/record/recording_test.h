@@ -16,6 +16,7 @@
 
 #include <hc/mtp/codec.h>
 #include <hc/testing/files.h>
+#include <hc/testing/must.h>
 #include <record/writer.h>
 
 namespace hc::record {
@@ -31,7 +32,7 @@ struct Played {
 inline Played play(const std::vector<std::string>& words, Time from = {}) {
   Played all;
   std::vector<Place> places;
-  for (const auto& word : words) places.push_back(place_of(word));
+  for (const auto& word : words) places.push_back(must(place_of(word)));
   auto reader = Reader::open(places, {});
   if (!reader) {
     all.error = reader.error();
@@ -59,7 +60,7 @@ inline std::unique_ptr<Writer> writer_of(const Place& place, const WriterOptions
 }
 inline std::unique_ptr<Writer> writer_of(const std::string& word,
                                          const WriterOptions& options = {}) {
-  return writer_of(place_of(word), options);
+  return writer_of(must(place_of(word)), options);
 }
 
 inline mcap::Summary summary_of(const std::string& path, const mcap::ReaderLimits& limits = {}) {
@@ -91,7 +92,7 @@ class Recordings : public ::testing::Test {
   [[nodiscard]] Written copied(const std::vector<std::string>& words, const std::string& name,
                                const WriterOptions& options = {}) const {
     std::vector<Place> places;
-    for (const auto& word : words) places.push_back(place_of(word));
+    for (const auto& word : words) places.push_back(must(place_of(word)));
     auto writer = writer_of(in(name), options);
     auto reader = Reader::open(places, {}, writer->copied_topics());
     EXPECT_TRUE(reader) << reader.error().text();

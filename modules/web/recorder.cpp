@@ -108,7 +108,8 @@ hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& gr
   for (const auto& port : ports)
     if (!hc::is_port_name(port))
       return hc::Error{Code::Invalid, "\"" + port + "\" is not MODULE.PORT"};
-  const auto place = hc::record::place_of(options.folder + "/" + name + std::string(kEnding));
+  const hc::record::Place place =
+      HC_TRY(hc::record::place_of(options.folder + "/" + name + std::string(kEnding)));
   std::error_code failed;
   if (fs::symlink_status(place.path, failed).type() != fs::file_type::not_found)
     return hc::Error{Code::Invalid, "recording " + name + " exists already"};

@@ -6,7 +6,7 @@
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   auto source = hc::open_source(*hc::parse_uri("-"));
-  auto sink = hc::record::open_sink(hc::record::place_of(argv[1]), {});
+  auto sink = hc::record::open_sink(*hc::record::place_of(argv[1]), {});
   if (!source || !sink) return 1;
   hc::Message message;
   for (auto got = hc::receive(**source, message); got && *got; got = hc::receive(**source, message))

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 void check_word(const std::string& word) {
   if (word.empty()) throw Failure(hc::Code::Invalid, "a link or file cannot be \"\"");
-  if (hc::record::place_of(word).uri.scheme == "inproc")
+  if (value_or_fail(hc::record::place_of(word)).uri.scheme == "inproc")
     throw Failure(word, hc::Error{hc::Code::Invalid, "inproc links threads of one program"});
 }
 
@@ -48,7 +48,8 @@ std::unique_ptr<hc::Source> open_source(const std::string& uri, std::uint64_t li
 
 std::unique_ptr<hc::Sink> open_sink(const std::string& uri) {
   check_word(uri);
-  return value_or_fail(hc::record::open_sink(hc::record::place_of(uri), link_options()), uri);
+  const auto place = value_or_fail(hc::record::place_of(uri));
+  return value_or_fail(hc::record::open_sink(place, link_options()), uri);
 }
 
 std::unique_ptr<hc::record::Reader> open_recording(const std::vector<hc::record::Place>& places,
@@ -161,6 +162,25 @@ std::vector<std::string> shipped_graphs() {
   for (const auto& entry : fs::directory_iterator(hc::graph_folder(), missing))
     if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
   return {names.begin(), names.end()};
+}
+
+std::string meant_command(const std::string& word) {
+  for (const auto& [name, hint] :
+       {std::pair("stop", "to stop the robot: hc estop; to end the running graph: hc graph stop"),
+        {"kill", "to end the running graph: hc graph stop"},
+        {"start", "to run a graph: hc run"},
+        {"list", "hc ps lists the running graphs, hc ports their ports, hc --help all commands"},
+        {"ls", "hc ps lists the running graphs, hc ports their ports, hc --help all commands"},
+        {"echo", "to print what a port sends: hc cat MODULE.PORT"},
+        {"node", "hc ps lists the running graphs, hc graph get their modules' parameters"},
+        {"topic", "hc ports lists the ports of a running graph, hc cat prints what one sends"},
+        {"param", "hc graph get and hc graph set: parameters"},
+        {"bag", "hc record, hc play and hc info: recordings"},
+        {"launch", "to run a graph: hc run"},
+        {"set", "to set a parameter: hc graph set MODULE.PARAMETER=VALUE"},
+        {"get", "to print parameters: hc graph get"}})
+    if (word == name) return std::string("; ") + hint;
+  return "";
 }
 
 std::string joined(const std::vector<std::string>& words, std::string_view between) {

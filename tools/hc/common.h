@@ -108,6 +108,10 @@ using hc::find_program;
 using hc::module_folder;
 using hc::module_names;
 
+/// For a word of other tools, what to write instead, after "; "; else empty. `hc` takes no program
+/// of such a name on the PATH for a module.
+std::string meant_command(const std::string& word);
+
 /// "a, b, c"
 std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
 /// "1 message", "2 messages"

@@ -152,7 +152,7 @@ void print_mcap(const std::string& path) {
 
 void run(const InfoOptions& options) {
   using Kind = hc::record::Place::Kind;
-  const auto place = hc::record::place_of(options.uri);
+  const auto place = value_or_fail(hc::record::place_of(options.uri));
   const bool is_whole = place.stream.empty() && options.count == 0 && !options.skip &&
                         !graph_of_port(options.uri, options.of);
   if (is_whole && place.kind == Kind::Mcap) return print_mcap(place.path);

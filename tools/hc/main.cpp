@@ -99,27 +99,6 @@ std::vector<std::string> module_arguments(const std::string& program,
   return arguments;
 }
 
-/// Words of other tools, and what to write instead; a program of that name on the PATH is no
-/// module.
-std::string meant_command(const std::string& word) {
-  for (const auto& [name, hint] :
-       {std::pair("stop", "to stop the robot: hc estop; to end the running graph: hc graph stop"),
-        {"kill", "to end the running graph: hc graph stop"},
-        {"start", "to run a graph: hc run"},
-        {"list", "hc ps lists the running graphs, hc ports their ports, hc --help all commands"},
-        {"ls", "hc ps lists the running graphs, hc ports their ports, hc --help all commands"},
-        {"echo", "to print what a port sends: hc cat MODULE.PORT"},
-        {"node", "hc ps lists the running graphs, hc graph get their modules' parameters"},
-        {"topic", "hc ports lists the ports of a running graph, hc cat prints what one sends"},
-        {"param", "hc graph get and hc graph set: parameters"},
-        {"bag", "hc record, hc play and hc info: recordings"},
-        {"launch", "to run a graph: hc run"},
-        {"set", "to set a parameter: hc graph set MODULE.PARAMETER=VALUE"},
-        {"get", "to print parameters: hc graph get"}})
-    if (word == name) return std::string("; ") + hint;
-  return "";
-}
-
 /// A suggestion for an unknown option of a verb, or for the name of a running graph.
 std::string meant_option(const CLI::App& app) {
   const CLI::App* verb = &app;
@@ -209,13 +188,14 @@ int main(int argc, char** argv) {
       return 0;
     }
     if (!is_verb && !first.empty() && first[0] != '-') {
+      auto known = module_names();
       const auto hint = meant_command(first);
-      if (hint.empty()) become_module(first, argv + 1);
+      if (hint.empty() || std::ranges::find(known, first) != known.end())
+        become_module(first, argv + 1);
       if (first.find('/') != std::string::npos) {
         say("hc: " + hc::no_program(first));
         return kUsage;
       }
-      auto known = module_names();
       for (const auto* verb : verbs) known.push_back(verb->get_name());
       say(hc::format("hc: unknown command or module \"{}\"{}", first,
                      hint.empty() ? hc::suggestion(first, known) + "; see hc --help" : hint));

@@ -112,6 +112,10 @@ void begin(const NewOptions& options) {
                   hc::format("\"{}\" is a module of Hypercolumn, which hc and graphs would run "
                              "instead of the new one; choose another name",
                              options.name));
+  if (const auto hint = meant_command(options.name); !hint.empty())
+    throw Failure(hc::Code::Invalid, hc::format("hc would take \"{}\" for a command{}; choose "
+                                                "another name",
+                                                options.name, hint));
   const fs::path folder = (fs::path(options.folder) / options.name).lexically_normal();
   std::error_code error;
   if (fs::exists(fs::symlink_status(folder, error)))

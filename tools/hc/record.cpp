@@ -77,7 +77,7 @@ class Recording {
   explicit Recording(const RecordOptions& options) : options_(options) {
     std::vector<Place> recordings;
     for (const auto& word : options.links) {
-      const auto place = hc::record::place_of(word);
+      const auto place = value_or_fail(hc::record::place_of(word));
       if (is_file(place, options.file))
         throw Failure(hc::Code::Invalid, word + " is also the output file");
       const bool is_port = graph_of_port(word, options.of).has_value();
@@ -87,7 +87,7 @@ class Recording {
         links_.push_back(
             {word, place.name(), is_port, open_named(word, options.of, options.limit)});
     }
-    const auto place = hc::record::place_of(options.file);
+    const auto place = value_or_fail(hc::record::place_of(options.file));
     if (!recordings.empty())
       reader_ = open_recording(
           recordings, options.limit,
@@ -130,7 +130,8 @@ class Recording {
     options.last = hc::duration(options_.last);
     if (reader_ != nullptr && (links_.empty() || reader_->profile() != options.profile))
       options.profile = links_.empty() ? reader_->profile() : "";
-    if (!options_.when.empty()) options.when = hc::record::place_of(options_.when).name();
+    if (!options_.when.empty())
+      options.when = value_or_fail(hc::record::place_of(options_.when)).name();
     options.log = [](hc::Level severity, std::string_view line) {
       say((severity == hc::Level::Error ? "hc record: error: " : "hc record: ") +
           std::string(line));

@@ -246,7 +246,7 @@ std::string json_of(const std::string& port, const std::vector<PathSummary>& sum
 void take_words(std::vector<std::string> words, TraceOptions& options) {
   using Kind = hc::record::Place::Kind;
   if (words.empty()) return;
-  const auto kind = hc::record::place_of(words.front()).kind;
+  const auto kind = value_or_fail(hc::record::place_of(words.front())).kind;
   if (words.size() == 2 || kind == Kind::Mcap || kind == Kind::Folder) {
     options.recording = words.front();
     words.erase(words.begin());

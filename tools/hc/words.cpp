@@ -62,7 +62,7 @@ std::optional<RunningGraph> graph_of_port(const std::string& word, const std::st
 
 hc::record::Place place_of(const std::string& word, const std::string& of) {
   const auto graph = graph_of_port(word, of);
-  if (!graph) return hc::record::place_of(word);
+  if (!graph) return value_or_fail(hc::record::place_of(word));
   hc::record::Place place{hc::record::Place::Kind::Link, {}, {}, {}};
   place.uri = value_or_fail(hc::tap_uri(*graph, word, hc::stop_descriptor()));
   place.uri.options.emplace_back("reconnect", "5");  // survives a restart of the module
@@ -95,7 +95,7 @@ std::unique_ptr<hc::Sink> open_output(const std::string& word) {
 
 std::string link_end(const std::string& word) {
   const bool is_path = word.find('/') != std::string::npos || is_recording_name(word);
-  if (!is_path || hc::record::place_of(word).kind == hc::record::Place::Kind::Link ||
+  if (!is_path || value_or_fail(hc::record::place_of(word)).kind == hc::record::Place::Kind::Link ||
       word.starts_with("file:"))
     return word;
   return "file:" + fs::absolute(word).lexically_normal().string();
