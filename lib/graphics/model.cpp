@@ -92,9 +92,13 @@ Mesh mesh_of(const aiMesh& from, bool is_linear) {
 }
 
 /// The file that a model names: on Windows with backslashes, in glTF as a part of a URI.
-std::string file_named(std::string name) {
+///
+/// @param path  the name behind the model's folder, which is taken as it is.
+std::string file_named(const std::string& path, const std::string& folder) {
   std::error_code none;
-  if (fs::exists(name, none)) return name;
+  if (fs::exists(path, none)) return path;
+  const auto kept = path.starts_with(folder) ? folder.size() : 0;
+  std::string name = path.substr(kept);
   std::ranges::replace(name, '\\', '/');
   std::string plain;
   for (std::size_t i = 0; i < name.size(); ++i) {
@@ -104,18 +108,24 @@ std::string file_named(std::string name) {
     plain += is_escape ? static_cast<char>(std::stoi(name.substr(i + 1, 2), nullptr, 16)) : name[i];
     if (is_escape) i += 2;
   }
-  return fs::exists(plain, none) ? plain : name;
+  plain.insert(0, folder, 0, kept);
+  return fs::exists(plain, none) ? plain : path.substr(0, kept) + name;
 }
 
 /// The files of a model, such as the buffers of glTF.
 class Files : public Assimp::DefaultIOSystem {
  public:
+  explicit Files(std::string folder) : folder_(std::move(folder)) {}
+
   bool Exists(const char* name) const override {
-    return DefaultIOSystem::Exists(file_named(name).c_str());
+    return DefaultIOSystem::Exists(file_named(name, folder_).c_str());
   }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
-    return DefaultIOSystem::Open(file_named(name).c_str(), mode);
+    return DefaultIOSystem::Open(file_named(name, folder_).c_str(), mode);
   }
+
+ private:
+  std::string folder_;
 };
 
 /// The file of a texture, embedded or in the model's folder; empty if there is none.
@@ -123,7 +133,7 @@ std::vector<std::uint8_t> texture_file(const aiScene& scene, const char* name,
                                        const fs::path& folder) {
   const aiTexture* inside = scene.GetEmbeddedTexture(name);
   if (inside == nullptr) {
-    const auto path = file_named(folder / name);
+    const auto path = file_named(folder / name, folder);
     std::error_code none;
     if (!fs::is_regular_file(path, none)) return {};
     std::ifstream file(path, std::ios::binary);
@@ -178,7 +188,7 @@ Result<std::vector<Part>> read_model(const std::string& path) {
   const unsigned normals = ending == ".stl" ? aiProcess_ForceGenNormals | aiProcess_GenNormals
                                             : unsigned{aiProcess_GenSmoothNormals};
   Assimp::Importer importer;
-  importer.SetIOHandler(new Files);  // which it deletes
+  importer.SetIOHandler(new Files(fs::path(path).parent_path()));  // which it deletes
   const aiScene* scene = importer.ReadFile(
       path, normals | aiProcess_Triangulate | aiProcess_PreTransformVertices |
                 aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_FlipUVs);

@@ -69,6 +69,14 @@ TEST_F(Models, a_texture_may_be_named_as_on_windows_or_in_a_uri) {
   EXPECT_TRUE(read_model(folder / "square.obj")) << "a file of this very name";
 }
 
+TEST_F(Models, the_folder_of_a_model_is_taken_as_it_is) {
+  std::filesystem::create_directories(folder / "100%25 blue/my paint");
+  cv::imwrite(folder / "100%25 blue/my paint/blue.png", cv::Mat(4, 4, CV_8UC3, cv::Scalar::all(9)));
+  write("100%25 blue/square.mtl", "newmtl paint\nmap_Kd my%20paint/blue.png\n");
+  const auto parts = read_model(write("100%25 blue/square.obj", kSquare));
+  EXPECT_TRUE(parts) << parts.error().text();
+}
+
 TEST_F(Models, an_ending_may_be_in_capitals) {
   write("square.mtl", "newmtl paint\n");
   EXPECT_TRUE(read_model(write("SQUARE.OBJ", kSquare)));
@@ -128,6 +136,9 @@ TEST_F(Models, a_buffer_of_gltf_is_named_as_in_a_uri) {
   write("my buffer.bin", {reinterpret_cast<const char*>(kTriangle.data()), sizeof kTriangle});
   const auto parts = read_model(write("triangle.gltf", gltf("my%20buffer.bin")));
   ASSERT_TRUE(parts) << parts.error().text();
+  std::filesystem::create_directory(folder / "100%25");
+  std::filesystem::copy(folder / "my buffer.bin", folder / "100%25/my buffer.bin");
+  EXPECT_TRUE(read_model(write("100%25/triangle.gltf", gltf("my%20buffer.bin"))));
   EXPECT_EQ(parts->front().mesh.indices.size(), 3U);
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <random>
 #include <vector>
 
 #include <hc/mtp/matrix_view.h>
@@ -93,6 +94,19 @@ TEST(CheckJpeg, DamageIsFoundAndWhatFollowsTheImageIsIgnored) {
   bytes[file.size() / 2 + 100] = std::byte(0xff);
   bytes[file.size() / 2 + 101] = std::byte(0xd9);
   EXPECT_FALSE(check_jpeg(bytes));
+}
+
+TEST(CheckJpeg, AnImageMayBeFilledUp) {
+  std::mt19937 random{1};
+  for (int seed = 0; seed < 300; ++seed) {
+    Draft draft = Draft::make({MatrixType::IntensityImage, 1, Scalar::U8, Encoding::Binary},
+                              8 + static_cast<std::int32_t>(random() % 40), 8 + seed % 30);
+    for (auto& each : draft.elements()) each = std::byte(random() % 256);
+    const Message packed = must(compress(std::move(draft).finish(), Encoding::Jpeg));
+    std::vector<std::byte> bytes(packed.elements.begin(), packed.elements.end());
+    bytes.insert(bytes.end() - 2, 1 + random() % 40, std::byte(seed % 2));  // before the end marker
+    EXPECT_TRUE(check_jpeg(bytes)) << seed;
+  }
 }
 
 TEST(CheckJpeg, PixelsThatAreLeftOverAreDamage) {

@@ -46,10 +46,10 @@ void fail_on_warning(j_common_ptr info, int level) {
 }
 
 /// Whether the bytes that were skipped before a marker are all the same, as some cameras fill up
-/// their images. Others are pixels that a damaged image has no place for.
+/// their images. Others are surplus pixels, of a damaged image.
 bool is_filled(j_common_ptr info) {
-  constexpr std::ptrdiff_t kMarker = 2;  // [byte]
-  const JOCTET* end = reinterpret_cast<j_decompress_ptr>(info)->src->next_input_byte - kMarker;
+  // The decoder notes its place at each skipped byte, not at the marker behind them.
+  const JOCTET* end = reinterpret_cast<j_decompress_ptr>(info)->src->next_input_byte;
   const std::span skipped(end - info->err->msg_parm.i[0], end);
   return std::ranges::all_of(skipped, [&](JOCTET each) { return each == skipped[0]; });
 }
