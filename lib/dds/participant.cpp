@@ -154,8 +154,8 @@ Result<std::unique_ptr<Participant>> Entrance::open(const LinkOptions& options) 
   if (now < next_) return std::unique_ptr<Participant>();
   auto opened = Participant::open(place_, options.limits);
   if (opened || opened.error().code != Code::NotFound) return opened;
-  if (!std::exchange(is_said_, true) && options.log)
-    options.log(Level::Warning, opened.error().detail + "; waiting");
+  if (!missing_ && options.log) options.log(Level::Warning, opened.error().detail + "; waiting");
+  missing_ = opened.error();
   next_ = now + kPause;
   timer_.call_at(next_);
   return std::unique_ptr<Participant>();

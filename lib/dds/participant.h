@@ -56,10 +56,12 @@ class Entrance {
   Status begin(Place place, const Event& event);
   /// The participant; null while an address is missing, which is logged once. Errors: System.
   Result<std::unique_ptr<Participant>> open(const LinkOptions& options);
+  /// Why open() gave null. Errors: NotFound.
+  [[nodiscard]] const Error& missing() const { return *missing_; }
 
  private:
   Place place_;
-  bool is_said_ = false;
+  std::optional<Error> missing_;
   Watch::TimePoint next_;
   Watch timer_;
 };

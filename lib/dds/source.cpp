@@ -183,7 +183,9 @@ class DdsSource final : public Source {
     if (alive() > 0) return Got::Nothing;
     if (give_up_ > steady_clock::now() && !is_final_) return Got::Nothing;
     event_.raise();  // remains readable
-    if (!had_writer_ && !is_final_) return Error{Code::NotFound, "no writer on this topic"};
+    if (!had_writer_ && !is_final_)
+      return participant_ != nullptr ? Error{Code::NotFound, "no writer on this topic"}
+                                     : entrance_.missing();
     return Got::End;
   }
 

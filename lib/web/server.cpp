@@ -29,9 +29,6 @@ using tcp = asio::ip::tcp;
 
 constexpr std::size_t kMaxStrangers = 128;
 
-/// As bind_socket(): an address that this host does not have yet can be bound.
-using AlsoMissing = asio::detail::socket_option::boolean<IPPROTO_IP, IP_FREEBIND>;
-
 Peer peer_of(tcp::socket& socket) {
   const auto user = tcp_peer_user(socket.native_handle(), Connected::Accepted);
   if (user) return {"user " + std::to_string(*user), *user != ::geteuid() && *user != 0};
@@ -62,8 +59,9 @@ class BeastServer final : public Server {
       acceptor_ = tcp::acceptor(context_);
       error = {};
       acceptor_.open(place.protocol(), error);
+      const int on = 1;  // as bind_socket(): the host may get the address later
       if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
-      if (!error) acceptor_.set_option(AlsoMissing(true), error);
+      if (!error) ::setsockopt(acceptor_.native_handle(), IPPROTO_IP, IP_FREEBIND, &on, sizeof on);
       if (!error) acceptor_.bind(place, error);
       if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
       if (!error || error != asio::error::address_in_use) break;

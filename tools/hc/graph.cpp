@@ -22,10 +22,12 @@ std::unique_ptr<hc::Hosts> make_hosts() {
   return value_or_fail(hc::hosts::make_hosts(HC_VERSION), "the key of this host");
 }
 
-hc::LoadedGraph without_problems(std::string_view verb, hc::Result<hc::LoadedGraph> loaded) {
+hc::LoadedGraph without_problems(std::string_view verb, const std::string& file,
+                                 hc::Result<hc::LoadedGraph> loaded) {
   if (!loaded && loaded.error().code == hc::Code::NotFound) {
-    const auto& detail = loaded.error().detail;  // "NAME: cannot be read: …"
-    const auto meant = hc::suggestion(detail.substr(0, detail.find(':')), shipped_graphs());
+    const auto& detail = loaded.error().detail;
+    if (!detail.starts_with(file + ":")) throw Failure(loaded.error());  // of one that it includes
+    const auto meant = hc::suggestion(file, shipped_graphs());
     throw Failure(
         loaded.error().code,
         detail + (meant.empty() ? "; shipped graphs: " + joined(shipped_graphs()) : meant));
@@ -39,7 +41,8 @@ hc::LoadedGraph without_problems(std::string_view verb, hc::Result<hc::LoadedGra
 hc::Plan load_plan(std::string_view verb, const hc::LoadOptions& options, hc::Hosts* hosts) {
   hc::LoadOptions with_hosts = options;
   with_hosts.hosts = hosts;
-  return std::move(*without_problems(verb, hc::make_loader(with_hosts)->load(nullptr, -1)).plan);
+  auto loaded = hc::make_loader(with_hosts)->load(nullptr, -1);
+  return std::move(*without_problems(verb, options.file, std::move(loaded)).plan);
 }
 
 hc::Plan look_at_plan(std::string_view verb, const hc::LoadOptions& options) {
@@ -49,7 +52,7 @@ hc::Plan look_at_plan(std::string_view verb, const hc::LoadOptions& options) {
   // A program that is only on its host is described there.
   if (loaded && !loaded->plan && !loaded->graph.hosts.empty())
     return load_plan(verb, options, make_hosts().get());
-  return std::move(*without_problems(verb, std::move(loaded)).plan);
+  return std::move(*without_problems(verb, options.file, std::move(loaded)).plan);
 }
 
 }  // namespace tool

@@ -147,7 +147,7 @@ hc::LoadedGraph load_when_hosts_answer(hc::GraphLoader& loader, const std::strin
   while (true) {
     auto loaded = loader.load(nullptr, said.empty() ? -1 : hc::stop_descriptor());
     if (!loaded || !loaded->awaits_hosts || !is_read_again)
-      return without_problems("run", std::move(loaded));
+      return without_problems("run", file, std::move(loaded));
     const int stop = hc::stop_descriptor();  // before the message, after which one may stop it
     if (std::exchange(said, loaded->problems) != loaded->problems)
       for (const auto& line : loaded->problems)

@@ -364,15 +364,17 @@ class LinkPlanner {
   std::map<std::string, Sender> senders_;  // by name
 };
 
-/// Whether modules may make the shared memory of a link: to the limit of the size of files
-/// (ulimit -f), which they inherit, it is a file.
-bool may_share_memory(const GraphLink& link) {
+/// Whether the modules of a link may make its shared memory, which counts as a file for the limit
+/// of the size of files (ulimit -f) that they inherit. That of another host is unknown.
+bool may_share_memory(const Planning& planning, const GraphLink& link) {
   rlimit limit{};
   ::getrlimit(RLIMIT_FSIZE, &limit);
-  const auto given = link.policy.find("memory");
-  const auto policy = parse_policy(
-      {"shm", "", {{"memory", given == link.policy.end() ? "64M" : given->second.value}}});
-  return limit.rlim_cur == RLIM_INFINITY || !policy || policy->memory <= limit.rlim_cur;
+  if (limit.rlim_cur == RLIM_INFINITY || !planning.host_of(link.from.module).empty()) return true;
+  Uri uri{"shm", "", {}};
+  if (const auto given = link.policy.find("memory"); given != link.policy.end())
+    uri.options.emplace_back("memory", given->second.value);
+  const auto policy = parse_policy(uri);
+  return !policy || policy->memory <= limit.rlim_cur;
 }
 
 }  // namespace
@@ -389,14 +391,21 @@ const LinkTransport* transport_of(const Planning& planning, const GraphLink& lin
   const bool is_between = planning.is_between_hosts(link);
   for (const auto& each : kTransports) {
     const bool may_be = is_between ? each.name == via : each.name != "tls" && each.name != "dds";
-    if (each.name == "shm" && !may_share_memory(link)) continue;
+    if (each.name == "shm" && !may_share_memory(planning, link)) continue;
     if (may_be && from.knows(each.writer) && to.knows(each.reader)) return &each;
   }
   return nullptr;
 }
 
 void plan_links(Planning& planning) {
-  if (!std::ranges::all_of(planning.graph.links, may_share_memory))
+  const auto lacks_memory = [&](const GraphLink& link) {
+    if (!link.from.uri.empty() || !link.to.uri.empty() || planning.is_between_hosts(link))
+      return false;
+    const bool both_know = planning.description_of(link.from.module)->knows("shm") &&
+                           planning.description_of(link.to.module)->knows("shm");
+    return both_know && !may_share_memory(planning, link);
+  };
+  if (std::ranges::any_of(planning.graph.links, lacks_memory))
     planning.problems.warn({}, "ulimit -f is below the shared memory of links; they use sockets");
   LinkPlanner(planning).run();
 }

@@ -48,7 +48,7 @@ class Liveness {
   [[nodiscard]] std::optional<MonotonicTime> blocked_since() const { return blocked_; }
 
   /// @param stall  time without a report after which a process that has reported is not responsive.
-  /// @param usage  Usage(): of the process now; called only where it matters.
+  /// @param usage  measures the process; called only where it matters.
   template <typename Measure>
   [[nodiscard]] Health health(MonotonicTime stall, MonotonicTime now, const Measure& usage) const {
     if (reported_ && now - *reported_ < stall) return Health::Responsive;
