@@ -38,7 +38,7 @@ void Conversation::begin(MonotonicTime now) {
 void Conversation::end() {
   phase_ = Phase::Closed;
   awaited_.clear();
-  times_.open();
+  times_.forget();
   bytes_.clear();
   wanted_.reset();
   quiet_at_.reset();

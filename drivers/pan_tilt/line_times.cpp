@@ -6,7 +6,7 @@
 
 namespace hc::pan_tilt {
 
-void LineTimes::open() {
+void LineTimes::forget() {
   written_ = {};
   looks_.clear();
   delay_.reset();

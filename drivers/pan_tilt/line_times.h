@@ -21,10 +21,10 @@ class LineTimes {
  public:
   /// The rate of bytes in each direction [1/s]; 0 (default): infinite.
   void set_rate(double bytes_per_second) { bytes_per_second_ = bytes_per_second; }
-  /// The line has been opened: forgets what was sent before.
-  void open();
+  /// Forgets what was sent and heard, since the line is opened anew.
+  void forget();
 
-  /// The host has written so many bytes.
+  /// The host has written `bytes` bytes.
   void wrote(MonotonicTime now, std::size_t bytes);
   /// They end with the question for the pan; that for the tilt follows.
   void asked(MonotonicTime now) { looks_.push_back({now, written_}); }

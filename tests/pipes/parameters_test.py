@@ -5,6 +5,7 @@
 import unittest
 
 from graphs import Graphs
+from harness import wait_until
 
 # A module, its parameters, and the one that is refused: a value, or a file that is missing, broken,
 # or in a place that cannot be.
@@ -76,8 +77,8 @@ class Parameters(Graphs):
     def test_a_device_that_is_not_plugged_in_is_waited_for(self):
         process = self.start("exec hc pan_tilt /dev/none 2>log")
         self.addCleanup(self.end, process)
-        while "/dev/none" not in self.read("log"):
-            self.assertIsNone(process.poll())
+        wait_until(lambda: "/dev/none" in self.read("log"))
+        self.assertIsNone(process.poll())
 
 
 if __name__ == "__main__":

@@ -20,8 +20,9 @@ Result<Uri> parse_place_word(std::string_view word) {
 bool is_mcap_path(std::string_view path) {
   constexpr std::string_view kEnding = ".mcap";
   return path.size() >= kEnding.size() &&
-         std::ranges::equal(path.substr(path.size() - kEnding.size()), kEnding,
-                            [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + 32 : a) == b; });
+         std::ranges::equal(path.substr(path.size() - kEnding.size()), kEnding, [](char a, char b) {
+           return (a >= 'A' && a <= 'Z' ? a + 32 : a) == b;
+         });
 }
 
 }  // namespace hc

@@ -45,7 +45,7 @@ class Module::Remote {
   Status carry_out(const ModuleCommand& command);
   Status link(bool is_input, const std::string& text);
   Status unlink(bool is_input, const std::string& text);
-  /// Notes a change of an output's link in the trace: its form of messages may be another.
+  /// Notes a change of an output's link in the trace, since it may send messages in another form.
   void note(TraceEvent::What what, bool is_input, const internal::PortLink& link) const;
   void report_parameters();
   void send(Report report, Message message);

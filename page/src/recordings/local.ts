@@ -23,7 +23,7 @@ export async function openRecording(
   const tracks: Track[] = [];
   for (const file of files) {
     const words = (part: number) => progress(`Reading ${file.name}: ${Math.round(100 * part)} %`);
-    if (file.name.endsWith(".mcap")) tracks.push(...(await openMcap(file, words)));
+    if (/\.mcap$/i.test(file.name)) tracks.push(...(await openMcap(file, words)));
     else tracks.push(await openMessages(file.name.replace(/\.mtp$/, ""), file, words));
   }
   return tracks.filter((track) => track.length > 0);
