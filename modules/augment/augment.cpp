@@ -61,7 +61,7 @@ void Augment::see_marker(const hc::Message& message) {
   // Only markers with a frame have a number that objects can refer to.
   const auto pose = hc::pose_of(message);
   if (!pose) return;
-  hc::value_or_drop(frames_.tree().known("world", pose->to));
+  hc::value_or_drop(frames_.tree().chain("world", pose->to));
   frames_.when_known("world", pose->to, pose->time, [this, pose](const auto& T_world_eye) {
     const auto T = T_world_eye ? *T_world_eye : frames_.nearest("world", pose->to, pose->time);
     markers_.see(pose->from, pose->time, T * pose->T_to_from, *parameters_.smoothing);

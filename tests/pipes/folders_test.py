@@ -102,7 +102,7 @@ class Folders(Recordings):
         self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 3))
         for word in ("run:9.mcap", "tcp:7001"):
             self.shell("hc run g.toml --record " + word, 2)
-            self.assertIn("not the URI " + word, self.err)
+            self.assertIn(word + " is a link; a recording is a folder or FILE.mcap", self.err)
         self.assertIn(
             "x.mcap",
             self.shell("hc run g.toml --quiet --record ./run:9.mcap && mv run:9.mcap x.mcap; ls"),

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values of parameters that no restart would cure: each ends its module with status 2."""
 
+import subprocess
 import unittest
 
 from graphs import Graphs
@@ -75,7 +76,7 @@ class Parameters(Graphs):
             self.assertEqual(self.err.count(module + ": Invalid: "), 1, self.err)
 
     def test_a_device_that_is_not_plugged_in_is_waited_for(self):
-        process = self.start("exec hc pan_tilt /dev/none 2>log")
+        process = self.start("exec hc pan_tilt /dev/none 2>log", stdin=subprocess.PIPE)
         self.addCleanup(self.end, process)
         wait_until(lambda: "/dev/none" in self.read("log"))
         self.assertIsNone(process.poll())

@@ -166,14 +166,15 @@ class Replay(Graphs):
             "\nsecond: not run: it was linked to something else while it was recorded, at in\n", out
         )
 
-    def change_link(self, text, process, change, port, more=5):
+    def change_link(self, process, change, port):
         """Changes a link, after some messages of it and before others; ends the graph."""
+        some, more = 5, 40  # the counts of a state are up to a second old
 
         def sent(state):
             return sum(link["messages"] for link in state["links"] if link["to"] == port)
 
         messages = self.observe(process)
-        self.state(messages, lambda state: sent(state) >= more)
+        self.state(messages, lambda state: sent(state) >= some)
         self.assertEqual(self.ask(process, *change), ["ok"])
         least = sent(self.state(messages))
 
@@ -192,7 +193,6 @@ class Replay(Graphs):
                 self.shell("rm -rf kept")
                 process = self.running_graph(text, "--record kept", "last: started")
                 self.change_link(
-                    text,
                     process,
                     ["link camera.left small.image keep=all " + change],
                     "small.image",
@@ -207,7 +207,6 @@ class Replay(Graphs):
         text = graph().replace("rate = 2", "rate = 20").replace("seconds = 0.2", "seconds = 0.001")
         process = self.running_graph(text, "--record kept", "last: started")
         self.change_link(
-            text,
             process,
             ["unlink first.out second.in", "link source.command second.in rate=20"],
             "last.in",
