@@ -194,8 +194,10 @@ std::unique_ptr<ImageSequence> open_sequence(const std::string& name, const Read
 
 SequencePair open_sequences(const std::string& left, const std::string& right,
                             const Reading& reading) {
-  if (!is_folder(left) || !is_folder(right))
-    return {open_sequence(left, reading), open_sequence(right, reading)};
+  if (!is_folder(left) || !is_folder(right)) {
+    auto one = open_sequence(left, reading), other = open_sequence(right, reading);
+    return {std::move(one), std::move(other)};
+  }
   auto partners = partners_of(images_in(left), images_in(right));
   if (partners.left.empty()) refuse(right, "no image has the name or the number of one in " + left);
   return {std::make_unique<ImageFiles>(std::move(partners.left), reading),

@@ -68,8 +68,8 @@ class Storage {
   [[nodiscard]] const std::string& file() const { return name_; }
 
  private:
-  Storage(std::string name, const StorageOptions& options)
-      : name_(std::move(name)), options_(options) {}
+  Storage(std::string name, StorageOptions options)
+      : name_(std::move(name)), options_(std::move(options)) {}
   [[nodiscard]] bool is_numbered() const { return options_.split > 0 || options_.last.count() > 0; }
   /// @param time  of lasting messages. [ns since the Unix epoch]
   Status begin_file(std::uint64_t time);
