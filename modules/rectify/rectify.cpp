@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <frames/messages.h>
+#include <hc/base/format.h>
 #include <vision/messages.h>
 
 using hc::Coord, hc::vision::Eye, hc::vision::Rectifier;
@@ -71,6 +72,11 @@ hc::vision::StereoCalibration Rectify::ideal_pair(const cv::Size& size) {
   const double baseline = frames_.fixed("left_eye", "right_eye").translation().norm();
   const double focal = assumed_.focal(*parameters_.focal, size.width,
                                       frames_.are_given() ? std::nullopt : std::optional(baseline));
+  if (!calibration_)
+    module_.log(
+        hc::format("without a calibration file: for two equal eyes {:.3f} m apart, with a "
+                   "focal length of {} px",
+                   baseline, focal));
   return hc::vision::ideal_pair(size, focal, baseline);
 }
 
