@@ -21,7 +21,7 @@ class LineTimes {
  public:
   /// The rate of bytes in each direction [1/s]; 0 (default): infinite.
   void set_rate(double bytes_per_second) { bytes_per_second_ = bytes_per_second; }
-  /// Forgets what was sent and heard, since the line is opened anew.
+  /// Forgets all questions and answers, at the start of a line or after a fault.
   void forget();
 
   /// The host has written `bytes` bytes.

@@ -180,7 +180,7 @@ class Replay(Graphs):
 
         def has_sent_more(state):
             nonlocal least
-            least = min(least, sent(state))  # the count of a link that is made anew begins again
+            least = min(least, sent(state))  # the count of a new link begins at 0
             return sent(state) >= least + more
 
         self.state(messages, has_sent_more)
