@@ -80,16 +80,12 @@ void Feed::add(std::int64_t seq, hc::Uri uri) {
 }
 
 void Feed::add_changes(const RecordedTrace& trace, const std::string& reader) {
-  std::int64_t next = 0;
-  bool is_handling = false, is_in_order = true;
+  std::int64_t sent = 0;
+  bool is_numbered = true;
   for (const auto& event : trace.events) {
-    if (event.what == What::Began || event.what == What::Ended)
-      is_handling = event.what == What::Began;
     if (event.port != output.substr(output.find('.') + 1)) continue;
-    if (event.what == What::Sent) {
-      is_in_order = is_in_order && event.seq >= next;  // a router passes on those of others
-      next = event.seq + 1;
-    }
+    // A router passes on the numbers of others.
+    if (event.what == What::Sent) is_numbered = is_numbered && event.seq == sent++;
     if (event.what != What::Linked && event.what != What::Unlinked) continue;
     auto uri = hc::parse_uri(event.value);
     if (!uri) continue;
@@ -97,12 +93,11 @@ void Feed::add_changes(const RecordedTrace& trace, const std::string& reader) {
     const bool is_named = uri->rest.find("." + output + ".") != std::string::npos;
     if (is_named ? !uri->rest.ends_with("." + output + "." + reader) : !changes_messages(*uri))
       continue;
-    // While a handler waits for a full link, the change may be before or behind its message.
-    if (!is_named || trace.was_restarted || is_handling || !is_in_order) {
+    if (!is_named || trace.was_restarted || !is_numbered) {
       hindrance = "the form of messages from " + output + " was changed while it was recorded";
       return;
     }
-    add(next, event.what == What::Linked ? *uri : hc::Uri());
+    add(event.seq, event.what == What::Linked ? *uri : hc::Uri());
   }
 }
 

@@ -15,15 +15,16 @@ namespace {
 constexpr std::array<std::string_view, 9> kWhats = {"took", "began", "ended",  "sent",    "lost",
                                                     "set",  "read",  "linked", "unlinked"};
 
-/// Whether an event is a change, with a value and without a message.
-bool is_change(TraceEvent::What what) {
-  using What = TraceEvent::What;
-  return what == What::Set || what == What::Linked || what == What::Unlinked;
+bool is_of_link(TraceEvent::What what) {
+  return what == TraceEvent::What::Linked || what == TraceEvent::What::Unlinked;
 }
+/// Whether an event is a change, with a value and without a message.
+bool is_change(TraceEvent::What what) { return what == TraceEvent::What::Set || is_of_link(what); }
 
 /// The rest of the row of a change.
 std::optional<TraceEvent> parse_change(TraceEvent event, std::string_view row) {
   std::int64_t moment = 0;
+  if (is_of_link(event.what) && !read_number(take_until(row, ' '), event.seq)) return std::nullopt;
   if (!read_number(take_until(row, ' '), moment) || moment < 0) return std::nullopt;
   event.moment = unix_time(moment);
   event.value = row;
@@ -57,6 +58,7 @@ Message make_trace(std::span<const TraceEvent> events) {
     std::string& row = rows.emplace_back(kWhats[static_cast<std::size_t>(event.what)]);
     row.append(" ").append(event.port.empty() ? "-" : event.port);
     if (is_change(event.what)) {
+      if (is_of_link(event.what)) row.append(" ").append(std::to_string(event.seq));
       row.append(" ").append(std::to_string(unix_nanoseconds(event.moment)));
       row.append(" ").append(event.value);
       continue;

@@ -36,8 +36,8 @@ struct TraceEvent {
     Lost,      ///< too many events: `seq` of them were not recorded
     Set,       ///< the parameter `port` was given another value
     Read,      ///< the module read its clock, which was `moment`
-    Linked,    ///< the output `port` was linked to the URI `value` by a command
-    Unlinked,  ///< such a link was removed
+    Linked,    ///< a command linked the output `port` to the URI `value`, from its message `seq` on
+    Unlinked,  ///< a command removed such a link, before message `seq`
   };
   What what = What::Took;
   std::string port;
@@ -56,7 +56,7 @@ struct TraceEvent {
 
 /// A string with a row "took PORT SRC SEQ TIME MOMENT" per event, followed by the number unless it
 /// is 0; an empty port is "-". A change of a parameter is "set NAME MOMENT VALUE", of a link
-/// "linked PORT MOMENT URI".
+/// "linked PORT SEQ MOMENT URI".
 Message make_trace(std::span<const TraceEvent> events);
 /// Malformed rows are ignored.
 std::vector<TraceEvent> read_trace(const Message& message);

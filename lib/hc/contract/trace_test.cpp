@@ -20,13 +20,13 @@ TEST(Trace, IsReadAsItWasWritten) {
       {What::Set, "modes", 0, 0, Time(), unix_time(2005), 0, "read=5, track=4"},
       {What::Set, "file", 0, 0, Time(), unix_time(2006), 0, ""},
       {What::Read, "", 0, 0, Time(), unix_time(2007)},
-      {What::Unlinked, "out", 0, 0, Time(), unix_time(2008), 0, "shm:a?readers=1"},
-      {What::Linked, "out", 0, 0, Time(), unix_time(2009), 0, "shm:a?as=jpeg&quality=5"}};
+      {What::Unlinked, "out", 0, 9, Time(), unix_time(2008), 0, "shm:a?readers=1"},
+      {What::Linked, "out", 0, 10, Time(), unix_time(2009), 0, "shm:a?as=jpeg&quality=5"}};
   const Message message = make_trace(events);
   EXPECT_EQ(rows_of(message)[0], "took image 3 7 1000 2000");
   EXPECT_EQ(rows_of(message)[1], "began - 0 0 0 2001 2");
   EXPECT_EQ(rows_of(message)[5], "set modes 2005 read=5, track=4");
-  EXPECT_EQ(rows_of(message)[9], "linked out 2009 shm:a?as=jpeg&quality=5");
+  EXPECT_EQ(rows_of(message)[9], "linked out 10 2009 shm:a?as=jpeg&quality=5");
   EXPECT_EQ(read_trace(message), events);
 }
 
@@ -41,6 +41,7 @@ TEST(Trace, MalformedRowsAreIgnored) {
                                          "took image 3 7 1000 -9223372036854775808",
                                          "set rate x 5",
                                          "set rate -5 5",
+                                         "linked out 2009 shm:a",
                                          "sent a 1 2 3 4",
                                          ""};
   EXPECT_EQ(read_trace(make_rows(rows)),

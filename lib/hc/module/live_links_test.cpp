@@ -11,6 +11,7 @@
 #include <thread>
 
 #include <hc/base/check.h>
+#include <hc/contract/trace.h>
 #include <hc/module/running_module_test.h>
 #include <hc/mtp/matrix_view.h>
 
@@ -101,6 +102,31 @@ TEST_F(RunningModule, ObeysWhileItWaitsForRoom) {
     EXPECT_EQ(number_of(next(*quick)), received);
   }
   EXPECT_EQ(join(), 0);
+}
+
+TEST_F(RunningModule, ALinkThatIsAddedBeginsWithTheNextMessage) {
+  const std::string name = "late." + std::to_string(::getpid());
+  Module module{"counter", "Counts to two."};
+  auto out = module.output("out", table(), "");
+  module.generate([&] {
+    for (int i = 0; i < 3; ++i) out.send(i);
+    module.stop();
+  });
+  auto trace = source_of(uri("trace")), reader = source_of(uri("added"));
+  start_managed(module, {"--out=shm:" + name, "--out=trace=" + uri("trace")});
+  while (view<std::int64_t>(next(*reports_, Report::State))->at(0, 0, 3) == 0) {
+  }
+  command("link out out=" + uri("added"));
+  command("set nothing=0");  // obeyed after it
+  next(*reports_, Report::Log);
+  auto old = source_of("shm:" + name + "?wait=10");
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(number_of(next(*old)), i);
+  for (int i = 1; i < 3; ++i) EXPECT_EQ(number_of(next(*reader)), i);
+  EXPECT_EQ(join(), 0);
+  std::vector<std::int64_t> firsts;
+  for (const auto& event : read_trace(next(*trace)))
+    if (event.what == TraceEvent::What::Linked) firsts.push_back(event.seq);
+  EXPECT_EQ(firsts, std::vector<std::int64_t>{1});
 }
 
 TEST_F(RunningModule, ReportsAgesAndGaps) {

@@ -107,7 +107,9 @@ void Module::Outlets::adapt(const std::shared_ptr<Outlet>& outlet,
 
 void Module::Outlets::open(const internal::PortLink& link) {
   auto& output = output_of(link);
-  output.links.push_back(open(link.uri, output.name, output.options.keep));
+  auto outlet = open(link.uri, output.name, output.options.keep);
+  outlet->first = output.seq;
+  output.links.push_back(std::move(outlet));
 }
 
 void Module::Outlets::open(const internal::Arguments& arguments) {

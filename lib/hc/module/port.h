@@ -64,6 +64,7 @@ struct Outlet {
   Traffic traffic;                        ///< as it was when the link ended
   std::int64_t peers = -1;                ///< at the last report; see LinkCounters
   Route route;                            ///< which messages it takes
+  std::int64_t first = 0;                 ///< OutputState::seq of the first message it takes
 
   /// What its sink has counted, or had when the link ended.
   [[nodiscard]] Traffic counted() const {
@@ -146,7 +147,7 @@ struct OutputState {
   std::int32_t to = 0;               ///< dst of those that have none
   std::optional<Encoding> encoding;  ///< asked for on the command line
   OutputOptions options;
-  std::int64_t seq = 0;
+  std::int64_t seq = 0;              ///< messages sent or forwarded
   std::vector<std::shared_ptr<Outlet>> links;
   Module* module = nullptr;
 

@@ -110,7 +110,7 @@ Status Module::Remote::set_parameter(const std::string& name, const std::string&
     if (parameter->options.fixed)
       return Error{Code::Invalid, "parameter " + name + " is fixed while the module runs"};
     HC_TRY(parameter->set(value));
-    module_.loop_->trace.note_change(TraceEvent::What::Set, name, value);
+    module_.loop_->trace.note_set(name, value);
     report_parameters();
     return {};
   }
@@ -145,7 +145,7 @@ Status Module::Remote::unlink(bool is_input, const std::string& text) {
 void Module::Remote::note(TraceEvent::What what, bool is_input,
                           const internal::PortLink& link) const {
   if (!is_input && !link.is_trace)
-    module_.loop_->trace.note_change(what, module_.outputs_[link.port]->name, link.uri.text());
+    module_.loop_->trace.note_link(what, *module_.outputs_[link.port], link.uri.text());
 }
 
 void Module::Remote::send(Report report, Message message) {

@@ -53,14 +53,17 @@ bool send_to(Outlet& outlet, const std::string& port, const Message& message) {
   return false;
 }
 
-/// Calls `send_one` with each outlet of an output; commands may remove outlets meanwhile.
+/// Calls `send_one` with each outlet of an output. Commands may add and remove outlets meanwhile;
+/// an added one is spared the message, which a removed one to the same reader may have taken.
 /// @returns  whether a reader has left.
 template <typename SendOne>
 bool send_to_each(internal::OutputState& output, const SendOne& send_one) {
   bool any_ended = false;
+  const auto seq = output.seq++;
   for (std::size_t i = 0; i < output.links.size();) {
     auto* outlet = output.links[i].get();
-    const bool ended = outlet->sink != nullptr && !send_one(*outlet);
+    const bool takes = outlet->sink != nullptr && outlet->first <= seq;
+    const bool ended = takes && !send_one(*outlet);
     if (i >= output.links.size() || output.links[i].get() != outlet) continue;  // it was removed
     any_ended = any_ended || ended;
     ++i;
@@ -76,7 +79,7 @@ void internal::Trace::flush() {
   lost_ = 0;
   if (events_.empty()) return;
   Message message = make_trace(events_);
-  message.header.seq = output.seq++;
+  message.header.seq = output.seq;
   message.header.time = events_.front().moment;
   events_.clear();
   send_to_each(output, [&](Outlet& outlet) {
@@ -90,7 +93,7 @@ void internal::send(OutputState& output, Message&& message) {
   Module& module = *output.module;
   Header& header = message.header;
   header.src = output.address;
-  header.seq = output.seq++;
+  header.seq = output.seq;
   if (header.dst == 0) header.dst = output.to;
   if (header.mode == 0) header.mode = module.focus_.mode_of(module.handled_.mode);
   if (header.coord == 0) header.coord = output.type().coord;

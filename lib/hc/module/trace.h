@@ -31,9 +31,13 @@ class Trace {
       add({what, {}, 0, 0, {}, clock_.wall(), number});
   }
 
-  /// Notes a change: another value of a parameter, or the URI of a link that came or went.
-  void note_change(TraceEvent::What what, const std::string& name, const std::string& value) {
-    if (is_linked()) add({what, name, 0, 0, {}, clock_.wall(), 0, value});
+  /// Notes another value of a parameter.
+  void note_set(const std::string& name, const std::string& value) {
+    if (is_linked()) add({TraceEvent::What::Set, name, 0, 0, {}, clock_.wall(), 0, value});
+  }
+  /// Notes that a link of an output was added or removed.
+  void note_link(TraceEvent::What what, const OutputState& of, const std::string& uri) {
+    if (is_linked()) add({what, of.name, 0, of.seq, {}, clock_.wall(), 0, uri});
   }
 
   /// The wall clock, of which the reading is noted.
