@@ -2,7 +2,8 @@
 // The drawing of a graph: laid out once for a structure; its texts and colours are updated.
 import { moduleOf, portOf, type GraphLink } from "../server";
 import { arrowHead, fill, h, setText, svg } from "../shell";
-import { layoutOf, type Point } from "./layout";
+import { labelLetters, type Point } from "./labels";
+import { layoutOf } from "./layout";
 import { drawEdge, drawNode, shorten, type EdgeMark, type NodeMark } from "./marks";
 import { sayingOf, type Now } from "./says";
 import { isBackground } from "./parts";
@@ -206,7 +207,7 @@ export class Drawing {
     const rate = isBroken ? "broken" : rateText(fastest.per_second);
     const age = fastest.age ? durationText(fastest.age[0]) : "";
     setText(mark.rate, rate);
-    setText(mark.age, age && ` ${age}`);
+    setText(mark.age, age && rate.length + 1 + age.length <= labelLetters ? ` ${age}` : "");
     setText(mark.title, all.map(linkText).join("\n"));
     const label = (key: string): string =>
       this.nodes.find(({ node }) => node.key === key)?.node.label ?? key;

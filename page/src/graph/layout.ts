@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The layout of a graph's drawing in columns. It depends on the structure alone. Pure.
 import { columnsOf } from "./columns";
+import { areaOf, placeLabels, type Area, type Label, type Point } from "./labels";
 import type { Edge, Node, Structure } from "./structure";
-
-/** [px] of the drawing, from its top left corner. */
-export interface Point {
-  readonly x: number;
-  readonly y: number;
-}
 
 export interface Box extends Point {
   /** x, y: its centre. */
@@ -15,10 +10,10 @@ export interface Box extends Point {
   readonly height: number;
 }
 
-/** The points of a line, and its label, which begins or ends beside its first point. */
+/** The points of a line, and its label, if there is room for one. */
 export interface Line {
   readonly points: readonly Point[];
-  readonly label: Point & { readonly anchor: "start" | "end" };
+  readonly label?: Label;
 }
 
 export interface Layout {
@@ -40,6 +35,8 @@ const letterWidth = 7.8;
 const lineGap = 13;
 /** Above a node for the name of its part or body [px]. */
 const captionHeight = 16;
+/** Of the box behind that of a part, to the right and down [px]. */
+export const stackOffset = 4;
 const passHeight = 4; // of a line that passes a column [px]
 const sweeps = 24;
 
@@ -120,21 +117,35 @@ export function layoutOf(structure: Structure): Layout {
     const share = place < 0 ? 0.5 : (place + 1) / (order.length + 1);
     return { x: x + (side === "left" ? -width : width) / 2, y: y + (share - 0.5) * height };
   };
-  const edges = new Map(
+  const routes = new Map(
     structure.edges.map((edge) => {
       const [start, end] = sides(edge);
-      const first = pointAt(edge.from, start, edge);
-      const points = [first, ...passes(edge), pointAt(edge.to, end, edge)];
-      const label =
-        start === "right"
-          ? ({ x: first.x + 5, y: first.y, anchor: "start" } as const)
-          : ({ x: first.x - 5, y: first.y, anchor: "end" } as const);
-      return [edge.key, { points, label }];
+      const points = [pointAt(edge.from, start, edge), ...passes(edge)];
+      return [edge.key, [...points, pointAt(edge.to, end, edge)]];
     }),
+  );
+  const filled = structure.nodes.flatMap((node) => areasOf(node, nodes.get(node.key)!));
+  const shown = placeLabels(new Map(flow.map(({ key }) => [key, routes.get(key)!])), filled);
+  // Those of the background yield, as if they were not there.
+  const background = new Map([...routes].filter(([key]) => !shown.has(key)));
+  const labels = new Map([
+    ...placeLabels(background, [...filled, ...[...shown.values()].map(areaOf)]),
+    ...shown,
+  ]);
+  const edges = new Map(
+    [...routes].map(([key, points]) => [key, { points, label: labels.get(key) }]),
   );
   const bottoms = [...cells.values()].map((cell) => cell.y + top + cell.height / 2);
   const width = leftOf(widths.length) - columnGap + margin;
   return { width, height: Math.max(...bottoms) + margin, nodes, edges };
+}
+
+/** What a node fills: its box, that behind the box of a part, and its caption. */
+export function areasOf({ members, caption }: Node, { x, y, width, height }: Box): Area[] {
+  const behind = members.length > 1 ? stackOffset : 0;
+  const [left, top] = [x - width / 2, y - height / 2];
+  const box = { left, top, right: left + width + behind, bottom: top + height + behind };
+  return [box, ...(caption ? [{ ...box, top: top - captionHeight, bottom: top }] : [])];
 }
 
 function widthsOf(nodes: readonly Node[], columns: ReadonlyMap<string, number>): number[] {
@@ -267,19 +278,4 @@ function settle(column: readonly Cell[], wanted: readonly number[]): void {
   });
   const means = pools.flatMap(({ sum, count }) => Array<number>(count).fill(sum / count));
   column.forEach((cell, i) => (cell.y = means[i]! + offsets[i]!));
-}
-
-/** A path through points, horizontal at each of them, as the `d` of an SVG path. */
-export function pathThrough(points: readonly Point[]): string {
-  const at = (x: number, y: number): string => `${x.toFixed(1)} ${y.toFixed(1)}`;
-  return points.reduce((path, point, i) => {
-    const before = points[i - 1];
-    if (!before) return `M${at(point.x, point.y)}`;
-    if (before.y === point.y) return `${path}L${at(point.x, point.y)}`;
-    const isBeside = Math.abs(before.x - point.x) < 20; // in the same column
-    const out = isBeside ? 40 : (point.x - before.x) / 2;
-    const back = isBeside ? -40 : out;
-    const bend = `${at(before.x + out, before.y)} ${at(point.x - back, point.y)}`;
-    return `${path}C${bend} ${at(point.x, point.y)}`;
-  }, "");
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The marks of a graph's drawing: nodes and links.
 import { svg } from "../shell";
-import { pathThrough, type Box, type Line } from "./layout";
+import { pathThrough } from "./labels";
+import { stackOffset, type Box, type Line } from "./layout";
 import type { Edge, Node } from "./structure";
 
 const inset = 9; // of text in a node [px]
@@ -41,7 +42,7 @@ export function drawNode(node: Node, box: Box, act: () => void, close: () => voi
     },
     [
       title,
-      isPart && svg("rect.node-box", { ...place, x: left + 4, y: top + 4 }),
+      isPart && svg("rect.node-box", { ...place, x: left + stackOffset, y: top + stackOffset }),
       svg("rect.node-box", place),
       svg("text.node-name", { x: left + inset, y: -4 }, name),
       detail,
@@ -74,7 +75,7 @@ export function drawEdge(edge: Edge, { points, label }: Line, act: () => void) {
     svg("path.edge-hit", { d }),
   ]);
   // Above all lines.
-  const at = { x: label.x, y: label.y - 3, "text-anchor": label.anchor };
-  const words = svg("text.edge-words", at, [rate, age]);
+  const at = label && { x: label.x, y: label.y, "text-anchor": label.anchor };
+  const words = svg("text.edge-words", at ?? {}, label && [rate, age]);
   return { group, words, title, rate, age, edge, at: points[0]! };
 }

@@ -3,7 +3,7 @@ import type { GraphLink, GraphModule } from "../server";
 import { button, fill, h, setText, type PanelKind } from "../shell";
 import { Drawing } from "./drawing";
 import { Failures } from "./failures";
-import type { Point } from "./layout";
+import type { Point } from "./labels";
 import { summaryOf } from "./says";
 import { linkKey, type Edge } from "./structure";
 import { Tables } from "./table";
