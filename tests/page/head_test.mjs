@@ -127,6 +127,43 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     await page.setViewportSize({ width: 1000, height: 720 });
   });
 
+  test("no label of a link covers another one or a box, also with all links", async () => {
+    await page.setViewportSize({ width: 1280, height: 800 });
+    await show("watch");
+    for (const all of [false, true]) {
+      if (all) await page.getByLabel("all links").check();
+      await page.locator(".edge-age:not(:empty)").nth(10).waitFor();
+      const covered = await page.evaluate(() => {
+        const areas = (selector) =>
+          [...document.querySelectorAll(selector)]
+            .map((element) => ({ text: element.textContent, area: element.getBoundingClientRect() }))
+            .filter(({ area }) => area.width > 0);
+        const labels = areas(".edge-words");
+        const others = [...labels, ...areas(".node-box"), ...areas(".caption-text")];
+        const isOver = (a, b) =>
+          Math.min(a.right, b.right) - Math.max(a.left, b.left) > 0.5 &&
+          Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 0.5;
+        return labels.flatMap((a) =>
+          others.filter((b) => a !== b && isOver(a.area, b.area)).map((b) => [a.text, b.text]),
+        );
+      });
+      assert.deepEqual(covered, []);
+    }
+    await page.setViewportSize({ width: 1000, height: 720 });
+  });
+
+  test("the neck in the graph says how it is turned, as it turns", async () => {
+    await takeSeat("seat|graph");
+    const [pan, tilt] = [0, 1].map((i) => page.locator(".node-pose:visible tspan").nth(i));
+    await pan.filter({ hasText: /^pan −?\d+°$/ }).waitFor();
+    await tilt.filter({ hasText: /^tilt −?\d+°$/ }).waitFor();
+    const before = await pan.textContent();
+    await page.locator(".seat").focus();
+    await page.keyboard.down("ArrowRight");
+    await pan.filter({ hasNotText: before }).waitFor();
+    await page.keyboard.up("ArrowRight");
+  });
+
   test("each part and each link is reached with the keyboard, and has a name", async () => {
     await show("graph");
     await page.locator(".node").first().waitFor();

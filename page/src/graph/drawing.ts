@@ -6,10 +6,12 @@ import { labelLetters, type Point } from "./labels";
 import { layoutOf } from "./layout";
 import { drawEdge, drawNode, shorten, type EdgeMark, type NodeMark } from "./marks";
 import { sayingOf, type Now } from "./says";
+import { angleText, type Pose } from "../views/pose";
 import { isBackground } from "./parts";
 import { linkKey, structureKey, structureOf, type Edge, type Structure } from "./structure";
 import { Viewport } from "./viewport";
 import {
+  degreesText,
   durationText,
   latencyText,
   limitTexts,
@@ -67,6 +69,8 @@ export class Drawing {
   private structure?: Structure;
   private structureKey = "";
   private now?: Now;
+  /** The last poses, by output. */
+  private readonly turned = new Map<string, Pose>();
   /** Keys of the parts that are open. */
   private readonly open = new Set<string>();
   /** Key of the item in the tab order; arrow keys continue from it. */
@@ -91,9 +95,9 @@ export class Drawing {
 
   update(now: Now): void {
     this.now = now;
-    const { state } = now;
-    const key = structureKey(state, this.open);
-    if (key !== this.structureKey) this.build(structureOf(state, this.open));
+    const { state, frames } = now;
+    const key = structureKey(state, this.open, frames);
+    if (key !== this.structureKey) this.build(structureOf(state, this.open, frames));
     this.structureKey = key;
     const links = new Map(state.links.map((link) => [linkKey(link), link]));
     const loop = new Set<string>(); // keys of nodes
@@ -103,6 +107,17 @@ export class Drawing {
       if (isLoop) loop.add(mark.edge.from).add(mark.edge.to);
     }
     for (const mark of this.nodes) this.updateNode(mark, now, loop.has(mark.node.key));
+  }
+
+  /** The outputs whose poses it shows. */
+  get poses(): ReadonlySet<string> {
+    return new Set(this.nodes.flatMap(({ node }) => node.pose || []));
+  }
+
+  /** Shows how the frame is turned that an output moves. */
+  showPose(port: string, pose: Pose): void {
+    this.turned.set(port, pose);
+    for (const mark of this.nodes) if (mark.node.pose === port) this.updatePose(mark);
   }
 
   /** Opens a part into its modules, or closes it; the clicked node stays in place. */
@@ -185,10 +200,28 @@ export class Drawing {
     if (hasFocus) classes.push("has-focus");
     setAttribute(group, "class", classes.join(" "));
     setText(detail, shorten(saying.text, box.width, "detail"));
+    // A module that does not work does not say how it is turned.
+    if (saying.is === "broken" || saying.is === "ended") this.turned.delete(node.pose);
+    this.updatePose(mark);
     const loads = members.map(({ name, cpu }) => `${name}, cpu ${percentText(cpu)}`);
     const focus = hasFocus ? ", has the focus" : "";
+    const pose = this.turned.get(node.pose);
+    const turned = pose
+      ? [
+          `pan ${angleText(pose.pan, "left", "right", 0)}, tilt ${angleText(pose.tilt, "down", "up", 0)}`,
+        ]
+      : [];
     // Also its name for screen readers.
-    setText(title, [`${node.label}${focus}: ${saying.text}`, ...loads].join("\n"));
+    setText(title, [`${node.label}${focus}: ${saying.text}`, ...turned, ...loads].join("\n"));
+  }
+
+  private updatePose({ node, group, pose, pan, tilt }: NodeMark): void {
+    const isDown = group.matches(".broken, .ended");
+    const turned = isDown ? undefined : this.turned.get(node.pose);
+    setAttribute(pose, "display", turned ? "inline" : "none");
+    if (!turned) return;
+    setText(pan, `pan ${degreesText(turned.pan)}`);
+    setText(tilt, `tilt ${degreesText(turned.tilt)}`);
   }
 
   /** @returns  whether it moves the robot now: something passes it in the global workspace. */

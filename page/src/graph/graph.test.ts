@@ -5,8 +5,15 @@ import type { GraphModule } from "../server";
 import { Failures } from "./failures";
 import { linkOf, moduleNamed, stateOf } from "./graph_file";
 import { layoutOf } from "./layout";
-import { structureOf } from "./structure";
-import { bytesText, durationText, limitTexts, moduleCondition, rateText } from "./words";
+import { structureKey, structureOf } from "./structure";
+import {
+  bytesText,
+  degreesText,
+  durationText,
+  limitTexts,
+  moduleCondition,
+  rateText,
+} from "./words";
 
 const head = stateOf(
   [
@@ -48,6 +55,22 @@ test("the layout is the same for the same structure, from left to right, nothing
   boxes.slice(1).forEach((box, i) => {
     assert.ok(box.x - box.width / 2 > boxes[i]!.x + boxes[i]!.width / 2);
   });
+});
+
+const frames = "robot 10 world 0 0 1.2 0 0 0 1; head 11 robot neck.pose 3";
+
+test("whatever moves a frame shows its pose, and has room for it", () => {
+  const poses = (open: ReadonlySet<string>) =>
+    structureOf(head, open, frames).nodes.flatMap(({ key, pose }) => (pose ? [[key, pose]] : []));
+  assert.deepEqual(poses(closed), [["neck", "neck.pose"]]);
+  const box = layoutOf(structureOf(head, closed, frames)).nodes.get("neck")!;
+  const usual = layoutOf(structureOf(head, closed)).nodes.get("neck")!;
+  assert.ok(box.height >= usual.height + 16 && box.width > usual.width);
+  assert.notEqual(structureKey(head, closed, frames), structureKey(head, closed));
+});
+
+test("angles are whole degrees with their sign", () => {
+  assert.deepEqual([12.4, -3.3, -0.4, 179.6].map(degreesText), ["12°", "−3°", "0°", "180°"]);
 });
 
 test("numbers are short", () => {

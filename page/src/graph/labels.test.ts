@@ -13,10 +13,12 @@ const drawings = readdirSync(process.env.HC_GRAPHS ?? "")
   .filter((name) => name.endsWith(".toml"))
   .flatMap((file) => {
     const state = stateOfFile(file);
+    const neck = state.modules.find(({ program }) => program === "pan_tilt");
+    const frames = neck ? `head 11 robot ${neck.name}.pose 3` : "";
     const parts = partsOf(state).flatMap(({ key, members }) => (members.length > 1 ? [key] : []));
     return [[], ...parts.map((part) => [part]), parts].map((open) => ({
       name: `${file} with ${open.join(" and ") || "nothing"} open`,
-      structure: structureOf(state, new Set(open)),
+      structure: structureOf(state, new Set(open), frames),
     }));
   });
 

@@ -29,6 +29,8 @@ const margin = 14; // [px]
 const columnGap = 84;
 const rowGap = 14; // [px]
 const nodeSize = { width: 120, most: 184, height: 48 }; // [px]
+/** The least of a node that shows a pose below its other texts [px]. */
+const poseSize = { width: 134, height: 64 };
 /** Of a letter of a node's name [px]. */
 const letterWidth = 7.8;
 /** Between lines at the side of a node, so that their labels have room [px]. */
@@ -63,8 +65,12 @@ export function layoutOf(structure: Structure): Layout {
   const endsAt = (key: string, side: Side): number =>
     flow.filter((edge) => edge.from === key && sides(edge)[0] === side).length +
     flow.filter((edge) => edge.to === key && sides(edge)[1] === side).length;
+  const withPose = new Set(structure.nodes.flatMap(({ key, pose }) => (pose ? [key] : [])));
   const heightOf = (key: string): number =>
-    Math.max(nodeSize.height, lineGap * (1 + Math.max(endsAt(key, "left"), endsAt(key, "right"))));
+    Math.max(
+      (withPose.has(key) ? poseSize : nodeSize).height,
+      lineGap * (1 + Math.max(endsAt(key, "left"), endsAt(key, "right"))),
+    );
 
   const cells = cellsOf(structure, columns, heightOf);
   arrange(cells);
@@ -152,7 +158,11 @@ function widthsOf(nodes: readonly Node[], columns: ReadonlyMap<string, number>):
   const count = 1 + Math.max(0, ...columns.values());
   return Array.from({ length: count }, (_, column) => {
     const names = nodes.filter(({ key }) => columns.get(key) === column);
-    const longest = Math.max(...names.map(({ label }) => 26 + label.length * letterWidth));
+    const longest = Math.max(
+      ...names.map(({ label, pose }) =>
+        Math.max(26 + label.length * letterWidth, pose ? poseSize.width : 0),
+      ),
+    );
     return Math.min(nodeSize.most, Math.max(nodeSize.width, longest));
   });
 }

@@ -6,6 +6,8 @@ import { stackOffset, type Box, type Line } from "./layout";
 import type { Edge, Node } from "./structure";
 
 const inset = 9; // of text in a node [px]
+/** Where the tilt of a pose begins in a node: after "pan −180°", so that neither moves [px]. */
+const tiltAt = 78;
 const letter = { name: 7.8, detail: 6 }; // widths [px]
 
 /** A text that fits into a node. */
@@ -28,10 +30,13 @@ export function drawNode(node: Node, box: Box, act: () => void, close: () => voi
   const [left, top] = [-width / 2, -height / 2];
   const isPart = node.members.length > 1;
   const title = svg("title");
-  const detail = svg("text.node-detail", { x: left + inset, y: 13 });
+  const up = node.pose ? 8 : 0; // makes room for the pose
+  const detail = svg("text.node-detail", { x: left + inset, y: 13 - up });
+  const [pan, tilt] = [svg("tspan", { x: left + inset }), svg("tspan", { x: left + tiltAt })];
+  const pose = svg("text.node-pose", { y: 29 - up, display: "none" }, [pan, tilt]);
   const place = { x: left, y: top, width, height, rx: 8 };
   const name = shorten(node.label, width - (isPart ? 14 : 0), "name");
-  const plus = `M${-left - 20} -8h8M${-left - 16} -12v8`;
+  const plus = `M${-left - 20} ${-8 - up}h8M${-left - 16} ${-12 - up}v8`;
   const group = svg(
     "g.node",
     {
@@ -44,8 +49,9 @@ export function drawNode(node: Node, box: Box, act: () => void, close: () => voi
       title,
       isPart && svg("rect.node-box", { ...place, x: left + stackOffset, y: top + stackOffset }),
       svg("rect.node-box", place),
-      svg("text.node-name", { x: left + inset, y: -4 }, name),
+      svg("text.node-name", { x: left + inset, y: -4 - up }, name),
       detail,
+      node.pose !== "" && pose,
       isPart && svg("path.node-more", { d: plus }),
     ],
   );
@@ -59,7 +65,7 @@ export function drawNode(node: Node, box: Box, act: () => void, close: () => voi
     node.caption && caption,
     group,
   ]);
-  return { element, group, caption, title, detail, box, node };
+  return { element, group, caption, title, detail, pose, pan, tilt, box, node };
 }
 
 export type EdgeMark = ReturnType<typeof drawEdge>;

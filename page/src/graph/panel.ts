@@ -4,6 +4,7 @@ import { button, fill, h, setText, type PanelKind } from "../shell";
 import { Drawing } from "./drawing";
 import { Failures } from "./failures";
 import type { Point } from "./labels";
+import { Poses } from "./poses";
 import { summaryOf } from "./says";
 import { linkKey, type Edge } from "./structure";
 import { Tables } from "./table";
@@ -49,6 +50,7 @@ export const graphPanel: PanelKind = (args, host) => {
   });
 
   const drawing = new Drawing({ openModule, openEdge: choose });
+  const poses = new Poses(server, (port, pose) => drawing.showPose(port, pose));
   const tables = new Tables({ openModule, openLink });
   const counts = h("span.graph-counts.muted");
   const problems = h("span.problems", { role: "status" });
@@ -90,16 +92,18 @@ export const graphPanel: PanelKind = (args, host) => {
   const failures = new Failures();
   const update = (): void => {
     const { state, session } = server;
-    if (!state) return;
+    if (!state || !session) return;
     failures.take(state);
     const now = {
       state,
-      stopped: session?.stopped === true,
+      frames: session.frames,
+      stopped: session.stopped === true,
       bids: (workspace: string) => server.standings.of(workspace),
       conditionOf: (module: GraphModule) => failures.conditionOf(module),
     };
     if (shown === "drawing") drawing.update(now);
     else tables.update(state);
+    poses.follow(shown === "drawing" ? drawing.poses : new Set());
     const { counts: count, problems: bad } = summaryOf(now);
     setText(counts, count);
     setText(problems, bad.text);
@@ -111,6 +115,7 @@ export const graphPanel: PanelKind = (args, host) => {
     element,
     close: () => {
       for (const end of ends) end();
+      poses.close();
       drawing.close();
     },
   };

@@ -12,6 +12,8 @@ export interface Saying {
 /** A graph at one time, with its bids and conditions. */
 export interface Now {
   readonly state: GraphState;
+  /** The text of G31. */
+  readonly frames: string;
   /** Whether the robot is stopped. */
   readonly stopped: boolean;
   readonly bids: (workspace: string) => readonly Bid[];

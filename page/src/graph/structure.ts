@@ -2,6 +2,7 @@
 // The structure of a graph's drawing: its parts, or the modules of those that are open, and one edge
 // for all links between two of them.
 import { moduleOf, type GraphLink, type GraphModule, type GraphState } from "../server";
+import { framesOf } from "../views/frames";
 import { isBackground, partsOf, type PartKind } from "./parts";
 
 /** A box of the drawing. */
@@ -15,6 +16,8 @@ export interface Node {
   readonly caption: string;
   /** Key of that open part; empty: none. */
   readonly part: string;
+  /** Its output that moves a frame; empty: none. */
+  readonly pose: string;
 }
 
 /** All links from one node to another. */
@@ -34,8 +37,8 @@ export interface Structure {
   readonly edges: readonly Edge[];
 }
 
-/** Equal for states that have the same structure. */
-export function structureKey(state: GraphState, open: ReadonlySet<string>): string {
+/** Equal for states that have the same structure. @param frames  the text of G31. */
+export function structureKey(state: GraphState, open: ReadonlySet<string>, frames = ""): string {
   const modules = state.modules.map(({ name, program, group, mode }) => [
     name,
     program,
@@ -43,7 +46,7 @@ export function structureKey(state: GraphState, open: ReadonlySet<string>): stri
     mode,
   ]);
   const links = state.links.map(linkKey);
-  return JSON.stringify([modules, links, Object.keys(state.focus), [...open]]);
+  return JSON.stringify([modules, links, Object.keys(state.focus), [...open], frames]);
 }
 
 export function linkKey(link: GraphLink): string {
@@ -55,12 +58,14 @@ function placeOf(uri: string): string {
   return uri.replace(/[?#].*/, "");
 }
 
-/** @param open  keys of the parts that are open. */
-export function structureOf(state: GraphState, open: ReadonlySet<string>): Structure {
+/** @param open  keys of the parts that are open. @param frames  the text of G31. */
+export function structureOf(state: GraphState, open: ReadonlySet<string>, frames = ""): Structure {
+  const poses = framesOf(frames).flatMap(({ movedBy }) => movedBy ?? []);
   const nodes: Node[] = [];
   const nodeOf = new Map<string, string>(); // of a module
-  const add = (node: Node): void => {
-    nodes.push(node);
+  const add = (node: Omit<Node, "pose">): void => {
+    const pose = poses.find((port) => node.members.includes(moduleOf(port))) ?? "";
+    nodes.push({ ...node, pose });
     for (const member of node.members) nodeOf.set(member, node.key);
   };
   for (const part of partsOf(state)) {
@@ -78,7 +83,7 @@ export function structureOf(state: GraphState, open: ReadonlySet<string>): Struc
     if (known !== undefined) return known;
     const key = placeOf(end);
     if (!nodes.some((node) => node.key === key)) {
-      nodes.push({ key, label: key, kind: "outside", members: [], caption: "", part: "" });
+      add({ key, label: key, kind: "outside", members: [], caption: "", part: "" });
     }
     return key;
   };

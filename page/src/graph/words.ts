@@ -77,6 +77,12 @@ export function latencyText(age: GraphLink["age"]): string {
   return age ? `${durationText(age[0])}, p99 ${durationText(age[1])}` : "";
 }
 
+/** An angle [°] with its sign, without digits after the point: "−3°". */
+export function degreesText(angle: number): string {
+  const whole = Math.round(angle);
+  return `${whole < 0 ? "−" : ""}${Math.abs(whole)}°`;
+}
+
 export type Condition = "works" | "slow" | "broken" | "ended";
 
 /** The condition of a module, and the reason, which is empty if it works. */
