@@ -14,6 +14,8 @@ constexpr std::array<const char*, 14> kQuestions = {"pr", "tr", "pn", "px", "tn"
                                                     "tu", "pl", "tl", "ps", "ts", "pa", "ta"};
 // Turns a partial command left in the unit into an invalid one, which it refuses.
 constexpr const char* kNoWord = "-";
+constexpr const char* kNoAnswer = "no answer from the unit for 0.5 s";
+static_assert(Conversation::kTimeOut == std::chrono::milliseconds(500));
 constexpr std::string_view kAskPan = "pp", kAskTilt = "tp";
 constexpr double kArcsecond = std::numbers::pi / 180 / 3600;  // [rad]
 constexpr double kSlack = 50;  // beyond the distance at maximum speed [position]
@@ -282,7 +284,7 @@ bool Conversation::arrived() const {
 void Conversation::pass(MonotonicTime now) {
   if (phase_ == Phase::Begins) {
     const bool is_quiet = quiet_at_ && now >= *quiet_at_;
-    if (!quiet_at_ && now >= overdue_) fault_ = Error{Code::Closed, "the unit does not answer"};
+    if (!quiet_at_ && now >= overdue_) fault_ = Error{Code::Closed, kNoAnswer};
     if (is_quiet || now >= overdue_) {
       try_again(now);
     } else if (!has_halted_) {
@@ -291,8 +293,7 @@ void Conversation::pass(MonotonicTime now) {
     }
   }
   if (phase_ != Phase::Ready) return;
-  if (!awaited_.empty() && now >= overdue_)
-    return fail(now, {Code::Closed, "the unit does not answer"});
+  if (!awaited_.empty() && now >= overdue_) return fail(now, {Code::Closed, kNoAnswer});
   send_pace(now);
   if (is_late(now)) halt(now);
 }

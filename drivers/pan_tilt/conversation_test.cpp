@@ -157,7 +157,7 @@ TEST_F(Begun, a_command_that_is_the_same_is_not_sent_again) {
 TEST_F(Begun, a_silent_unit_is_asked_again_and_then_given_up) {
   line.is_silent = true;
   line.run(Conversation::kTimeOut + milliseconds(30));
-  EXPECT_EQ(line.faults, std::vector<std::string>{"the unit does not answer"});
+  EXPECT_EQ(line.faults, std::vector<std::string>{"no answer from the unit for 0.5 s"});
   EXPECT_EQ(line.host.phase(), Phase::Begins);
   EXPECT_FALSE(line.host.command(line.now, 0, 0));
   line.run((Conversation::kTries + 1) * Conversation::kTimeOut);

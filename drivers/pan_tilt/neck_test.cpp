@@ -183,7 +183,7 @@ TEST_F(NeckTest, a_silent_unit_is_logged_once_and_so_is_its_return) {
   log_.clear();
   is_silent_ = true;
   run(milliseconds(20'000));
-  EXPECT_EQ(log_, (std::vector<std::string>{path() + ": the unit does not answer",
+  EXPECT_EQ(log_, (std::vector<std::string>{path() + ": no answer from the unit for 0.5 s",
                                             path() + ": reopening"}));
   log_.clear();
   is_silent_ = false;

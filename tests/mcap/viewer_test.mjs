@@ -33,7 +33,6 @@ const graph = `version = 1
 [graphs.head]
 file = "simulated_head.toml"
 modules.eyes.parameters = { ball = "roll", count = 30, width = 400, height = 300, focal = 300 }
-modules.neck.exclusive = []
 [modules.rectify]
 parameters.focal = 300
 inputs = { left = "head_eyes.left", right = "head_eyes.right" }

@@ -118,12 +118,19 @@ class Modes {
                     description.inputs);
       else if (!planned.exclusive.insert(input.value).second)
         continue;
-      else if (module.workspace.empty() && !has_wrong_workspace())
-        problems_.add(input.place,
-                      "exclusive inputs require a [workspace] table: add it with module = "
-                      "\"workspace\", and [modules.workspace]; or set exclusive = []");
-      planned.add_option("--exclusive", input.value);
+      else if (module.workspace.empty())
+        check_unlinked(module, input);
+      else
+        planned.add_option("--exclusive", input.value);
     }
+  }
+
+  /// An exclusive input without a workspace cannot be linked, now or by a command later.
+  void check_unlinked(const GraphModule& module, const Lined<std::string>& input) {
+    if (!has_wrong_workspace() && planning_.is_linked({module.name, input.value, {}}))
+      problems_.add(input.place,
+                    "exclusive inputs require a [workspace] table: add it with module = "
+                    "\"workspace\", and [modules.workspace]; or set exclusive = []");
   }
 
   [[nodiscard]] bool has_wrong_workspace() const {

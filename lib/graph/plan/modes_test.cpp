@@ -108,10 +108,12 @@ TEST(Modes, ErrorsNameTheLineAndWhatWouldBeRight) {
   EXPECT_EQ(wrong("[modules.task]\nmode = \"a\"\n[modules.b]\nprogram = \"task\"\nmode = \"b\"\n"
                   "[modes]\na = 1\nb = 1\n"),
             "g.toml:9: modes a and b have the same number");
-  EXPECT_EQ(wrong("[modules.actor]\nexclusive = [\"command\"]\n"),
-            "g.toml:3: exclusive inputs require a [workspace] table: add it with module = "
+  EXPECT_EQ(wrong("[modules.task]\n[modules.actor]\nexclusive = [\"command\"]\n"
+                  "inputs.command = \"task.command\"\n"),
+            "g.toml:4: exclusive inputs require a [workspace] table: add it with module = "
             "\"workspace\", and [modules.workspace]; or set exclusive = []");
   EXPECT_TRUE(plan("[modules.actor]\nexclusive = []\n"));
+  EXPECT_TRUE(plan("[modules.actor]\nexclusive = [\"command\"]\n")) << "nothing is linked to it";
   EXPECT_EQ(wrong("[modules.workspace]\n[modules.actor]\nexclusive = [\"comand\"]\n"
                   "[workspace]\nmodule = \"workspace\"\n"),
             "g.toml:4: module actor has no input \"comand\", did you mean \"command\"?");

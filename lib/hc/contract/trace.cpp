@@ -19,7 +19,9 @@ bool is_of_link(TraceEvent::What what) {
   return what == TraceEvent::What::Linked || what == TraceEvent::What::Unlinked;
 }
 /// Whether an event is a change, with a value and without a message.
-bool is_change(TraceEvent::What what) { return what == TraceEvent::What::Set || is_of_link(what); }
+bool is_change(TraceEvent::What what) {
+  return what == TraceEvent::What::Set || is_of_link(what);
+}
 
 /// The rest of the row of a change.
 std::optional<TraceEvent> parse_change(TraceEvent event, std::string_view row) {

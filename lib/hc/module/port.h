@@ -147,7 +147,7 @@ struct OutputState {
   std::int32_t to = 0;               ///< dst of those that have none
   std::optional<Encoding> encoding;  ///< asked for on the command line
   OutputOptions options;
-  std::int64_t seq = 0;              ///< messages sent or forwarded
+  std::int64_t seq = 0;  ///< messages sent or forwarded
   std::vector<std::shared_ptr<Outlet>> links;
   Module* module = nullptr;
 
