@@ -97,11 +97,14 @@ void Follower::see(double time, const Angles& angles) {
   // Unwrap: −π and π are the same direction.
   const double here = pan_.quick.state(0);
   const double pan = is_same ? here + std::remainder(angles.pan - here, 2 * M_PI) : angles.pan;
-  // A target that reverses at once may still be the same for the slow filters.
+  // One that reverses at once may still be the same for the slow filter, one that accelerates for
+  // long for the quick one.
   if (is_same) {
     for (auto* axis : {&pan_, &tilt_}) step(time - *last_, *axis);
-    const auto slowly = slow(options_);
-    is_same = pan_.slow.can_be(pan, slowly) && tilt_.slow.can_be(angles.tilt, slowly);
+    const auto can_be = [&](const Axis& axis, double angle) {
+      return axis.quick.can_be(angle, options_) || axis.slow.can_be(angle, slow(options_));
+    };
+    is_same = can_be(pan_, pan) && can_be(tilt_, angles.tilt);
   }
   if (is_same) {
     judge(time, {pan, angles.tilt});

@@ -82,6 +82,19 @@ TEST(Follower, a_leap_is_no_motion) {
   EXPECT_EQ(follower.at(1.1)->pan_rate, 0);
 }
 
+TEST(Follower, what_accelerates_smoothly_does_not_leap) {
+  // A person who shakes the head, at 100 measurements a second.
+  constexpr double kAmplitude = 0.9, kAngular = 1.4;
+  Follower follower({0.0005, 2, 0.5, 0.1});
+  for (int i = 0; i < 2000; ++i) {
+    const double t = 0.01 * i;
+    follower.see(t, {kAmplitude * std::sin(kAngular * t), 0});
+    if (t < 1) continue;
+    const double rate = kAmplitude * kAngular * std::cos(kAngular * t);
+    ASSERT_NEAR(follower.at(t)->pan_rate, rate, 0.05) << t;
+  }
+}
+
 TEST(Follower, braking_is_what_a_unit_needs_to_stand_still) {
   EXPECT_DOUBLE_EQ(braking(2, {4, 0}), 0.5);
   EXPECT_DOUBLE_EQ(braking(-2, {4, 0}), -0.5);
