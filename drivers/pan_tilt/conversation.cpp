@@ -151,8 +151,13 @@ void Conversation::say(MonotonicTime now, const std::string& bytes,
                        std::initializer_list<Awaits> answers) {
   if (awaited_.empty()) overdue_ = now + kTimeOut;
   bytes_ += bytes;
-  times_.wrote(now, bytes.size());
+  times_.queued(bytes.size());
   awaited_.insert(awaited_.end(), answers);
+}
+
+std::string Conversation::bytes(MonotonicTime now) {
+  times_.wrote(now);
+  return std::exchange(bytes_, {});
 }
 
 bool Conversation::awaits(Awaits answer) const {

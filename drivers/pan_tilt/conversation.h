@@ -73,7 +73,7 @@ class Conversation {
   [[nodiscard]] std::string last_words() const { return heading_ ? "h " : ""; }
 
   // Results, each returned once.
-  std::string bytes() { return std::exchange(bytes_, {}); }           ///< to write
+  std::string bytes(MonotonicTime now);                               ///< to write now
   std::optional<Gaze> gaze() { return std::exchange(gaze_, {}); }     ///< reported by the unit
   std::optional<Error> fault() { return std::exchange(fault_, {}); }  ///< reason of a reset
   std::string remark() { return std::exchange(remark_, {}); }         ///< e.g. a refusal

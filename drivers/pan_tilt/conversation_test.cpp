@@ -116,9 +116,9 @@ TEST(Conversation, on_a_slow_line_the_tilt_is_that_of_the_time_of_the_pan) {
 
 TEST_F(Begun, a_command_goes_at_once_beside_a_question) {
   line.host.look(line.now);
-  EXPECT_EQ(line.host.bytes(), "pp tp ");
+  EXPECT_EQ(line.host.bytes(line.now), "pp tp ");
   EXPECT_TRUE(line.host.command(line.now, 100 * kStep, 50 * kStep));
-  EXPECT_EQ(line.host.bytes(), "pp100 tp-50 ");
+  EXPECT_EQ(line.host.bytes(line.now), "pp100 tp-50 ");
 }
 
 TEST_F(Begun, of_commands_that_must_wait_the_newest_is_sent) {
@@ -164,12 +164,31 @@ TEST_F(Begun, a_silent_unit_is_asked_again_and_then_given_up) {
   EXPECT_EQ(line.host.phase(), Phase::Lost);
 }
 
+TEST_F(Begun, a_question_counts_from_when_it_is_written) {
+  line.looks = false;
+  line.run(milliseconds(50));
+  line.gazes.clear();
+  line.host.look(line.now);
+  line.now += milliseconds(30);  // the process waits before it writes
+  line.run(milliseconds(50));
+  ASSERT_EQ(line.gazes.size(), 1U);
+  const auto late = line.now - milliseconds(50) - line.gazes[0].time;
+  EXPECT_LT(std::chrono::abs(late), milliseconds(3));
+}
+
+TEST_F(Begun, an_answer_to_a_question_that_is_not_written_is_harmless) {
+  line.host.look(line.now);
+  line.host.take(line.now, "* 0\r\n* 0\r\n* 0\r\n");
+  line.run(milliseconds(1000));
+  EXPECT_EQ(line.host.phase(), Phase::Ready);
+}
+
 TEST_F(Begun, an_answer_that_nobody_has_looked_at_tells_no_gaze) {
   line.looks = false;
   line.run(milliseconds(50));
   line.gazes.clear();
   line.host.look(line.now);
-  line.host.bytes();
+  line.host.bytes(line.now);
   line.host.take(line.now + milliseconds(1000), "* 0\r\n* 0\r\n");
   EXPECT_FALSE(line.host.gaze());
   EXPECT_EQ(line.host.phase(), Phase::Ready);
@@ -228,7 +247,7 @@ TEST(Conversation, a_corrupted_answer_is_not_believed_for_ever) {
   Line line;
   line.unit.take(1, "ft ed ci ");
   line.host.begin(line.now);
-  line.host.bytes();
+  line.host.bytes(line.now);
   line.host.take(line.now, "*\r\n*\r\n*\r\n* 125.1428\r\n");
   line.run(milliseconds(1000));
   EXPECT_EQ(line.faults, std::vector<std::string>{"garbage: \"185.1428\" is an unexpected answer"});
@@ -353,7 +372,7 @@ TEST_F(Begun, what_the_unit_refuses_or_runs_into_is_a_remark) {
   line.host.take(line.now, "!T!P");
   EXPECT_EQ(line.host.remark(), "pan has run into its limit");
   line.host.command(line.now, 0.1, 0);
-  line.host.bytes();
+  line.host.bytes(line.now);
   line.host.take(line.now, "! Illegal command entered\r\n*\r\n");
   EXPECT_EQ(line.host.remark(), "refused: Illegal command entered");
   EXPECT_EQ(line.host.phase(), Phase::Ready);
@@ -364,7 +383,7 @@ TEST_F(Begun, a_place_where_it_cannot_be_is_garbage) {
   line.run(milliseconds(50));
   line.gazes.clear();
   line.host.look(line.now);
-  line.host.bytes();
+  line.host.bytes(line.now);
   line.host.take(line.now, "* 2200\r\n* 0\r\n");
   EXPECT_EQ(line.host.fault()->detail, "garbage: impossible position 2200");
   EXPECT_FALSE(line.host.gaze());

@@ -47,7 +47,7 @@ struct Line {
     return last;
   }
   void exchange() {
-    const std::string written = host.bytes();
+    const std::string written = host.bytes(now);
     asked += written;
     for (char byte : written) going.emplace_back(after(going_at, now), byte);
     std::string bytes;

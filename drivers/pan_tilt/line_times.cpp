@@ -8,13 +8,24 @@ namespace hc::pan_tilt {
 
 void LineTimes::forget() {
   written_ = {};
+  unsent_ = 0;
+  unsent_question_.reset();
   looks_.clear();
   delay_.reset();
   tilt_.reset();
 }
 
-void LineTimes::wrote(MonotonicTime now, std::size_t bytes) {
-  written_ = std::max(written_, now) + on_line(bytes);
+void LineTimes::asked(MonotonicTime now) {
+  looks_.push_back({now, std::max(written_, now) + on_line(unsent_)});
+  unsent_question_ = unsent_;
+}
+
+void LineTimes::wrote(MonotonicTime now) {
+  const auto begins = std::max(written_, now);
+  if (unsent_question_ && !looks_.empty())
+    looks_.back() = {now, begins + on_line(*unsent_question_)};
+  unsent_question_.reset();
+  written_ = begins + on_line(std::exchange(unsent_, 0));
 }
 
 void LineTimes::answered(MonotonicTime now, bool begins) {

@@ -24,10 +24,12 @@ class LineTimes {
   /// Forgets all questions and answers, at the start of a line or after a fault.
   void forget();
 
-  /// The host has written `bytes` bytes.
-  void wrote(MonotonicTime now, std::size_t bytes);
+  /// The host is to write `bytes` bytes, after those before.
+  void queued(std::size_t bytes) { unsent_ += bytes; }
   /// They end with the question for the pan; that for the tilt follows.
-  void asked(MonotonicTime now) { looks_.push_back({now, written_}); }
+  void asked(MonotonicTime now);
+  /// The host writes all that is queued.
+  void wrote(MonotonicTime now);
 
   /// An answer of any kind is complete. @param begins  it is the pan of a pair.
   void answered(MonotonicTime now, bool begins);
@@ -57,6 +59,8 @@ class LineTimes {
   [[nodiscard]] std::chrono::nanoseconds on_line(std::size_t bytes) const;
 
   double bytes_per_second_ = 0;
+  std::size_t unsent_ = 0;                         // queued bytes
+  std::optional<std::size_t> unsent_question_;     // of these, up to the end of a question
   MonotonicTime written_{0};                       // when all bytes have left
   MonotonicTime answered_{0}, heard_after_{0};     // the last answer; the one before the pair
   std::deque<Look> looks_;                         // without an answer

@@ -17,31 +17,32 @@ constexpr std::size_t kMostRemarks = 10;  // logged per fault, since garbage may
 
 using Phase = Conversation::Phase;
 
-void Neck::set(MonotonicTime now, const NeckSettings& settings) {
+void Neck::set(const NeckSettings& settings) {
   conversation_.set_pace(settings.speed, settings.acceleration);
   conversation_.set_hold(settings.hold);
-  if (settings.device != settings_.device) use(now, settings.device, true);
-  set_baud(now, settings.baud);
+  if (settings.device != settings_.device) use(settings.device, true);
+  set_baud(settings.baud);
   settings_ = settings;
 }
 
-void Neck::use(MonotonicTime now, std::string_view device, bool stays) {
+void Neck::use(std::string_view device, bool stays) {
   if (device == device_) return;
-  if (serial_) close(now, {Code::Stopped, device.empty() ? "removed" : "closed"});
+  if (serial_) close({Code::Stopped, device.empty() ? "removed" : "closed"});
   device_ = device;
   stays_ = stays;
   backoff_.reset();
-  if (!device_.empty()) open(now);
+  if (!device_.empty()) open();
 }
 
-void Neck::set_baud(MonotonicTime now, int baud) {
+void Neck::set_baud(int baud) {
   if (std::exchange(baud_, baud) == baud || device_.empty()) return;
-  if (serial_) close(now, {Code::Stopped, "reopening"});
+  if (serial_) close({Code::Stopped, "reopening"});
   backoff_.reset();
-  open(now);
+  open();
 }
 
-void Neck::open(MonotonicTime now) {
+void Neck::open() {
+  const auto now = clock_.monotonic();
   auto opened = Serial::open(device_, baud_);
   if (!opened) {
     log_fault(opened.error());
@@ -52,15 +53,15 @@ void Neck::open(MonotonicTime now) {
   constexpr double kBits = 10;  // per byte on the line
   conversation_.set_line(baud_ / kBits);
   conversation_.begin(now);
-  work(now);
+  work();
 }
 
-void Neck::close(MonotonicTime now, const Error& why) {
+void Neck::close(const Error& why) {
   log_fault(why);
   serial_.reset();
   conversation_.end();
   if (why.code == Code::Closed && !stays_) device_.clear();
-  backoff_.fail(now);
+  backoff_.fail(clock_.monotonic());
 }
 
 void Neck::log_fault(const Error& error) {
@@ -75,35 +76,37 @@ void Neck::read(MonotonicTime now) {
   while (serial_) {
     auto bytes = serial_->read(room);
     if (!bytes) {
-      close(now, bytes.error());
+      close(bytes.error());
       break;
     }
     if (bytes->empty()) break;
     conversation_.take(now, *bytes);
-    work(now);
+    work();
   }
   if (const auto gaze = conversation_.gaze()) seen_(*gaze);
 }
 
 /// Executes the conversation's results.
-void Neck::work(MonotonicTime now) {
+void Neck::work() {
   if (auto fault = conversation_.fault()) log_fault(*fault);
   if (auto remark = conversation_.remark();
       !remark.empty() && remarks_.size() < kMostRemarks && remarks_.insert(remark).second)
     log_(Level::Warning, device_ + ": " + remark);
-  if (conversation_.phase() == Phase::Lost) return close(now, {Code::Stopped, "reopening"});
+  if (conversation_.phase() == Phase::Lost) return close({Code::Stopped, "reopening"});
   if (conversation_.phase() == Phase::Ready && well_since_ == MonotonicTime::max())
-    well_since_ = now;
-  if (const auto bytes = conversation_.bytes(); !bytes.empty() && serial_)
-    if (auto written = serial_->write(bytes); !written) close(now, written.error());
+    well_since_ = clock_.monotonic();
+  // The clock is read here, since this process may have waited since it was read before.
+  if (const auto bytes = conversation_.bytes(clock_.monotonic()); !bytes.empty() && serial_)
+    if (auto written = serial_->write(bytes); !written) close(written.error());
 }
 
-void Neck::pass(MonotonicTime now, const NeckSettings& settings) {
-  set(now, settings);
-  if (!serial_ && !device_.empty() && backoff_.is_due(now)) open(now);
+void Neck::pass(const NeckSettings& settings) {
+  set(settings);
+  if (!serial_ && !device_.empty() && backoff_.is_due(clock_.monotonic())) open();
+  const auto now = clock_.monotonic();
   read(now);  // first, since an answer that has arrived is not overdue
   conversation_.pass(now);
-  work(now);
+  work();
   if (conversation_.phase() != Phase::Ready) return;
   if (!was_ready_ || now - well_since_ >= kSettled) backoff_.reset();
   if (was_ready_ && (faults_.empty() || now - well_since_ < kSettled)) return;
@@ -113,12 +116,13 @@ void Neck::pass(MonotonicTime now, const NeckSettings& settings) {
   remarks_.clear();
 }
 
-void Neck::look(MonotonicTime now) {
-  conversation_.look(now);
-  work(now);
+void Neck::look() {
+  conversation_.look(clock_.monotonic());
+  work();
 }
 
-void Neck::command(MonotonicTime now, Time wall, const NeckCommand& command) {
+void Neck::command(Time wall, const NeckCommand& command) {
+  const auto now = clock_.monotonic();
   if (command.time == Time()) return problem_("without a time", "command dropped: no time");
   const double old = seconds(wall - command.time);
   if (std::abs(old) > settings_.age)
@@ -131,15 +135,15 @@ void Neck::command(MonotonicTime now, Time wall, const NeckCommand& command) {
                                command.source, *turn_.holder(now)));
   const bool is_taken = conversation_.command(now, command.pan, command.tilt,
                                               duration(settings_.age - std::max(old, 0.0)));
-  work(now);
+  work();
   if (!is_taken) problem_("no unit", "command dropped: pan-tilt unit not connected");
 }
 
-void Neck::set_focus(MonotonicTime now, std::int32_t mode) {
+void Neck::set_focus(std::int32_t mode) {
   if (std::exchange(focus_, mode) == mode) return;
   conversation_.forget();
-  if (mode == 0) conversation_.halt(now);
-  work(now);
+  if (mode == 0) conversation_.halt(clock_.monotonic());
+  work();
 }
 
 void Neck::leave() {

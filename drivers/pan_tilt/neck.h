@@ -43,49 +43,52 @@ class Neck {
   using Problem = std::function<void(const std::string& kind, std::string_view line)>;
   using Seen = std::function<void(const Gaze& gaze)>;
 
+  /// @param clock  the machine's, since a unit moves at its pace; must outlive it.
   /// @param log  called when the unit is connected, disconnected, or refuses a command.
   /// @param problem  called with the reason when a command is dropped.
   /// @param seen  called by read() and pass() with each measured gaze.
-  Neck(LogSink log, Problem problem, Seen seen)
-      : log_(std::move(log)), problem_(std::move(problem)), seen_(std::move(seen)) {}
+  Neck(const Clock& clock, LogSink log, Problem problem, Seen seen)
+      : clock_(clock), log_(std::move(log)), problem_(std::move(problem)), seen_(std::move(seen)) {}
   Neck(const Neck&) = delete;
   Neck& operator=(const Neck&) = delete;
   ~Neck() { leave(); }
 
   /// Sets the device to open, until that of the settings changes; "": none. Forgotten when
   /// unplugged, since the number of a pseudo-terminal may then belong to another.
-  void set_device(MonotonicTime now, std::string_view device) { use(now, device, false); }
+  void set_device(std::string_view device) { use(device, false); }
 
   /// For poll(); -1 while no line is open.
   [[nodiscard]] int descriptor() const { return serial_ ? serial_->descriptor() : -1; }
   /// Reads the bytes available.
-  void read(MonotonicTime now);
+  void read() { read(clock_.monotonic()); }
   /// Call every kTick: opens, reads, retries, halts; applies the settings.
-  void pass(MonotonicTime now, const NeckSettings& settings);
+  void pass(const NeckSettings& settings);
 
-  void look(MonotonicTime now);
+  void look();
   /// Turns the head. Drops, with a call of `problem`, commands without a time, more than the
   /// settings' `age` old or in the future, for a disconnected unit, and of a second source of the
   /// same mode until the first has been silent for kTurn.
   /// @param wall  now, on the clock of `command.time`.
-  void command(MonotonicTime now, Time wall, const NeckCommand& command);
+  void command(Time wall, const NeckCommand& command);
   /// Sets the mode in focus; call before command() and read(). A change drops a command not yet
   /// sent; mode 0 halts the motion.
-  void set_focus(MonotonicTime now, std::int32_t mode);
+  void set_focus(std::int32_t mode);
   /// Halts a commanded motion, and closes the line; so does the destructor.
   void leave();
 
  private:
-  void set(MonotonicTime now, const NeckSettings& settings);
-  void set_baud(MonotonicTime now, int baud);
+  void read(MonotonicTime now);
+  void set(const NeckSettings& settings);
+  void set_baud(int baud);
   /// @param stays  whether the name stays valid while the device is unplugged.
-  void use(MonotonicTime now, std::string_view device, bool stays);
-  void open(MonotonicTime now);
+  void use(std::string_view device, bool stays);
+  void open();
   /// @param why  Code::Closed if the device is disconnected.
-  void close(MonotonicTime now, const Error& why);
-  void work(MonotonicTime now);
+  void close(const Error& why);
+  void work();
   void log_fault(const Error& error);
 
+  const Clock& clock_;
   LogSink log_;
   Problem problem_;
   Seen seen_;

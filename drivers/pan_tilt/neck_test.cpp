@@ -16,16 +16,16 @@ using Phase = Conversation::Phase;
 class NeckTest : public ::testing::Test {
  protected:
   void run(milliseconds duration) {
-    for (const auto end = now_ + duration; now_ < end;) {
-      now_ += milliseconds(1);
+    for (const auto end = now() + duration; now() < end;) {
+      clock_.advance(milliseconds(1));
       if (terminal_) {
         const auto said =
-            unit_.take(std::chrono::duration<double>(now_).count(), terminal_->read());
+            unit_.take(std::chrono::duration<double>(now()).count(), terminal_->read());
         if (!is_silent_) terminal_->write(said);
       }
-      neck_.read(now_);
-      neck_.pass(now_, settings_);
-      if (now_.count() % 20'000'000 == 0) neck_.look(now_);
+      neck_.read();
+      neck_.pass(settings_);
+      if (now().count() % 20'000'000 == 0) neck_.look();
     }
   }
   void plug() { terminal_.emplace(); }
@@ -34,18 +34,21 @@ class NeckTest : public ::testing::Test {
     settings_.device = path();
     run(within);
   }
-  void command(double pan, double tilt) { neck_.command(now_, kWall, {pan, tilt, kWall}); }
+  void command(double pan, double tilt) { neck_.command(kWall, {pan, tilt, kWall}); }
   [[nodiscard]] std::string path() const { return terminal_->path(); }
 
   static constexpr Time kWall{std::chrono::seconds(1'700'000'000)};
-  MonotonicTime now_{milliseconds(1000)};
+  NeckTest() { clock_.advance(milliseconds(1000)); }
+  [[nodiscard]] MonotonicTime now() const { return clock_.monotonic(); }
+
+  ManualClock clock_;
   std::optional<PseudoTerminal> terminal_;
   Unit unit_;
   bool is_silent_ = false;
   NeckSettings settings_;
   std::vector<std::string> log_, problems_;
   std::vector<Gaze> seen_;
-  Neck neck_{[this](Level, std::string_view line) { log_.emplace_back(line); },
+  Neck neck_{clock_, [this](Level, std::string_view line) { log_.emplace_back(line); },
              [this](const std::string& kind, std::string_view line) {
                problems_.push_back(kind + ": " + std::string(line));
              },
@@ -75,7 +78,7 @@ TEST_F(NeckTest, logs_once_that_there_is_no_device_and_retries) {
 
 TEST_F(NeckTest, a_name_that_does_not_stay_is_to_be_set_again) {
   plug();
-  neck_.set_device(now_, path());
+  neck_.set_device(path());
   run(milliseconds(100));
   const std::string old = path();
   terminal_.reset();
@@ -84,7 +87,7 @@ TEST_F(NeckTest, a_name_that_does_not_stay_is_to_be_set_again) {
   plug();  // it may get the same number
   run(milliseconds(5000));
   EXPECT_EQ(neck_.descriptor(), -1);
-  neck_.set_device(now_, path());
+  neck_.set_device(path());
   run(milliseconds(1500));
   ASSERT_EQ(log_.size(), 3U);
   EXPECT_EQ(log_[1], old + ": disconnected");
@@ -95,7 +98,7 @@ TEST_F(NeckTest, a_device_that_was_set_counts_until_the_setting_changes) {
   settings_.device = "/no/such/device";
   run(milliseconds(100));
   plug();
-  neck_.set_device(now_, path());
+  neck_.set_device(path());
   run(milliseconds(100));
   EXPECT_GE(neck_.descriptor(), 0);
   settings_.device = "";
@@ -106,15 +109,15 @@ TEST_F(NeckTest, a_device_that_was_set_counts_until_the_setting_changes) {
 
 TEST_F(NeckTest, drops_commands_that_are_too_old_or_cannot_be_obeyed) {
   begin();
-  neck_.command(now_, kWall, {0.5, 0, {}});
-  neck_.command(now_, kWall, {0.5, 0, kWall - milliseconds(201)});
-  neck_.command(now_, kWall, {0.5, 0, kWall + milliseconds(300)});
+  neck_.command(kWall, {0.5, 0, {}});
+  neck_.command(kWall, {0.5, 0, kWall - milliseconds(201)});
+  neck_.command(kWall, {0.5, 0, kWall + milliseconds(300)});
   run(milliseconds(1000));
   EXPECT_EQ(unit_.pan(9), 0);
-  neck_.command(now_, kWall, {0.5, 0, kWall - milliseconds(199)});
+  neck_.command(kWall, {0.5, 0, kWall - milliseconds(199)});
   run(milliseconds(1000));
   EXPECT_NEAR(unit_.pan(9), 557, 0.5);
-  neck_.command(now_, kWall, {0, 0, kWall + milliseconds(199)});
+  neck_.command(kWall, {0, 0, kWall + milliseconds(199)});
   run(milliseconds(1000));
   EXPECT_NEAR(unit_.pan(9), 0, 0.5);
   neck_.leave();
@@ -129,7 +132,7 @@ TEST_F(NeckTest, drops_commands_that_are_too_old_or_cannot_be_obeyed) {
 TEST_F(NeckTest, obeys_one_source_of_a_mode_at_a_time_and_another_mode_at_once) {
   begin();
   auto say = [&](std::int32_t mode, std::int32_t source, double pan) {
-    neck_.command(now_, kWall, {pan, 0, kWall, mode, source});
+    neck_.command(kWall, {pan, 0, kWall, mode, source});
     run(milliseconds(20));
   };
   for (int i = 0; i < 50; ++i) {  // two contradicting sources
@@ -149,19 +152,19 @@ TEST_F(NeckTest, obeys_one_source_of_a_mode_at_a_time_and_another_mode_at_once) 
 TEST_F(NeckTest, halts_when_nobody_has_the_focus_and_obeys_again) {
   settings_.hold = milliseconds(0);
   begin();
-  neck_.set_focus(now_, 7);
+  neck_.set_focus(7);
   command(2, 0);
   run(milliseconds(100));
   command(1, 0);
   command(0.5, 0);  // waits for the answer to the one before
-  neck_.set_focus(now_, 0);
+  neck_.set_focus(0);
   run(milliseconds(1000));
   const double pan = unit_.pan(9);
   EXPECT_GT(pan, 10);
   EXPECT_LT(pan, 400);
   EXPECT_EQ(unit_.pan(10), pan);
   run(milliseconds(1000));
-  neck_.set_focus(now_, 7);
+  neck_.set_focus(7);
   command(2, 0);
   run(milliseconds(3000));
   EXPECT_NEAR(unit_.pan(9), 2228, 1);
@@ -170,10 +173,9 @@ TEST_F(NeckTest, halts_when_nobody_has_the_focus_and_obeys_again) {
 TEST_F(NeckTest, a_command_that_has_waited_lives_for_the_rest_of_its_age) {
   begin();
   command(1, 0);
-  neck_.command(now_, kWall,
-                {0.5, 0, kWall - milliseconds(150)});  // waits for the first one's answer
-  now_ += milliseconds(60);
-  neck_.pass(now_, settings_);
+  neck_.command(kWall, {0.5, 0, kWall - milliseconds(150)});  // waits for the first one's answer
+  clock_.advance(milliseconds(60));
+  neck_.pass(settings_);
   run(milliseconds(1000));
   EXPECT_NEAR(unit_.pan(9), 1114, 0.5);
 }
@@ -194,10 +196,10 @@ TEST_F(NeckTest, a_silent_unit_is_logged_once_and_so_is_its_return) {
 TEST_F(NeckTest, an_answer_that_came_while_nothing_was_read_is_no_silence) {
   begin(milliseconds(1500));
   log_.clear();
-  neck_.look(now_);
+  neck_.look();
   terminal_->write(unit_.take(2.6, terminal_->read()));
-  now_ += milliseconds(1000);  // the process was stopped meanwhile
-  neck_.pass(now_, settings_);
+  clock_.advance(milliseconds(1000));  // the process was stopped meanwhile
+  neck_.pass(settings_);
   run(milliseconds(1000));
   EXPECT_TRUE(log_.empty()) << log_[0];
 }

@@ -45,10 +45,9 @@ class PanTilt {
   void read();
   void turn(const hc::MessageOf<hc::RotationKind<double>>& message);
   void send(const hc::pan_tilt::Gaze& seen);
-  /// The machine's clock, since a unit moves at its pace.
-  static hc::MonotonicTime now() { return hc::SystemClock().monotonic(); }
 
   hc::Module& module_;
+  const hc::SystemClock clock_;
   hc::Input<hc::RotationKind<double>> command_ =
       module_.input("command", hc::rotation().of(1, 1).in(hc::Coord::kGaze).finite(),
                     "roll (ignored), tilt, pan to take [rad]; the newest is used, of one source of "
@@ -63,7 +62,7 @@ class PanTilt {
       "T_robot_head at the same time");
   const PanTiltParameters parameters_{module_};
   hc::pan_tilt::Neck neck_{
-      [this](hc::Level level, std::string_view line) { module_.log(line, level); },
+      clock_, [this](hc::Level level, std::string_view line) { module_.log(line, level); },
       [this](const auto&... problem) { module_.log_once(problem...); },
       [this](const hc::pan_tilt::Gaze& seen) { send(seen); }};
 };

@@ -28,6 +28,7 @@ constexpr hc::Time kWall{std::chrono::seconds(1'700'000'000)};
 class NeckAtLine {
  public:
   NeckAtLine() {
+    clock_.advance(milliseconds(1000));
     settings_.device = terminal_.path();
     settings_.hold = milliseconds(150);
     rest();
@@ -36,14 +37,14 @@ class NeckAtLine {
   /// Time passes. @param focus  as the module has it. @param answers  the unit does.
   /// @returns  the mode of what was commanded on the line meanwhile; 0: nothing.
   std::int32_t step(milliseconds time, std::int32_t focus, bool answers) {
-    now += time;
-    neck_.set_focus(now, focus);
-    neck_.read(now);
-    neck_.pass(now, settings_);
+    clock_.advance(time);
+    neck_.set_focus(focus);
+    neck_.read();
+    neck_.pass(settings_);
     const auto said = terminal_.read();
-    answer_ += unit_.take(hc::seconds(now), said);
+    answer_ += unit_.take(hc::seconds(now()), said);
     if (answers) terminal_.write(std::exchange(answer_, {}));
-    if (said.find("h ") != std::string::npos) halted_ = now;
+    if (said.find("h ") != std::string::npos) halted_ = now();
     return mode_of(said);
   }
   /// A second passes, in which nobody has the focus.
@@ -55,13 +56,14 @@ class NeckAtLine {
   bool command(std::int32_t mode, std::int32_t source) {
     const auto before = dropped;
     const double pan = 0.5 * mode + 0.001 * (++number_ % 200);
-    neck_.command(now, kWall, {pan, 0, kWall, mode, source});
+    neck_.command(kWall, {pan, 0, kWall, mode, source});
     return dropped == before;
   }
   /// When it was halted on the line.
   [[nodiscard]] hc::MonotonicTime halted() const { return halted_; }
 
-  hc::MonotonicTime now{milliseconds(1000)};
+  [[nodiscard]] hc::MonotonicTime now() const { return clock_.monotonic(); }
+
   int dropped = 0;
 
  private:
@@ -77,7 +79,8 @@ class NeckAtLine {
   hc::pan_tilt::Unit unit_;
   hc::pan_tilt::NeckSettings settings_;
   std::string answer_;
-  Neck neck_{[](hc::Level, std::string_view) {}, [this](const auto&...) { ++dropped; },
+  hc::ManualClock clock_;
+  Neck neck_{clock_, [](hc::Level, std::string_view) {}, [this](const auto&...) { ++dropped; },
              [](const auto&) {}};
   hc::MonotonicTime halted_{};
   int number_ = 0;
@@ -93,9 +96,9 @@ class Sequence {
     int commanded = 0;
     for (int ms = 0; ms < 300; ms += 2) {
       if (pick(0, 4) == 0) say();
-      if (pick(0, 99) == 0) frozen_until_ = neck_.now + milliseconds(pick(0, 250));
-      if (ms % 10 == 0 && neck_.now >= frozen_until_) decide();
-      focus_.expire(neck_.now);
+      if (pick(0, 99) == 0) frozen_until_ = neck_.now() + milliseconds(pick(0, 250));
+      if (ms % 10 == 0 && neck_.now() >= frozen_until_) decide();
+      focus_.expire(neck_.now());
       if (pick(0, 2) == 0) command();
       if (pick(0, 29) == 0) answers_ = !answers_;
       const auto mode = neck_.step(milliseconds(2), focus_.current, answers_);
@@ -113,7 +116,7 @@ class Sequence {
   void say() {
     const Bidder who{pick(1, kTasks), pick(1, kSenders)};
     const double salience = pick(0, 4) == 0 ? 0 : 0.1 * pick(1, 10);
-    const auto now = neck_.now;
+    const auto now = neck_.now();
     if (const int what = pick(0, 19); what < 12) {
       EXPECT_TRUE(workspace_.bid(who, salience, now, now));
     } else if (what < 17) {
@@ -125,9 +128,9 @@ class Sequence {
     }
   }
   void decide() {
-    workspace_.decide(neck_.now);
+    workspace_.decide(neck_.now());
     focus_.current = workspace_.focus();
-    focus_.received = neck_.now;
+    focus_.received = neck_.now();
   }
   /// Of any mode and source, whoever has the focus. Another source of the same mode is obeyed only
   /// after a silence, or when the mode has changed.
@@ -135,10 +138,10 @@ class Sequence {
     const Bidder who{pick(1, kTasks), pick(1, kSenders)};
     if (!focus_.admits(true, who.mode) || !neck_.command(who.mode, who.source)) return;
     if (who.mode == obeyed_.mode && who.source != obeyed_.source) {
-      EXPECT_GE(neck_.now - obeyed_at_, Neck::kTurn);
+      EXPECT_GE(neck_.now() - obeyed_at_, Neck::kTurn);
     }
     obeyed_ = who;
-    obeyed_at_ = neck_.now;
+    obeyed_at_ = neck_.now();
   }
 
   std::minstd_rand random_;
@@ -167,13 +170,13 @@ TEST(Line, the_neck_halts_within_a_fifth_of_a_second_of_the_last_focus) {
   NeckAtLine neck;
   hc::internal::Focus focus;
   focus.current = 1;
-  focus.received = neck.now;
-  const auto last = neck.now;
+  focus.received = neck.now();
+  const auto last = neck.now();
   hc::MonotonicTime commanded{};
   for (int ms = 0; ms < 400; ++ms) {  // whoever commands does not know
-    focus.expire(neck.now);
+    focus.expire(neck.now());
     if (focus.admits(true, 1)) neck.command(1, 1);
-    if (neck.step(milliseconds(1), focus.current, true) != 0) commanded = neck.now;
+    if (neck.step(milliseconds(1), focus.current, true) != 0) commanded = neck.now();
   }
   EXPECT_GT(neck.halted(), commanded);
   EXPECT_LE(neck.halted() - last, milliseconds(130));
