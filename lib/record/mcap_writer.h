@@ -67,6 +67,7 @@ class McapWriter {
   [[nodiscard]] const std::string& file() const { return file_; }
   // After close().
   [[nodiscard]] std::vector<std::string> files() const { return storage_.files(); }
+  [[nodiscard]] std::uint64_t stored() const { return storage_.messages(); }
   /// Messages of MTP accepted but not written.
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
 

@@ -282,6 +282,8 @@ const Written& Writer::close() {
   }
   std::erase_if(written_.files, is_missing);
   written_.messages -= written_.lost;
+  if (mcap_ != nullptr)
+    written_.discarded = written_.messages - std::min(written_.messages, mcap_->stored());
   return written_;
 }
 

@@ -51,6 +51,7 @@ struct Written {
   std::uint64_t messages = 0;      ///< written
   std::uint64_t bytes = 0;         ///< of the elements of all messages passed
   std::uint64_t lost = 0;          ///< messages passed but not written
+  std::uint64_t discarded = 0;     ///< by `keep`, or by `last` and not saved; part of `messages`
   Status status;                   ///< the error that ended the recording
 };
 

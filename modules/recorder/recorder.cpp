@@ -118,10 +118,12 @@ void StreamRecorder::end() {
   const auto& written = recording_->close();
   if (!is_removed_) fail_once(written.status);
   if (written.files.empty()) return module_.log("nothing saved", hc::Level::Result);
-  std::string text = hc::format("{} message{} in {}", written.messages,
-                                written.messages == 1 ? "" : "s", written.place);
-  if (written.files.size() > 1 && parameters_.folder->empty())
-    text += hc::format(", in {} files", written.files.size());
+  const bool is_folder = !parameters_.folder->empty();
+  const auto count = written.messages - written.discarded;
+  std::string text = hc::format("{} message{} in {}", count, count == 1 ? "" : "s",
+                                is_folder ? written.place : written.files.front());
+  if (written.files.size() > 1 && !is_folder) text += hc::format(" to {}", written.files.back());
+  if (written.discarded > 0) text += hc::format(", {} others not kept", written.discarded);
   if (written.lost > 0) text += hc::format(", {} not recorded", written.lost);
   module_.log(text, hc::Level::Result);
 }

@@ -105,6 +105,19 @@ class Recorder(Recordings):
         self.assertTrue(seqs)
         self.assertEqual(seqs, list(range(len(seqs))))
 
+    def test_messages_that_are_not_kept_are_not_counted_as_recorded(self):
+        self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 0))
+        runner = self.start("exec hc run g.toml --as one --record x.mcap --last 0.5 2>log")
+        wait_until(lambda: self.recorders() and self.sent(runner, "one") > 150)
+        for pid in self.recorders():
+            os.kill(pid, signal.SIGUSR1)
+        wait_until(lambda: os.path.exists(self.path("x_0001.mcap")))
+        runner.send_signal(signal.SIGTERM)
+        out = runner.communicate(timeout=WATCHDOG)[0].decode()
+        said = re.search(r"recorder: (\d+) messages in x_0001.mcap, (\d+) others not kept", out)
+        self.assertTrue(said, out)
+        self.assertEqual(int(said[1]), len(self.seqs("x_0001.mcap")))
+
     def test_a_place_that_cannot_be_recorded_to_is_tried_once(self):
         self.write("g.toml", GRAPH % (self.environment["HC_DATA"], 3))
         self.shell("mkdir folder.mcap; touch plain")

@@ -34,6 +34,7 @@ Chunk ChunkBuilder::pack() const {
     chunk.begin = std::min(chunk.begin, first.first);
     chunk.end = std::max(chunk.end, last.first);
   }
+  chunk.messages = messages;
   chunk.plain = plain.size();
   chunk.compressed = stored.size();
   chunk.compression = helps ? "zstd" : "";

@@ -30,6 +30,7 @@ struct Chunk {
   std::uint64_t length = 0;                 ///< of the chunk's record [byte]
   std::uint64_t begin = 0, end = 0;         ///< first and last log time
   std::uint64_t compressed = 0, plain = 0;  ///< size of the messages [byte]
+  std::uint64_t messages = 0;               ///< as ChunkBuilder::messages
   std::string_view compression;             ///< "zstd", or empty
   std::map<std::uint16_t, Index> indexes;   ///< by channel
 };

@@ -95,10 +95,22 @@ std::vector<std::string> Storage::files() const {
   return files;
 }
 
+std::uint64_t Storage::messages() const {
+  std::uint64_t all = 0;
+  for (const auto& each : done_) all += each.messages;
+  return all;
+}
+
+Status Storage::write(const Chunk& chunk) {
+  auto added = file_->add(chunk);
+  if (added) in_file_ += chunk.messages;
+  return added;
+}
+
 Status Storage::end_file() {
   if (!file_) return {};
   auto closed = file_->close();
-  done_.push_back({file_->path(), file_->size()});
+  done_.push_back({file_->path(), file_->size(), std::exchange(in_file_, 0)});
   file_.reset();
   return closed;
 }
@@ -153,7 +165,7 @@ Status Storage::add(Chunk chunk) {
     if (options_.keep > 0) remove_old();
     if (auto begun = begin_file(chunk.begin); !begun) return begun;
   }
-  if (file_) return file_->add(chunk);
+  if (file_) return write(chunk);
   constexpr std::uint64_t kMost = std::uint64_t{1} << 30;  // [byte]
   const auto last = static_cast<std::uint64_t>(options_.last.count()), now = chunk.end;
   in_memory_ += chunk.bytes.size();
@@ -169,7 +181,7 @@ Result<std::string> Storage::save() {
   auto done = begin_file(memory_.empty() ? 0 : memory_.front().begin);
   const std::string name = file_ ? file_->path() : "";
   for (const auto& chunk : memory_)
-    if (done) done = file_->add(chunk);
+    if (done) done = write(chunk);
   if (auto ended = end_file(); done) done = ended;
   if (!done) return done.error();
   return name;

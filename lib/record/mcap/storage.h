@@ -62,8 +62,10 @@ class Storage {
   Result<std::string> save();
   Status close();
 
-  /// The files written and not removed, after close().
+  // After close(), of the files written and not removed:
   [[nodiscard]] std::vector<std::string> files() const;
+  /// Their messages of MTP; with `last`, files may have some in common.
+  [[nodiscard]] std::uint64_t messages() const;
   /// The file being written; with `split` or `last`, the name without number.
   [[nodiscard]] const std::string& file() const { return name_; }
 
@@ -74,6 +76,7 @@ class Storage {
   /// @param time  of lasting messages. [ns since the Unix epoch]
   Status begin_file(std::uint64_t time);
   Status end_file();
+  Status write(const Chunk& chunk);
   Status write(const Repeated& record, std::uint64_t time);
   /// Drops lasting messages beyond kMostLasting.
   void limit_lasting();
@@ -81,13 +84,14 @@ class Storage {
 
   struct Done {
     std::string path;
-    std::uint64_t size = 0;
+    std::uint64_t size = 0, messages = 0;
   };
 
   std::string name_;
   StorageOptions options_;
   std::list<Repeated> repeated_;
   std::optional<File> file_;
+  std::uint64_t in_file_ = 0;  // messages
   std::deque<Done> done_;
   std::deque<Chunk> memory_;
   std::uint64_t in_memory_ = 0;  // [byte]
