@@ -41,12 +41,14 @@ void Augment::read_parameters() {
   const auto& given = parameters_;
   if (objects_read_ != *given.objects) {
     scene_.reset();  // releases its OpenGL context before the next is made current
-    scene_ = hc::value_or_end(Scene::make(*(objects_read_ = *given.objects)));
+    scene_ = hc::value_or_refuse(given.objects, Scene::make(*(objects_read_ = *given.objects)));
   }
   if (shown_read_ != *given.instruments)
-    panel_.shown = hc::value_or_end(read_instruments(*(shown_read_ = *given.instruments)));
+    panel_.shown = hc::value_or_refuse(given.instruments,
+                                       read_instruments(*(shown_read_ = *given.instruments)));
   if (modes_read_ != *given.modes)
-    panel_.modes = hc::value_or_end(hc::parse_mode_names(*(modes_read_ = *given.modes)));
+    panel_.modes =
+        hc::value_or_refuse(given.modes, hc::parse_mode_names(*(modes_read_ = *given.modes)));
   panel_.cursor_x = *given.cursor_x;
   panel_.cursor_y = *given.cursor_y;
 }

@@ -12,6 +12,7 @@ from harness import wait_until
 # or in a place that cannot be.
 REFUSED = (
     ("augment", "--objects=x", "objects"),
+    ("augment", "--objects='broken.gltf at world 0 0 0 size 1'", "objects"),
     ("augment", "--instruments=x", "instruments"),
     ("calibrate", "--calibration_file=broken", "calibration_file"),
     ("camera", "none.jpg", "none.jpg"),
@@ -53,7 +54,7 @@ REFUSED = (
 class Parameters(Graphs):
     def setUp(self):
         super().setUp()
-        for name in ("plain", "broken", "broken.avi"):
+        for name in ("plain", "broken", "broken.avi", "broken.gltf"):
             self.write(name, "no such thing\n")
 
     def test_what_cannot_be_used_is_invalid(self):
