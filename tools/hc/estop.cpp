@@ -130,7 +130,9 @@ void add_estop(CLI::App& app) {
     if (!clears && options->of.empty()) return stop_all();
     const auto graph = choose_running(options->of);
     if (!estop(graph, clears))
-      throw Failure(hc::Code::NotFound, graph.text() + " has no workspace, so nothing to stop");
+      throw Failure(
+          hc::Code::NotFound,
+          graph.text() + " has no workspace (table [workspace] in its file), so nothing to stop");
   });
 }
 

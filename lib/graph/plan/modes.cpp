@@ -150,12 +150,28 @@ void plan_modes(Planning& planning) {
   Modes(planning).run();
 }
 
+namespace {
+
+/// Warns of modules that decide on the focus, while the file says of none that it does.
+void warn_of_undeclared(Planning& planning) {
+  for (const auto& module : planning.graph.modules)
+    if (const auto* described = planning.description_of(module.name);
+        described != nullptr && find_named(described->inputs, "bids") != nullptr &&
+        find_named(described->outputs, kFocus) != nullptr)
+      planning.problems.warn(module.place, "module " + module.name +
+                                               " takes bids, but no task gets the focus from it: "
+                                               "add [workspace] with module = \"" +
+                                               module.name + "\"");
+}
+
+}  // namespace
+
 /// A mode gets the focus only if its task's bids reach a workspace, possibly through routers. Not
 /// checked for a running graph, whose links may be added later.
 void check_bids(Planning& planning) {
   const Graph& graph = planning.graph;
   if (planning.before != nullptr || !planning.problems.empty()) return;
-  if (planning.plan.workspaces.empty()) return;
+  if (planning.plan.workspaces.empty()) return warn_of_undeclared(planning);
   Edges back;  // the name outside the graph is empty
   for (const auto& link : graph.links)
     if (planning.plan.workspaces.contains(link.to.module) || planning.is_router(link.to.module))

@@ -86,6 +86,13 @@ TEST(Modes, TheFocusIsLinkedToWhoFollowsIt) {
   EXPECT_EQ(own.links.size(), 6U);
 }
 
+TEST(Modes, AWorkspaceThatIsNotDeclaredIsWarnedOf) {
+  const auto planned = must(plan("[modules.judge]\nprogram = \"workspace\"\n"));
+  EXPECT_EQ(planned.warnings,
+            Strings{"g.toml:2: module judge takes bids, but no task gets the focus from it: add "
+                    "[workspace] with module = \"judge\""});
+}
+
 TEST(Modes, ABidderWithoutAModeIsWarnedOf) {
   EXPECT_TRUE(must(plan(kModes + kBid)).warnings.empty());
   const auto other = "[modules.other]\nprogram = \"task\"\n";
