@@ -160,15 +160,19 @@ Result<cv::Mat> read_texture(const aiScene& scene, const char* name, const fs::p
   return image;
 }
 
-/// @param is_linear  its plain colour is linear, as those of glTF.
-Result<cv::Mat> texture_of(const aiScene& scene, const aiMaterial& material, const fs::path& folder,
+/// @param is_linear  plain colours are linear, as those of glTF.
+Result<cv::Mat> texture_of(const aiScene& scene, const aiMesh& mesh, const fs::path& folder,
                            bool is_linear) {
+  const aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
   aiString name;
   if (material.GetTexture(aiTextureType_DIFFUSE, 0, &name) == AI_SUCCESS) {
     cv::Mat image = HC_TRY(read_texture(scene, name.C_Str(), folder));
     cv::cvtColor(image, image, cv::COLOR_BGR2RGB);
     return image;
   }
+  // The grey of a material that the file does not have would darken the colours of vertices.
+  const bool has_default = material.GetName() == aiString(AI_DEFAULT_MATERIAL_NAME);
+  if (has_default && mesh.HasVertexColors(0)) return cv::Mat(1, 1, CV_8UC3, cv::Scalar::all(255));
   aiColor3D colour(0.8F, 0.8F, 0.8F);
   const bool is_given = material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == AI_SUCCESS;
   const Eigen::Vector3f rgb = 255 * colour_of(colour.r, colour.g, colour.b, is_given && is_linear);
@@ -183,7 +187,7 @@ Result<std::vector<Part>> read_model(const std::string& path) {
   const std::string ending = ending_of(path);
   if (std::ranges::find(kFormats, ending) == kFormats.end())
     return Error{Code::Unsupported, path + ": not a model (.obj, .stl, .gltf or .glb)"};
-  const bool is_linear = ending == ".gltf" || ending == ".glb";
+  const bool is_gltf = ending == ".gltf" || ending == ".glb";
   // Many programs write zeros for the normals of an .stl.
   const unsigned normals = ending == ".stl" ? aiProcess_ForceGenNormals | aiProcess_GenNormals
                                             : unsigned{aiProcess_GenSmoothNormals};
@@ -201,9 +205,8 @@ Result<std::vector<Part>> read_model(const std::string& path) {
     vertices += mesh.mNumVertices;
     if (vertices > kMostVertices)
       return Error{Code::Malformed, path + ": has more than 10 million corners"};
-    auto texture = HC_TRY(texture_of(*scene, *scene->mMaterials[mesh.mMaterialIndex],
-                                     fs::path(path).parent_path(), is_linear));
-    parts.push_back({mesh_of(mesh, is_linear), texture});
+    auto texture = HC_TRY(texture_of(*scene, mesh, fs::path(path).parent_path(), is_gltf));
+    parts.push_back({mesh_of(mesh, is_gltf), texture});
   }
   if (parts.empty()) return Error{Code::Malformed, path + ": has no triangle"};
   return parts;

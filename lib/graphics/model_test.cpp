@@ -108,6 +108,7 @@ TEST_F(Models, vertices_have_colours) {
       read_model(write("rgb.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 0.5\nf 1 2 3\n"));
   ASSERT_TRUE(parts) << parts.error().text();
   EXPECT_EQ(parts->front().mesh.vertices.at(2).colour, Eigen::Vector3f(0, 0, 0.5));
+  EXPECT_EQ(parts->front().texture.at<cv::Vec3b>(0, 0), cv::Vec3b(255, 255, 255));
 }
 
 /// A glTF of one triangle, whose positions are little-endian floats.

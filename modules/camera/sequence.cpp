@@ -160,9 +160,11 @@ bool is_image(const std::string& path) {
 
 Paths images_in(const std::string& folder) {
   Paths paths;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if ((entry.is_regular_file() || !entry.exists()) && is_image(entry.path().string()))
-      paths.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const bool is_hidden = entry.path().filename().string().starts_with('.');
+    const bool may_be_file = entry.is_regular_file() || !entry.exists();
+    if (!is_hidden && may_be_file && is_image(entry.path().string())) paths.push_back(entry.path());
+  }
   if (paths.empty()) refuse(folder, "no images in this folder");
   std::ranges::sort(paths, hc::natural_less, [](const fs::path& path) { return path.string(); });
   return paths;

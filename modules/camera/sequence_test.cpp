@@ -73,6 +73,7 @@ TEST(ImageSequence, no_image_is_skipped) {
   std::filesystem::create_directory(folder);
   cv::imwrite((folder / "1.png").string(), cv::Mat(2, 2, CV_8UC3, cv::Scalar::all(9)));
   std::ofstream(folder / "notes.txt") << "not an image";
+  std::ofstream(folder / ".2.png") << "hidden, as of a file manager";
   const auto refusal = [](const std::string& name) -> std::string {
     try {
       const auto sequence = open_sequence(name, {});

@@ -77,6 +77,7 @@ void Speak::send(const Speech& speech, const WaitingText& text) {
   ++said_;
   last_ = utf8(text.characters);
   last_.erase(last_.find_last_not_of(' ') + 1);
+  last_.erase(0, last_.find_first_not_of(' '));
   words_.send({std::move(table)});  // first, since sending the sound may block while it plays
   sound_.send(std::move(draft));
 }

@@ -150,6 +150,8 @@ class Tracing(Graphs):
             )
             self.assertGreaterEqual(path["age"][0], 0.3)
         self.assertRegex(self.shell("hc cat kept/last.trace.mtp"), "took in [0-9]+ [0-9]+ [0-9]+ ")
+        self.shell("hc trace kept/last.trace.mtp", 2)
+        self.assertIn("kept/last.trace.mtp is not the recording of a graph", self.err)
         self.shell("hc trace nosuch.in --recording kept", 1)
         self.assertIn("nosuch sends no trace", self.err)
         self.shell("mkdir empty; hc trace last.in --recording empty", 1)

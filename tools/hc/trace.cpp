@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <set>
 
 #include <hc/base/clock.h>
@@ -250,6 +251,9 @@ void take_words(std::vector<std::string> words, TraceOptions& options) {
   if (words.size() == 2 || kind == Kind::Mcap || kind == Kind::Folder) {
     options.recording = words.front();
     words.erase(words.begin());
+  } else if (kind == Kind::File && std::filesystem::is_regular_file(words.front())) {
+    throw Failure(hc::Code::Invalid,
+                  words.front() + " is not the recording of a graph, a folder or FILE.mcap");
   }
   if (!words.empty()) options.port = words.front();
 }
