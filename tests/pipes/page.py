@@ -4,6 +4,7 @@
 import re
 
 from graphs import GRAPH, Graphs
+from harness import wait_until
 from web_socket import BINARY, WebSocket, get
 
 TASKS = (
@@ -99,6 +100,11 @@ class Page(Graphs):
             text = "\n".join(rows)
             if said == src and condition(text):
                 return text
+
+    def order(self, graph, text):
+        """Stops the robot or clears that, until the workspace has confirmed it, which a busy machine
+        delays."""
+        wait_until(lambda: self.command(graph, text) == ["ok"])
 
     def command(self, graph, text):
         """The rows of an answer."""
