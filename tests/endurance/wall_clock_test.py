@@ -3,7 +3,6 @@
 """The wall clock is put forward, back and to 1970: it stamps messages, and steers nothing."""
 
 import os
-import pathlib
 import socket
 import time
 import unittest
@@ -35,9 +34,7 @@ class WallClock(Endurance):
         self.step(0)
 
     def step(self, seconds):
-        path = pathlib.Path(self.path("clock"))
-        path.with_suffix(".new").write_text(str(seconds))
-        path.with_suffix(".new").rename(path)
+        self.write("clock", str(seconds))
 
     @staticmethod
     def steps():
@@ -117,7 +114,7 @@ class WallClock(Endurance):
         count, apart = (100 if IS_FULL else 10), 0.1
         row = "1 1 0 %d 8 %d 60101 0 0 1 1\nx\n"
         text = "".join(row % (i, 10**18 + i * apart * 1e9) for i in range(count))
-        pathlib.Path(self.path("in.mtp")).write_text(text)
+        self.write("in.mtp", text)
         process = self.start("exec hc play in.mtp")
         steps, late, begun = list(self.steps()), [], 0
         for number in range(count):

@@ -145,10 +145,12 @@ class Pipes(unittest.TestCase):
         return os.path.join(self.folder.name, name)
 
     def write(self, name, data, mode=0o644):
-        """Makes a file of text or bytes."""
+        """Makes a file of text or bytes, or replaces it: who reads it never finds half of it."""
         path = pathlib.Path(self.path(name))
-        path.write_bytes(data if isinstance(data, bytes) else data.encode())
-        path.chmod(mode)
+        new = path.with_name(path.name + ".new")
+        new.write_bytes(data if isinstance(data, bytes) else data.encode())
+        new.chmod(mode)
+        new.rename(path)
 
     def read(self, name):
         """The text of a file so far; "" before it is there."""
