@@ -7,6 +7,7 @@
 #include <hc/mtp/coords.h>
 #include <ros/cdr.h>
 #include <ros/messages.h>
+#include <ros/type_for.h>
 
 namespace hc::record {
 namespace {

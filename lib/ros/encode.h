@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Converts MTP messages to messages of ROS 2: their types, and their bytes in CDR. Pure.
+// Converts MTP messages to messages of ROS 2 in CDR. Pure.
 //
 //     ros::Encoder encoder;
 //     ros::Type type = *ros::type_for(port);        // fixed, like the schema of a topic
@@ -9,45 +9,17 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <hc/contract/description.h>
 #include <hc/contract/log_line.h>
-#include <hc/contract/port_type.h>
 #include <hc/mtp/message.h>
 #include <ros/messages.h>
 #include <ros/schema.h>
 
 namespace hc::ros {
-
-/// The ROS type for messages of a port's type, valid for every shape it allows; nullopt for
-/// encoding zstd, which must be expanded first.
-///
-/// | MTP | ROS |
-/// |---|---|
-/// | jpeg | CompressedImage |
-/// | rgb_image, intensity_image; not of u32, u64, i64 | Image |
-/// | position, 1 × 1 of 3 components | PoseStamped without a rotation |
-/// | other position; vector_field of 3 or 6 floats in a metric frame | PointCloud2 |
-/// | rotation, coord gaze | JointState: roll, tilt, pan |
-/// | rotation, 1 × 1 or any shape | PoseStamped at the origin |
-/// | transformation, 4 × 4 | PoseStamped, in its target frame |
-/// | string | String |
-/// | sound | RawAudio, pcm-s16 |
-/// | table of 5 × 1 f64, coord left_rectified | CameraInfo (R45) |
-/// | anything else | Float64MultiArray, or that of its scalar |
-///
-/// Twist, TfMessage and Log are never chosen.
-std::optional<Type> type_for(const PortType& port);
-/// The ROS type for an output, expanded if compressed; nullopt for an output of any type.
-/// @param jpeg  images of u8 become CompressedImage.
-std::optional<Type> type_for(const PortDescription& output, bool jpeg = false);
-/// The ROS type for a single message.
-std::optional<Type> type_for(const Header& header);
 
 /// A joint of the frames of a graph at a time: T_parent_child.
 struct Joint {

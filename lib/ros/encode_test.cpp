@@ -9,6 +9,7 @@
 #include <hc/mtp/matrix_view.h>
 #include <ros/cdr_test.h>
 #include <ros/encode.h>
+#include <ros/type_for.h>
 
 namespace hc::ros {
 namespace {

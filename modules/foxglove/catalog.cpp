@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include <ros/encode.h>
+#include <ros/type_for.h>
 
 namespace {
 

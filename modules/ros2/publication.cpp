@@ -6,6 +6,7 @@
 #include <client/graph_client.h>
 #include <hc/base/clock.h>
 #include <hc/contract/description.h>
+#include <ros/type_for.h>
 
 #include "names.h"
 
