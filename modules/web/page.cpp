@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -52,27 +53,6 @@ std::string lacks(web::Right has, web::Right needed) {
          std::string(name_of(needed));
 }
 
-/// Replaces invalid UTF-8, e.g. in the names of recorded streams.
-std::string dump(const nlohmann::json& json) {
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-/// Serves a recording in a folder, or the list of them.
-web::Reply reply_with_recording(const std::string& folder, const std::string& path) {
-  web::Reply reply;
-  reply.aside = [folder, path] {
-    if (path != "/recordings")
-      return recorded_file(folder, path.substr(std::string_view("/recordings/").size()));
-    auto list = nlohmann::json::array();
-    for (const auto& [name, bytes, streams, problem] : list_recordings(folder)) {
-      list.push_back({{"name", name}, {"bytes", bytes}, {"streams", streams}});
-      if (!problem.empty()) list.back()["problem"] = problem;
-    }
-    return made_of(200, {{"Cache-Control", "no-store"}}, "application/json", text(dump(list)));
-  };
-  return reply;
-}
-
 /// The one message in a frame. Errors: Malformed.
 hc::Result<hc::Message> read_frame(std::string_view bytes) {
   hc::StreamReader reader;
@@ -107,6 +87,7 @@ Page::Page(Options options, web::Access& access, web::Server& server, Robot& rob
       server_(server),
       robot_(robot),
       callbacks_(std::move(callbacks)),
+      recordings_(options_.graph, {options_.recordings, options_.frames, callbacks_.log}, server),
       graph_(server.loop(), options_.graph) {
   server_.every(std::chrono::milliseconds(25), [this] { tick(); });
   const auto watched = graph_.watch(
@@ -142,7 +123,7 @@ web::Reply Page::reply(const web::Request& request) {
     return is_known ? made_of(101, {}) : refusal(404, "no such socket");
   }
   if (request.path == "/recordings" || request.path.starts_with("/recordings/"))
-    return reply_with_recording(options_.recordings, request.path);
+    return recordings_.reply(request.path);
   return reply_with_file(request);
 }
 
@@ -281,25 +262,24 @@ void Page::answer(const Asked& asked, const Rows& rows) {
   found->second.socket->send(rows_message(rows, kAnswer, asked.number));
 }
 
+void Page::settle(const Asked& asked, const std::string& problem) {
+  answer(asked, {problem.empty() ? "ok" : problem});
+}
+
 void Page::take_command(std::uint64_t number, const std::string& command) {
   Session& session = sessions_.at(number);
   const Asked asked{number, session.commands++};
   const auto parts = hc::words_of(command);
   const Rows words(parts.begin(), parts.end());
   if (words.empty()) return answer(asked, {"there is no command"});
-  if (words[0] == "estop") {
-    if (const auto problem = stop(asked, words)) answer(asked, *problem);
-    return;
-  }
+  if (words[0] == "estop") return stop(asked, words);
   if (words[0] == "observe" || words[0] == "feed" || words[0] == "reply")
     return answer(asked, {"no command \"" + words[0] + "\"; streams are at /streams"});
   if (session.right < web::Right::Operate && words[0] != "describe")
     return answer(asked, {lacks(session.right, web::Right::Operate)});
   if (words[0] == "invite") return answer(asked, invite(words));
-  if (words[0] == "record") {
-    if (const auto problem = record(asked, words)) answer(asked, *problem);
-    return;
-  }
+  if (words[0] == "record")
+    return recordings_.take(words, [this, asked](const auto& problem) { settle(asked, problem); });
   graph_.command({command}, [this, asked](const hc::Result<hc::GraphAnswer>& answered) {
     Rows rows = answered ? answered->rows : Rows{answered.error().detail};
     if (answered && answered->is_ok) rows.insert(rows.begin(), "ok");
@@ -307,70 +287,20 @@ void Page::take_command(std::uint64_t number, const std::string& command) {
   });
 }
 
-std::optional<Rows> Page::stop(const Asked& asked, const Rows& words) {
+void Page::stop(const Asked& asked, const Rows& words) {
   const bool clears = words.size() == 2 && words[1] == "clear";
-  if (words.size() > 1 && !clears) return Rows{"estop is followed by nothing or by clear"};
+  if (words.size() > 1 && !clears) return settle(asked, "estop is followed by nothing or by clear");
   const auto right = sessions_.at(asked.session).right;
-  if (clears && right < web::Right::Drive) return Rows{lacks(right, web::Right::Drive)};
+  if (clears && right < web::Right::Drive) return settle(asked, lacks(right, web::Right::Drive));
   callbacks_.stop(!clears, [this, asked](const std::string& problem) {
-    server_.post([this, asked, problem] { answer(asked, {problem.empty() ? "ok" : problem}); });
+    server_.post([this, asked, problem] { settle(asked, problem); });
   });
-  return std::nullopt;
 }
 
 Rows Page::invite(const Rows& words) {
   const auto right = words.size() == 2 ? web::right_named(words[1]) : std::nullopt;
   if (!right) return {"invite is followed by view, drive or operate"};
   return {"ok", access_.invite(*right)};
-}
-
-std::optional<Rows> Page::record(const Asked& asked, const Rows& words) {
-  if (!recording_job_.expired())
-    return Rows{"a recording is being started or ended; try again in a moment"};
-  if (words.size() == 3 && words[1] == "delete") {
-    if (recorder_ && recorder_->name() == words[2]) return Rows{words[2] + " is being recorded"};
-    return record_aside([this, asked, name = words[2]] {
-      const auto deleted = delete_recording(options_.recordings, name);
-      return [this, asked, said = Rows{deleted ? "ok" : deleted.error().detail}] {
-        answer(asked, said);
-      };
-    });
-  }
-  if (words.size() == 2 && words[1] == "end") {
-    if (!recorder_) return Rows{"nothing is being recorded"};
-    return end_recording([this, asked] { answer(asked, {"ok"}); });
-  }
-  if (recorder_) return Rows{"already recording: " + recorder_->name()};
-  if (words.size() < 3)
-    return Rows{"record is followed by a name and outputs, MODULE.PORT, by end, or delete NAME"};
-  return record_aside([this, asked, words] {
-    auto begun =
-        Recorder::begin(options_.graph, {options_.recordings, options_.frames, callbacks_.log},
-                        words[1], {words.begin() + 2, words.end()});
-    const Rows said = {begun ? "ok" : begun.error().detail};
-    std::shared_ptr<Recorder> recorder = begun ? std::move(*begun) : nullptr;
-    return [this, asked, said, recorder] {
-      recorder_ = recorder;
-      answer(asked, said);
-    };
-  });
-}
-
-std::optional<Rows> Page::end_recording(const std::function<void()>& ended) {
-  return record_aside([this, recorder = recorder_, ended] {
-    recorder->end();
-    return [this, ended] {
-      recorder_.reset();
-      ended();
-    };
-  });
-}
-
-std::optional<Rows> Page::record_aside(web::Work work) {
-  const auto job = std::make_shared<web::Work>(std::move(work));
-  recording_job_ = job;
-  const auto begun = server_.aside([job] { return [job, then = (*job)()] { then(); }; });
-  return begun ? std::nullopt : std::optional(Rows{begun.error().detail});
 }
 
 void Page::give(const std::vector<Order>& orders) const {
@@ -380,7 +310,7 @@ void Page::give(const std::vector<Order>& orders) const {
 void Page::tick() {
   robot_.served = clock_.monotonic();
   if (driver_socket_) give(driver_.tick(clock_.wall(), clock_.monotonic()));
-  if (recorder_ && !recorder_->goes_on() && recording_job_.expired()) end_recording([] {});
+  recordings_.tick();
   for (auto& [number, session] : sessions_) send_session(session);
   std::erase_if(streams_, [&](const auto& each) {
     const auto stop = [stream = each.second] {
@@ -396,7 +326,7 @@ std::string Page::session_text(const Session& session) const {
   nlohmann::json now = {{"right", name_of(session.right)},
                         {"driver", nullptr},
                         {"stopped", nullptr},
-                        {"recording", nullptr},
+                        {"recording", recordings_.current()},
                         {"drives", nlohmann::json::array()},
                         {"frames", options_.frames},
                         {"web", options_.module}};
@@ -405,12 +335,7 @@ std::string Page::session_text(const Session& session) const {
   if (driver_socket_) now["driver"] = "other";
   if (const Stopped stopped = robot_.stopped; stopped != Stopped::Unknown)
     now["stopped"] = stopped == Stopped::Yes;
-  if (recorder_)
-    now["recording"] = {{"name", recorder_->name()},
-                        {"bytes", recorder_->bytes()},
-                        {"seconds", static_cast<int>(recorder_->seconds())},
-                        {"streams", recorder_->ports()}};
-  return dump(now);
+  return now.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 void Page::send_session(Session& session) const {

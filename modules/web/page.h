@@ -5,11 +5,13 @@
 
 #include <atomic>
 #include <cstdint>
+#include <deque>
+#include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <hc/base/clock.h>
 
@@ -17,7 +19,7 @@
 #include <web/access.h>
 #include <web/server.h>
 #include "driver.h"
-#include "recorder.h"
+#include "recordings.h"
 #include "stop.h"
 #include "stream.h"
 
@@ -85,18 +87,11 @@ class Page final : public web::Site {
                                         std::int64_t seq) const;
   void take_command(std::uint64_t session, const std::string& command);
   std::vector<std::string> invite(const std::vector<std::string>& words);
-  // These return the error, or nothing if they are executed and answered later.
   /// Stops the robot, or clears the stop.
-  std::optional<std::vector<std::string>> stop(const Asked& asked,
-                                               const std::vector<std::string>& words);
-  /// Starts, ends or deletes a recording.
-  std::optional<std::vector<std::string>> record(const Asked& asked,
-                                                 const std::vector<std::string>& words);
-  /// Ends the recording, and then calls back.
-  std::optional<std::vector<std::string>> end_recording(const std::function<void()>& ended);
-  /// As Server::aside(), to start, end or delete a recording.
-  std::optional<std::vector<std::string>> record_aside(web::Work work);
+  void stop(const Asked& asked, const std::vector<std::string>& words);
   void answer(const Asked& asked, const std::vector<std::string>& rows);
+  /// Answers "ok", or the problem.
+  void settle(const Asked& asked, const std::string& problem);
   void tick();
   void give(const std::vector<Order>& orders) const;
   [[nodiscard]] std::string session_text(const Session& session) const;
@@ -113,11 +108,10 @@ class Page final : public web::Site {
   std::map<std::string, std::shared_ptr<Stream>> streams_;  // by port
   std::shared_ptr<web::WebSocket> driver_socket_;
   Driver driver_;
-  std::shared_ptr<Recorder> recorder_;
-  std::weak_ptr<web::Work> recording_job_;  // starts, ends or deletes a recording
-  web::Bytes state_;                        // latest
-  std::set<std::int32_t> modes_;            // of the graph
-  std::deque<web::Bytes> log_;              // last lines
-  std::int64_t states_ = 0, lines_ = 0;     // sent
+  Recordings recordings_;
+  web::Bytes state_;                     // latest
+  std::set<std::int32_t> modes_;         // of the graph
+  std::deque<web::Bytes> log_;           // last lines
+  std::int64_t states_ = 0, lines_ = 0;  // sent
   hc::GraphClient graph_;
 };
