@@ -110,6 +110,25 @@ class Check(Pipes):
             out = self.shell("hc check %s/graphs/%s" % (ROOT, graph))
             self.assertRegex(out, r"\.toml: [0-9]+ modules?, [0-9]+ links?: no problems found\n$")
 
+    def test_a_file_that_is_missing_is_warned_of(self):
+        self.write("there.jpg", "")
+        graph = "version = 1\n[modules.camera]\nparameters = { source = '%s' }\n"
+        for source, problem in (
+            ("nofile.jpg", "does not exist"),
+            ("none/nofile.mp4", "does not exist"),
+            ("there.jpg", ""),
+            ("http://robot/a.jpg", ""),
+            ("/dev/video99", ""),
+        ):
+            with self.subTest(source):
+                self.write("g.toml", graph % source)
+                self.shell("hc check g.toml")
+                expected = "hc check: warning: camera: parameter source: %s %s\n" % (
+                    source,
+                    problem,
+                )
+                self.assertEqual(self.err, expected if problem else "")
+
     def test_no_shipped_graph_names_a_file_to_write(self):
         for graph in (ROOT / "graphs").glob("*.toml"):
             self.assertNotRegex(graph.read_text(), r"(?m)^[^#]*(\bsave\b|\bfile:)")

@@ -9,6 +9,20 @@
 #include "verbs.h"
 
 namespace tool {
+namespace {
+
+/// Warnings of files here that modules would read. Devices are for `hc doctor`: they come and go.
+std::vector<std::string> warn_of_files(const hc::Plan& plan) {
+  std::vector<std::string> warnings;
+  for (const auto& [module, text, question] : needs_of(part_of(plan, "")).places) {
+    if (!question.starts_with("read ") || question.starts_with("read /dev/")) continue;
+    if (const auto problem = problem_of(question); !problem.empty())
+      warnings.push_back(hc::format("{}: {}{}", module, text, problem));
+  }
+  return warnings;
+}
+
+}  // namespace
 
 void add_check(CLI::App& app) {
   auto options = std::make_shared<hc::LoadOptions>();
@@ -17,6 +31,7 @@ void add_check(CLI::App& app) {
   verb->callback([options] {
     const auto hosts = make_hosts();
     auto plan = load_plan("check", *options, hosts.get());
+    for (auto& line : warn_of_files(plan)) plan.warnings.push_back(std::move(line));
     for (const auto& line : plan.warnings) say(hc::format("hc check: warning: {}", line));
     bool is_missing = false;
     for (const auto& finding : diagnose(plan, *hosts)) {

@@ -2,6 +2,7 @@
 #include "diagnosis.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <initializer_list>
 #include <limits>
@@ -25,10 +26,20 @@ bool has_word(std::string_view name, std::initializer_list<std::string_view> wor
   });
 }
 
+/// Whether a name ends like that of a file: a dot, and two to five letters and digits, such as mp4.
+bool has_extension(std::string_view name) {
+  auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0; };
+  auto is_either = [](unsigned char c) { return std::isalnum(c) != 0; };
+  const auto ending = std::string_view(name).substr(std::min(name.rfind('.'), name.size() - 1) + 1);
+  return ending.size() >= 2 && ending.size() <= 5 && ending.size() + 1 < name.size() &&
+         is_letter(ending.front()) && std::ranges::all_of(ending, is_either);
+}
+
 bool looks_like_path(std::string_view value) {
-  if (value.find('/') == std::string_view::npos) return false;
   if (value.find_first_of("!%*?\n") != std::string_view::npos) return false;
-  return value.find(':') >= value.find('/');  // otherwise a URI, such as http://robot/stream
+  const auto slash = value.find('/'), colon = value.find(':');
+  if (slash == std::string_view::npos) return colon == slash && has_extension(value);
+  return colon >= slash;  // otherwise a URI, such as http://robot/stream
 }
 
 std::string folder_of(std::string_view path) {
@@ -51,6 +62,12 @@ void add_end(const std::string& module, const std::string& text, bool is_input, 
   else if (uri->scheme == "file" || (uri->scheme == "unix-listen" && !uri->rest.starts_with('@')))
     needs.places.push_back(
         need_of_path(module, link, uri->rest, !is_input || uri->scheme != "file"));
+}
+
+/// Whether a parameter names a file to write, though its name reads like one to read.
+bool is_result(const hc::PlannedModule& module, std::string_view parameter) {
+  return std::filesystem::path(module.program).filename() == "stereo_calibration" &&
+         parameter == "calibration_file";
 }
 
 std::string gigabytes(std::uint64_t bytes) {
@@ -110,7 +127,9 @@ Needs needs_of(const hc::Plan& plan) {
     if (std::filesystem::path(module.program).filename() == "view" && !may_have_none)
       needs.viewers.push_back(module.name);
     for (const auto& [name, value] : given)
-      if (auto need = need_of_parameter(module.name, name, value))
+      if (is_result(module, name))
+        needs.places.push_back(need_of_path(module.name, "parameter " + name, value, true));
+      else if (auto need = need_of_parameter(module.name, name, value))
         needs.places.push_back(std::move(*need));
     for (const auto& end : module.ends) add_end(module.name, end.uri, end.is_input, needs);
   }

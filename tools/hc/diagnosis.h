@@ -52,8 +52,8 @@ Needs needs_of(const hc::Plan& plan);
 ///   source, file, path, folder, directory, device, model or config;
 /// - a path to write, whose folder must exist, if such a word is save, output, log or record.
 ///
-/// The words of a name are separated by _. The value must contain a / and must not be a URI, a
-/// pipeline (!), a pattern (%, *, ?) or text of several lines: those, and names without a /, are
+/// The words of a name are separated by _. The value must contain a / or end like a file's name,
+/// and must not be a URI, a pipeline (!), a pattern (%, *, ?) or text of several lines: those are
 /// left to the module.
 std::optional<Need> need_of_parameter(const std::string& module, std::string_view name,
                                       std::string_view value);

@@ -170,7 +170,8 @@ std::string display() {
   return "";
 }
 
-/// The answer to a question; empty: no problem.
+}  // namespace
+
 std::string problem_of(const std::string& question) {
   const auto what = question.substr(0, question.find(' '));
   const auto place = question.substr(std::min(question.size(), what.size() + 1));
@@ -185,8 +186,6 @@ std::string problem_of(const std::string& question) {
   if (::access(place.c_str(), is_written ? W_OK : R_OK) == 0) return "";
   return is_written ? " is not writable for this user" : " is not readable for this user";
 }
-
-}  // namespace
 
 Facts gather_facts(const std::vector<std::string>& questions) {
   Facts facts;

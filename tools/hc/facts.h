@@ -43,4 +43,7 @@ struct Facts {
 /// "listen [HOST:]PORT" for TCP.
 Facts gather_facts(const std::vector<std::string>& questions);
 
+/// The answer to such a question; empty: no problem.
+std::string problem_of(const std::string& question);
+
 }  // namespace tool
