@@ -97,12 +97,14 @@ void Follower::see(double time, const Angles& angles) {
   // Unwrap: −π and π are the same direction.
   const double here = pan_.quick.state(0);
   const double pan = is_same ? here + std::remainder(angles.pan - here, 2 * M_PI) : angles.pan;
-  // One that reverses at once may still be the same for the slow filter, one that accelerates for
-  // long for the quick one.
+  // A target that reverses suddenly still fits the slow filter; one that keeps accelerating is
+  // close to the prediction of the quick one, whose bound after a pause would include any leap.
   if (is_same) {
     for (auto* axis : {&pan_, &tilt_}) step(time - *last_, *axis);
     const auto can_be = [&](const Axis& axis, double angle) {
-      return axis.quick.can_be(angle, options_) || axis.slow.can_be(angle, slow(options_));
+      constexpr double kClose = 0.05;  // [rad]
+      return std::abs(angle - axis.quick.state(0)) <= kClose ||
+             axis.slow.can_be(angle, slow(options_));
     };
     is_same = can_be(pan_, pan) && can_be(tilt_, angles.tilt);
   }

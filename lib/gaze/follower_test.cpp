@@ -82,7 +82,18 @@ TEST(Follower, a_leap_is_no_motion) {
   EXPECT_EQ(follower.at(1.1)->pan_rate, 0);
 }
 
-TEST(Follower, what_accelerates_smoothly_does_not_leap) {
+TEST(Follower, a_leap_after_a_pause_is_no_motion) {
+  for (const double pause : {0.1, 0.2, 0.3, 0.4, 0.5}) {
+    Follower follower({});
+    for (int i = 0; i < 20; ++i) follower.see(0.05 * i, {0, 0});
+    const double then = 0.95 + pause;
+    follower.see(then, {1.1, 0});
+    EXPECT_EQ(follower.at(then + 0.1)->angles.pan, 1.1) << pause;
+    EXPECT_EQ(follower.at(then + 0.1)->pan_rate, 0) << pause;
+  }
+}
+
+TEST(Follower, smooth_acceleration_is_no_leap) {
   // A person who shakes the head, at 100 measurements a second.
   constexpr double kAmplitude = 0.9, kAngular = 1.4;
   Follower follower({0.0005, 2, 0.5, 0.1});
