@@ -272,7 +272,12 @@ TEST_F(McapWriting, WhatWasLastIsSaved) {
   EXPECT_EQ(topics_of(summary)["/tf_static"], 1U);
   const auto second = play(in("x_0002.mcap")).messages;
   EXPECT_EQ(second.back(), encode(image(69)));
-  EXPECT_EQ(written.messages - written.discarded, played.messages.size() + second.size());
+  // Those that both files have count once.
+  std::set<std::string> all(second.begin(), second.end());
+  all.insert(played.messages.begin(), played.messages.end());
+  EXPECT_LT(all.size(), played.messages.size() + second.size());
+  EXPECT_EQ(written.messages, all.size());
+  EXPECT_EQ(written.messages + written.discarded, 70U);
 }
 
 TEST_F(McapWriting, NothingIsSavedAfterTheEnd) {

@@ -282,8 +282,10 @@ const Written& Writer::close() {
   }
   std::erase_if(written_.files, is_missing);
   written_.messages -= written_.lost;
-  if (mcap_ != nullptr)
-    written_.discarded = written_.messages - std::min(written_.messages, mcap_->stored());
+  if (mcap_ != nullptr) {
+    written_.discarded = written_.messages - mcap_->stored();
+    written_.messages = mcap_->stored();
+  }
   return written_;
 }
 

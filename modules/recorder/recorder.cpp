@@ -119,7 +119,7 @@ void StreamRecorder::end() {
   if (!is_removed_) fail_once(written.status);
   if (written.files.empty()) return module_.log("nothing saved", hc::Level::Result);
   const bool is_folder = !parameters_.folder->empty();
-  const auto count = written.messages - written.discarded;
+  const auto count = written.messages;
   std::string text = hc::format("{} message{} in {}", count, count == 1 ? "" : "s",
                                 is_folder ? written.place : written.files.front());
   if (written.files.size() > 1 && !is_folder) text += hc::format(" to {}", written.files.back());
@@ -130,8 +130,7 @@ void StreamRecorder::end() {
 
 void StreamRecorder::fail_once(const hc::Status& status) {
   if (status || std::exchange(has_failed_, true)) return;
-  module_.log("recording ended: " + status.error().detail + "; " + recording_->written().place +
-                  " holds all messages before",
+  module_.log("recording ended: " + status.error().detail + "; the recording is intact up to here",
               hc::Level::Error);
 }
 

@@ -180,8 +180,8 @@ Status Storage::add(Chunk chunk) {
 Result<std::string> Storage::save() {
   auto done = begin_file(memory_.empty() ? 0 : memory_.front().begin);
   const std::string name = file_ ? file_->path() : "";
-  for (const auto& chunk : memory_)
-    if (done) done = write(chunk);
+  for (auto& chunk : memory_)
+    if (done && (done = write(chunk))) chunk.messages = 0;  // a later file that has it, too
   if (auto ended = end_file(); done) done = ended;
   if (!done) return done.error();
   return name;

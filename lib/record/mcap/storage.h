@@ -64,7 +64,7 @@ class Storage {
 
   // After close(), of the files written and not removed:
   [[nodiscard]] std::vector<std::string> files() const;
-  /// Their messages of MTP; with `last`, files may have some in common.
+  /// Their messages of MTP; one that several files have counts once.
   [[nodiscard]] std::uint64_t messages() const;
   /// The file being written; with `split` or `last`, the name without number.
   [[nodiscard]] const std::string& file() const { return name_; }
