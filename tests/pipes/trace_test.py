@@ -151,7 +151,10 @@ class Tracing(Graphs):
             self.assertGreaterEqual(path["age"][0], 0.3)
         self.assertRegex(self.shell("hc cat kept/last.trace.mtp"), "took in [0-9]+ [0-9]+ [0-9]+ ")
         self.shell("hc trace kept/last.trace.mtp", 2)
-        self.assertIn("kept/last.trace.mtp is not the recording of a graph", self.err)
+        self.assertIn("kept/last.trace.mtp has the messages of one stream", self.err)
+        self.write("last.in", "")  # a file that has the name of a port
+        self.shell("hc trace last.in --of none", 1)
+        self.assertIn('no graph "none" is running', self.err)
         self.shell("hc trace nosuch.in --recording kept", 1)
         self.assertIn("nosuch sends no trace", self.err)
         self.shell("mkdir empty; hc trace last.in --recording empty", 1)

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <set>
 
 #include <hc/base/clock.h>
@@ -22,6 +21,7 @@
 #include "observer.h"
 #include "trace_paths.h"
 #include "verbs.h"
+#include "words.h"
 
 namespace tool {
 namespace {
@@ -251,9 +251,10 @@ void take_words(std::vector<std::string> words, TraceOptions& options) {
   if (words.size() == 2 || kind == Kind::Mcap || kind == Kind::Folder) {
     options.recording = words.front();
     words.erase(words.begin());
-  } else if (kind == Kind::File && std::filesystem::is_regular_file(words.front())) {
-    throw Failure(hc::Code::Invalid,
-                  words.front() + " is not the recording of a graph, a folder or FILE.mcap");
+  } else if (kind == Kind::File && is_recording_name(words.front())) {
+    throw Failure(hc::Code::Invalid, words.front() +
+                                         " has the messages of one stream; give the "
+                                         "folder or FILE.mcap of hc run --record");
   }
   if (!words.empty()) options.port = words.front();
 }

@@ -16,10 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_recording_name(const std::string& word) {
-  return word.ends_with(".mtp") || hc::is_mcap_path(word);
-}
-
 /// Whether a word can be MODULE.PORT.
 bool may_be_port(const std::string& word) {
   return hc::is_port_name(word) && !is_recording_name(word);
@@ -50,6 +46,10 @@ bool is_running_port(const std::string& word, const std::string& of) {
 }
 
 }  // namespace
+
+bool is_recording_name(const std::string& word) {
+  return word.ends_with(".mtp") || hc::is_mcap_path(word);
+}
 
 std::optional<RunningGraph> graph_of_port(const std::string& word, const std::string& of) {
   std::error_code missing;
