@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // The host's side of the dialogue with a pan-tilt unit: matches answers to questions, and handles
-// missing and invalid ones. Pure: bytes in, bytes out; times come from
-// the caller and do not decrease.
+// missing and invalid ones. Pure: bytes in, bytes out; times come from the caller and do not
+// decrease, but that of pass() may be before the last one.
 
 #include <array>
 #include <deque>

@@ -177,13 +177,15 @@ TEST_F(Begun, a_question_counts_from_when_it_is_written) {
 }
 
 TEST_F(Begun, an_answer_to_a_question_that_is_not_written_is_harmless) {
+  line.looks = false;
+  line.run(milliseconds(50));
   line.host.look(line.now);
-  line.host.take(line.now, "* 0\r\n* 0\r\n* 0\r\n");
+  line.host.take(line.now, "* 0\r\n* 0\r\n");
   line.run(milliseconds(1000));
   EXPECT_EQ(line.host.phase(), Phase::Ready);
 }
 
-TEST_F(Begun, an_answer_that_nobody_has_looked_at_tells_no_gaze) {
+TEST_F(Begun, an_answer_that_was_not_read_in_time_gives_no_gaze) {
   line.looks = false;
   line.run(milliseconds(50));
   line.gazes.clear();

@@ -71,7 +71,7 @@ void Neck::log_fault(const Error& error) {
     log_(Level::Warning, device_ + ": " + error.detail);
 }
 
-void Neck::read(MonotonicTime now) {
+void Neck::read() {
   std::array<char, 512> room = {};
   while (serial_) {
     auto bytes = serial_->read(room);
@@ -80,7 +80,8 @@ void Neck::read(MonotonicTime now) {
       break;
     }
     if (bytes->empty()) break;
-    conversation_.take(now, *bytes);
+    // After the read: where this process has waited, the time is late, never before the arrival.
+    conversation_.take(clock_.monotonic(), *bytes);
     work();
   }
   if (const auto gaze = conversation_.gaze()) seen_(*gaze);
@@ -104,7 +105,7 @@ void Neck::pass(const NeckSettings& settings) {
   set(settings);
   if (!serial_ && !device_.empty() && backoff_.is_due(clock_.monotonic())) open();
   const auto now = clock_.monotonic();
-  read(now);  // first, since an answer that has arrived is not overdue
+  read();  // first, since an answer that has arrived by now is not overdue
   conversation_.pass(now);
   work();
   if (conversation_.phase() != Phase::Ready) return;

@@ -60,7 +60,7 @@ class Neck {
   /// For poll(); -1 while no line is open.
   [[nodiscard]] int descriptor() const { return serial_ ? serial_->descriptor() : -1; }
   /// Reads the bytes available.
-  void read() { read(clock_.monotonic()); }
+  void read();
   /// Call every kTick: opens, reads, retries, halts; applies the settings.
   void pass(const NeckSettings& settings);
 
@@ -77,7 +77,6 @@ class Neck {
   void leave();
 
  private:
-  void read(MonotonicTime now);
   void set(const NeckSettings& settings);
   void set_baud(int baud);
   /// @param stays  whether the name stays valid while the device is unplugged.

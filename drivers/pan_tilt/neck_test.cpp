@@ -149,7 +149,7 @@ TEST_F(NeckTest, obeys_one_source_of_a_mode_at_a_time_and_another_mode_at_once) 
   EXPECT_NEAR(unit_.pan(9), 278, 1);
 }
 
-TEST_F(NeckTest, halts_when_nobody_has_the_focus_and_obeys_again) {
+TEST_F(NeckTest, halts_when_no_mode_has_the_focus_and_obeys_again) {
   settings_.hold = milliseconds(0);
   begin();
   neck_.set_focus(7);
