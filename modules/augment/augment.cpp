@@ -41,7 +41,9 @@ void Augment::read_parameters() {
   const auto& given = parameters_;
   if (objects_read_ != *given.objects) {
     scene_.reset();  // releases its OpenGL context before the next is made current
-    scene_ = hc::value_or_refuse(given.objects, Scene::make(*(objects_read_ = *given.objects)));
+    auto renderer = hc::value_or_end(hc::graphics::Renderer::make());
+    scene_ = hc::value_or_refuse(
+        given.objects, Scene::make(*(objects_read_ = *given.objects), std::move(renderer)));
   }
   if (shown_read_ != *given.instruments)
     panel_.shown = hc::value_or_refuse(given.instruments,

@@ -41,9 +41,9 @@ const Eigen::Isometry3d* Markers::find(int number) const {
   return at == seen_.end() ? nullptr : &at->second.pose;
 }
 
-hc::Result<std::unique_ptr<Scene>> Scene::make(const std::string& text) {
+hc::Result<std::unique_ptr<Scene>> Scene::make(const std::string& text,
+                                               std::unique_ptr<hc::graphics::Renderer> renderer) {
   auto objects = HC_TRY(read_objects(text));
-  auto renderer = HC_TRY(hc::graphics::Renderer::make());
   std::unique_ptr<Scene> scene(new Scene(std::move(renderer)));
   for (const auto& object : objects) {
     auto parts = HC_TRY(load(object.model));

@@ -34,8 +34,9 @@ class Markers {
 /// Renders the objects. Owns an OpenGL context: one thread only.
 class Scene {
  public:
-  /// Errors: as hc::graphics::Renderer::make(), read_objects(), load().
-  static hc::Result<std::unique_ptr<Scene>> make(const std::string& objects);
+  /// Errors: as read_objects(), load().
+  static hc::Result<std::unique_ptr<Scene>> make(const std::string& objects,
+                                                 std::unique_ptr<hc::graphics::Renderer> renderer);
 
   /// Places all objects for a time, except those at markers not yet seen. An unknown frame
   /// name ends the module.

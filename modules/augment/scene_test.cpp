@@ -34,7 +34,9 @@ TEST(Markers, that_tremble_are_smoothed_and_that_are_moved_are_not) {
 class Scenes : public testing::Test {
  protected:
   void make(const std::string& objects) {
-    auto made = Scene::make(objects);
+    auto renderer = hc::graphics::Renderer::make();
+    ASSERT_TRUE(renderer) << renderer.error().text();
+    auto made = Scene::make(objects, std::move(*renderer));
     ASSERT_TRUE(made) << made.error().text();
     scene = std::move(*made);
   }
