@@ -66,6 +66,29 @@ function untilDone(what, act, ...results) {
   });
 }
 
+/** Of the left and the right half of the window, how much is not black, and how much is coloured. */
+async function halvesSeen() {
+  const picture = (await page.screenshot()).toString("base64");
+  return page.evaluate(async (picture) => {
+    const bytes = Uint8Array.from(atob(picture), (letter) => letter.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes]));
+    const [width, height] = [bitmap.width / 2, bitmap.height];
+    const context = new OffscreenCanvas(2 * width, height).getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    return [0, width].map((x) => {
+      const { data } = context.getImageData(x, 0, width, height);
+      let [drawn, coloured] = [0, 0];
+      for (let i = 0; i < data.length; i += 4) {
+        const all = [data[i], data[i + 1], data[i + 2]];
+        const [most, least] = [Math.max(...all), Math.min(...all)];
+        if (most > 40) ++drawn;
+        if (most > 40 && most - least > most / 2) ++coloured;
+      }
+      return { drawn: (4 * drawn) / data.length, coloured: (4 * coloured) / data.length };
+    });
+  }, picture);
+}
+
 async function takeSeat(panels = "seat") {
   await show(panels);
   await page.getByRole("button", { name: "Take the seat" }).click();
@@ -358,6 +381,27 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     // The emulated headset's picture lies above the page.
     await page.getByRole("button", { name: "Leave the headset" }).dispatchEvent("click");
     await page.getByRole("button", { name: "Enter the headset" }).waitFor();
+    await page.setViewportSize({ width: 1000, height: 720 });
+  });
+
+  test("a headset shows each eye its depth, in colours and as fog in its images", async () => {
+    await page.setViewportSize({ width: 480, height: 400 });
+    await takeSeat();
+    await page.locator(".seat-tools button", { hasText: "Depth" }).click();
+    await page.evaluate(() => (window.headset.stereoEnabled = true));
+    await page.getByRole("button", { name: "Enter the headset" }).click();
+    await page.getByRole("button", { name: "Leave the headset" }).waitFor();
+    const coding = page.getByLabel("How depth is shown");
+    await until("both halves are coloured", async () =>
+      (await halvesSeen()).every(({ drawn, coloured }) => drawn > 0.2 && coloured > 0.5 * drawn),
+    );
+    await coding.selectOption("fog", { force: true });
+    await until("both halves are the room in fog", async () =>
+      (await halvesSeen()).every(({ drawn, coloured }) => drawn > 0.2 && coloured < 0.2 * drawn),
+    );
+    await page.getByRole("button", { name: "Leave the headset" }).dispatchEvent("click");
+    await page.getByRole("button", { name: "Enter the headset" }).waitFor();
+    await page.evaluate(() => (window.headset.stereoEnabled = false));
     await page.setViewportSize({ width: 1000, height: 720 });
   });
 

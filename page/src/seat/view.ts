@@ -176,15 +176,9 @@ export class SeatView {
 
   /** Takes an image of an eye. @param isAlone  The other eye is not shown. */
   private take(side: Side, picture: Picture, isAlone: boolean): void {
-    if (this.xr) {
-      // A headset shows each eye's image at once, in the direction in which it was taken.
-      this.xr.show(side, picture);
-      this.replace({ ...this.pictures, [side]: picture });
-      if (side === "left") this.show(picture);
-      return;
-    }
     const pictures = isAlone ? { [side]: picture } : this.pairing.take(side, picture);
     if (!pictures) return;
+    this.xr?.show(pictures);
     this.replace(pictures);
     this.show(picture);
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Telepresence in a headset: each eye sees the robot's eye's image, in the direction of its exposure.
+// Telepresence in a headset: each eye sees the robot's eye's image, both of one time, in the direction
+// in which the head looked then.
 import {
   CanvasTexture,
   Group,
@@ -15,6 +16,7 @@ import {
 import type { Side } from "../views/pairing";
 import type { Picture } from "./eye";
 import { anglesOfHeadset, since, type Angles } from "./orientation";
+import type { Pictures } from "./picture";
 
 /** Distance of the images [m]; their size follows from the camera's focal length. */
 const distance = 4;
@@ -115,8 +117,12 @@ export class XrView {
     return view;
   }
 
-  show(side: Side, picture: Picture): void {
-    this.quads[side].show(picture, this.options.focal);
+  /** Shows both eyes' images of one time. */
+  show(pictures: Pictures): void {
+    for (const side of ["left", "right"] as const) {
+      const picture = pictures[side];
+      if (picture) this.quads[side].show(picture, this.options.focal);
+    }
   }
 
   /** Makes the current orientation straight ahead. */
@@ -143,7 +149,7 @@ export class XrView {
       const turned = since(this.zeroed, now);
       this.last = { turned, at: performance.now() };
       this.options.turned(turned);
-      const { picture } = this.quads.left.picture ? this.quads.left : this.quads.right;
+      const { picture } = this.quads.left;
       const gaze = (picture && this.options.gazeAt(picture.time)) ?? turned;
       this.gaze.position.set(position.x, position.y, position.z);
       // Body axes to WebXR axes: left is -x, forward is -z; angles are about fixed axes.
