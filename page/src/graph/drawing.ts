@@ -20,6 +20,9 @@ import {
   rateText,
 } from "./words";
 
+/** For how long a pose is shown after it came [ms]. */
+const longestPose = 2000;
+
 export interface DrawingEvents {
   openModule(name: string): void;
   /** @param at  where the link is [px of the window]. */
@@ -70,7 +73,7 @@ export class Drawing {
   private structureKey = "";
   private now?: Now;
   /** The last poses, by output. */
-  private readonly turned = new Map<string, Pose>();
+  private readonly turned = new Map<string, { readonly pose: Pose; readonly at: number }>();
   /** Keys of the parts that are open. */
   private readonly open = new Set<string>();
   /** Key of the item in the tab order; arrow keys continue from it. */
@@ -116,7 +119,7 @@ export class Drawing {
 
   /** Shows how the frame is turned that an output moves. */
   showPose(port: string, pose: Pose): void {
-    this.turned.set(port, pose);
+    this.turned.set(port, { pose, at: performance.now() });
     for (const mark of this.nodes) if (mark.node.pose === port) this.updatePose(mark);
   }
 
@@ -200,12 +203,10 @@ export class Drawing {
     if (hasFocus) classes.push("has-focus");
     setAttribute(group, "class", classes.join(" "));
     setText(detail, shorten(saying.text, box.width, "detail"));
-    // A module that does not work does not say how it is turned.
-    if (saying.is === "broken" || saying.is === "ended") this.turned.delete(node.pose);
     this.updatePose(mark);
     const loads = members.map(({ name, cpu }) => `${name}, cpu ${percentText(cpu)}`);
     const focus = hasFocus ? ", has the focus" : "";
-    const pose = this.turned.get(node.pose);
+    const pose = this.poseOf(node);
     const turned = pose
       ? [
           `pan ${angleText(pose.pan, "left", "right", 0)}, tilt ${angleText(pose.tilt, "down", "up", 0)}`,
@@ -215,9 +216,14 @@ export class Drawing {
     setText(title, [`${node.label}${focus}: ${saying.text}`, ...turned, ...loads].join("\n"));
   }
 
-  private updatePose({ node, group, pose, pan, tilt }: NodeMark): void {
-    const isDown = group.matches(".broken, .ended");
-    const turned = isDown ? undefined : this.turned.get(node.pose);
+  /** How the frame is turned that a node moves, if that is known now. */
+  private poseOf({ pose }: NodeMark["node"]): Pose | undefined {
+    const last = this.turned.get(pose);
+    return last && performance.now() - last.at < longestPose ? last.pose : undefined;
+  }
+
+  private updatePose({ node, pose, pan, tilt }: NodeMark): void {
+    const turned = this.poseOf(node);
     setAttribute(pose, "display", turned ? "inline" : "none");
     if (!turned) return;
     setText(pan, `pan ${degreesText(turned.pan)}`);
@@ -249,7 +255,7 @@ export class Drawing {
     return isLoop;
   }
 
-  /** Where the label of a link is in the window [px]. */
+  /** Where the line of a link begins in the window [px]. */
   private placeOf({ at }: EdgeMark): Point {
     const matrix = this.svg.getScreenCTM();
     const { x, y } = new DOMPoint(at.x, at.y).matrixTransform(matrix ?? undefined);

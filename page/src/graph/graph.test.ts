@@ -59,7 +59,7 @@ test("the layout is the same for the same structure, from left to right, nothing
 
 const frames = "robot 10 world 0 0 1.2 0 0 0 1; head 11 robot neck.pose 3";
 
-test("whatever moves a frame shows its pose, and has room for it", () => {
+test("a node that moves a frame shows its pose, and has room for it", () => {
   const poses = (open: ReadonlySet<string>) =>
     structureOf(head, open, frames).nodes.flatMap(({ key, pose }) => (pose ? [[key, pose]] : []));
   assert.deepEqual(poses(closed), [["neck", "neck.pose"]]);

@@ -43,7 +43,7 @@ export function overlap(a: Area, b: Area): boolean {
 /**
  * Places the labels of lines, at their starts if possible.
  *
- * @param lines  by key; the more important first. They are horizontal at their points.
+ * @param lines  by key, horizontal at their points. Those with the fewest places choose first.
  * @returns  by key; a line without room has none.
  */
 export function placeLabels(

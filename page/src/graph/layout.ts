@@ -133,7 +133,11 @@ export function layoutOf(structure: Structure): Layout {
   const filled = structure.nodes.flatMap((node) => areasOf(node, nodes.get(node.key)!));
   const shown = placeLabels(new Map(flow.map(({ key }) => [key, routes.get(key)!])), filled);
   // Those of the background yield, as if they were not there.
-  const background = new Map([...routes].filter(([key]) => !shown.has(key)));
+  const background = new Map(
+    structure.edges.flatMap(({ key, background }) =>
+      background ? [[key, routes.get(key)!] as const] : [],
+    ),
+  );
   const labels = new Map([
     ...placeLabels(background, [...filled, ...[...shown.values()].map(areaOf)]),
     ...shown,
@@ -146,7 +150,7 @@ export function layoutOf(structure: Structure): Layout {
   return { width, height: Math.max(...bottoms) + margin, nodes, edges };
 }
 
-/** What a node fills: its box, that behind the box of a part, and its caption. */
+/** The areas of a node: its box, the box behind that of a part, and its caption. */
 export function areasOf({ members, caption }: Node, { x, y, width, height }: Box): Area[] {
   const behind = members.length > 1 ? stackOffset : 0;
   const [left, top] = [x - width / 2, y - height / 2];
