@@ -47,12 +47,11 @@ void Recordings::take(const std::vector<std::string>& command, const Answer& ans
 void Recordings::begin(const std::vector<std::string>& command, const Answer& answer) {
   if (recorder_) return answer("already recording: " + recorder_->name());
   if (command.size() < 3)
-    return answer(
-        "record is followed by a name and outputs, MODULE.PORT, by end, or delete NAME");
+    return answer("record is followed by a name and outputs, MODULE.PORT, by end, or delete NAME");
   run_job(
       [this, command, answer] {
-        auto begun = Recorder::begin(graph_, options_, command[1],
-                                     {command.begin() + 2, command.end()});
+        auto begun =
+            Recorder::begin(graph_, options_, command[1], {command.begin() + 2, command.end()});
         const std::string problem = begun ? "" : begun.error().detail;
         std::shared_ptr<Recorder> recorder = begun ? std::move(*begun) : nullptr;
         return [this, answer, problem, recorder] {

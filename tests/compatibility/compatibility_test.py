@@ -77,6 +77,8 @@ class Compatibility(Pipes):
 
     def test_graph_files(self):
         def check(_):
+            for name in ("gaze.mtp", "stops.mtp"):  # which links of check.toml read
+                self.write(name, "")
             for name in ("check.toml", "run.toml"):
                 self.assertIn("no problems found", self.shell("hc check " + name))
             self.shell("rm -f out.mtp; hc run run.toml --quiet")
@@ -108,6 +110,10 @@ class Compatibility(Pipes):
                 self.assertEqual(names, ["camera", "invert", "brightness"])
                 out = self.shell("hc replay %s --graph run.toml --check" % recording)
                 self.assertIn("brightness.mean: 3 messages, the same", out)
+            # An output got another link while it ran.
+            self.assertIn("linked mean ", self.read("changed/brightness.trace.mtp"))
+            out = self.shell("hc replay changed --graph changed.toml --check")
+            self.assertRegex(out, "brightness.mean: [0-9]+ messages, the same")
 
         self.in_each(check)
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The contest for the focus to its end, the neck's serial line: three sources a mode bid, stop,
-// guard, command and are silent at random, the workspace freezes, and the unit answers late. What
-// the neck is told is of one source of the mode in focus, and of nobody while none has it.
+// guard, command and are silent at random, the workspace freezes, and the unit answers late. The
+// neck gets commands of one source of the mode in focus, and none while no mode has it.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -47,7 +47,7 @@ class NeckAtLine {
     if (said.find("h ") != std::string::npos) halted_ = now();
     return mode_of(said);
   }
-  /// A second passes, in which nobody has the focus.
+  /// A second passes, in which no mode has the focus.
   void rest() {
     for (int i = 0; i < 100; ++i)
       EXPECT_EQ(step(milliseconds(10), 0, true), 0) << "commanded without any focus";

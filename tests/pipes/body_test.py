@@ -217,6 +217,12 @@ public <words> = (hello | robot | seven | window | yellow | river | tomorrow | e
         heard = self.shell("pocketsphinx_continuous -infile said.wav -jsgf words.gram 2>/dev/null")
         self.assertEqual(heard.split(), self.WORDS.split())
 
+    def test_the_last_text_is_named_without_the_blanks_around_it(self):
+        self.shell(
+            "hc send --text '  hello robot ' | hc speak --paced=false --out words=- | hc info"
+        )
+        self.assertIn('said 1 text, the last "hello robot"', self.err)
+
     def test_hostile_text_does_no_harm(self):
         texts = (b"\x01+99S hi \x00\x1b[2J", b"\xff\xfe\xc0\x80", b"<speak>a</speak>", b" ", b"")
         data = b""

@@ -118,7 +118,7 @@ class Mcap(Recordings):
         self.shell("hc send 1 2 3 >one.mtp; mkfifo wait")
         player = self.start("(cat one.mtp; cat wait) | exec hc play - --out x.mcap")
         wait_until(lambda: "[" in self.shell("hc cat --skip --json x.mcap 2>/dev/null; true"))
-        self.write("wait", "")
+        open(self.path("wait"), "w").close()
         player.communicate(timeout=WATCHDOG)
         self.assertEqual(player.returncode, 0)
         self.assertEqual(self.seqs("x.mcap"), [0])

@@ -102,9 +102,15 @@ class Page(Graphs):
                 return text
 
     def order(self, graph, text):
-        """Stops the robot or clears that, until the workspace has confirmed it, which a busy machine
-        delays."""
-        wait_until(lambda: self.command(graph, text) == ["ok"])
+        """Stops the robot or clears that, and again until the workspace confirms it in time."""
+
+        def is_confirmed():
+            rows = self.command(graph, text)
+            late = re.match("(stop NOT confirmed|NOT cleared): the workspace ", rows[0])
+            self.assertTrue(rows == ["ok"] or late, rows)
+            return rows == ["ok"]
+
+        wait_until(is_confirmed)
 
     def command(self, graph, text):
         """The rows of an answer."""

@@ -38,4 +38,3 @@ class Pipeline(Pipes):
 
 if __name__ == "__main__":
     unittest.main()
-

@@ -132,7 +132,7 @@ class Read(Pipes):
                 pairs.append((truth, words.read_word(BUILD / "bin/hc", folder)))
             self.assertLess(words.error_rate(pairs), most, pairs)
 
-    def test_what_was_said_out_of_focus_is_said_anew_in_focus(self):
+    def test_text_of_a_time_without_focus_is_said_again_in_focus(self):
         self.draw("LOOK HERE", "DejaVu Sans")
         self.shell("hc camera --source drawn.png --count 1 --out left=eye.mtp")
         image = pathlib.Path(self.path("eye.mtp")).read_bytes()
