@@ -8,9 +8,10 @@ import re
 import shutil
 import unittest
 
-from harness import Pipes
+from graphs import Graphs
 
-# What is typed, and the line after the key for completion; of words that begin alike, what they share.
+# What is typed, and the line after the key for completion; of words that begin alike, what they
+# share. NAME is that of a running graph.
 LINES = {
     "hc recor": "hc record",
     "hc brigh": "hc brightness",
@@ -20,14 +21,24 @@ LINES = {
     "hc depth --match": "hc depth --matcher",
     "hc cat numbers.m": "hc cat numbers.mtp",
     "hc completion z": "hc completion zsh",
+    "hc top --of see": "hc top --of NAME",
+    "hc cat --of NAME camera.l": "hc cat --of NAME camera.left",
+    "hc send --of NAME --to bright": "hc send --of NAME --to brightness.image",
+    "hc graph --of NAME restart cam": "hc graph --of NAME restart camera",
+    "hc graph --of NAME set camera.lo": "hc graph --of NAME set camera.loop=",
 }
 
 
-class Completion(Pipes):
+class Completion(Graphs):
     def setUp(self):
         super().setUp()
         self.environment.update(HOME=self.folder.name, TERM="dumb")
         self.write("numbers.mtp", "")
+        name, _ = self.run_named("seen")
+        self.lines = {
+            typed.replace("NAME", name): expected.replace("NAME", name)
+            for typed, expected in LINES.items()
+        }
 
     def read_until(self, pattern):
         while not (found := re.search(pattern, self.shown)):
@@ -46,7 +57,7 @@ class Completion(Pipes):
             self.terminal, b"unsetopt zle_bracketed_paste; %s; echo re''ady\n" % setup.encode()
         )
         self.read_until(r"\nready\n")
-        for typed, expected in LINES.items():
+        for typed, expected in self.lines.items():
             with self.subTest(typed):
                 os.write(self.terminal, typed.encode() + b"\t\x01echo got: \n")
                 self.assertEqual(self.read_until(r"\ngot: (.*?) *\n")[1], expected)
@@ -64,7 +75,7 @@ class Completion(Pipes):
 
     @unittest.skipUnless(shutil.which("fish"), "fish is not installed")
     def test_fish(self):
-        for typed, expected in LINES.items():
+        for typed, expected in self.lines.items():
             with self.subTest(typed):
                 command = "fish -c 'hc completion fish | source; complete -C \"%s\"'" % typed
                 words = [line.split("\t")[0] for line in self.shell(command).splitlines()]

@@ -127,10 +127,13 @@ Words with_equals(Words words) {
   return words;
 }
 
-/// The value that follows an option; empty if it is not given.
-std::string value_of(const Words& words, const std::string& option) {
+/// Removes an option and the value that follows it, unless that is the last word; returns the value.
+std::string take_value_of(Words& words, const std::string& option) {
   const auto found = std::ranges::find(words, option);
-  return found == words.end() || found + 1 == words.end() ? "" : found[1];
+  if (words.end() - found <= 2) return "";
+  const auto value = found[1];
+  words.erase(found, found + 2);
+  return value;
 }
 
 /// Words for `hc graph VERB`. @param count  of the words after the verb.
@@ -149,14 +152,14 @@ Words words_of_graph(const std::string& verb, std::size_t count, const Running& 
 
 /// The words that may stand where the last one is.
 /// @param words  of the command line, after `hc`; the last one may be empty.
-Words completions(const CLI::App& app, const Words& words) {
+Words completions(const CLI::App& app, Words words) {
+  const std::string of = take_value_of(words, "--of");
   if (words.size() < 2) {
     auto all = verbs_of(app);
     append(all, module_names());
     return all;
   }
   const std::string &name = words.front(), &before = words[words.size() - 2], &word = words.back();
-  const std::string of = value_of(words, "--of");
   const CLI::App* verb = find_verb(app, name);
   const CLI::App* inner = verb == nullptr ? nullptr : find_verb(*verb, words[1]);
   if (before == "--of") return running_graphs();
