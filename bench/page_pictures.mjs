@@ -26,7 +26,10 @@ try {
       await page.setViewportSize({ width, height });
       await page.goto("about:blank");
       await page.goto(`${origin}/#${view}`);
-      if (view === "drive") await page.getByRole("button", { name: "Take the seat" }).click();
+      if (view === "drive") {
+        await page.getByRole("button", { name: "Take the seat" }).click();
+        await page.locator(".seat-problem:empty").waitFor({ state: "attached" });
+      }
       await page.locator(".waiting").first().waitFor({ state: "detached" });
       await page.locator(".bar .focus:not(:empty)").waitFor();
       for (const colorScheme of ["light", "dark"]) {

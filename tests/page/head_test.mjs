@@ -324,6 +324,22 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     await push(0);
   });
 
+  test("the seat says that it waits until the first image has come", async () => {
+    const other = await context.newPage();
+    const images = [];
+    await other.routeWebSocket(/streams\/head_eyes\.left/, (socket) => {
+      const server = socket.connectToServer();
+      server.onMessage((message) => images.push(() => socket.send(message)));
+    });
+    await other.goto(`${origin}/#seat`);
+    await until("an image comes", () => images.length > 0);
+    const says = await other.locator(".seat-problem").textContent();
+    assert.equal(says, "Waiting for the first image…");
+    for (const send of images) send();
+    await other.locator(".seat-problem:empty").waitFor({ state: "attached" });
+    await other.close();
+  });
+
   test("the head looks at a pixel that is pointed at", async () => {
     await takeSeat();
     const image = await page.locator(".seat-image").boundingBox();
