@@ -127,7 +127,8 @@ Words with_equals(Words words) {
   return words;
 }
 
-/// Removes an option and the value that follows it, unless that is the last word; returns the value.
+/// Removes an option and the value that follows it, unless that is the last word; returns the
+/// value.
 std::string take_value_of(Words& words, const std::string& option) {
   const auto found = std::ranges::find(words, option);
   if (words.end() - found <= 2) return "";
