@@ -117,8 +117,9 @@ def read_by_tesseract(segmentation, folder):
 
 def read_board(hc, folder, truth, seed, noise):
     shell(
-        "rm -f eye && %s send --type rotation 0 -0.04 0.3 --coord 13 >gaze && %s simulator --paced=false"
-        " --count 6 --text '%s' --seed %d --noise %d --in gaze=gaze --out left=eye"
+        "rm -f eye && %s send --type rotation 0 -0.04 0.3 --coord 13 >gaze &&"
+        " %s simulator --paced=false --count 6 --text '%s' --seed %d --noise %d"
+        " --in gaze=gaze --out left=eye"
         % (hc, hc, truth, seed, noise),
         folder,
     )

@@ -145,7 +145,7 @@ class Pipes(unittest.TestCase):
         return os.path.join(self.folder.name, name)
 
     def write(self, name, data, mode=0o644):
-        """Makes a file of text or bytes, or replaces it: who reads it never finds half of it."""
+        """Makes a file of text or bytes, or replaces one, which a reader never finds incomplete."""
         path = pathlib.Path(self.path(name))
         new = path.with_name(path.name + ".new")
         new.write_bytes(data if isinstance(data, bytes) else data.encode())

@@ -29,15 +29,15 @@ struct MessageKey {
 /// the clock.
 struct TraceEvent {
   enum class What {
-    Took,    ///< an input took the message from its link
-    Began,   ///< a handler began; with an empty port, that of a timer or the generator
-    Ended,   ///< the handler returned
-    Sent,    ///< an output passed the message to its links
-    Lost,    ///< too many events: `seq` of them were not recorded
-    Set,     ///< the parameter `port` was given another value
-    Read,    ///< the module read its clock, which was `moment`
-    Linked,  ///< a command linked the output `port` to the URI `value` after `seq` of its messages
-    Unlinked,  ///< a command removed such a link after `seq` messages of its output
+    Took,      ///< an input took the message from its link
+    Began,     ///< a handler began; with an empty port, that of a timer or the generator
+    Ended,     ///< the handler returned
+    Sent,      ///< an output passed the message to its links
+    Lost,      ///< too many events: `seq` of them were not recorded
+    Set,       ///< the parameter `port` was given another value
+    Read,      ///< the module read its clock, which was `moment`
+    Linked,    ///< a command linked the output `port` to the URI `value` after `seq` messages
+    Unlinked,  ///< a command removed such a link after `seq` messages
   };
   What what = What::Took;
   std::string port;

@@ -61,7 +61,7 @@ function placeOf(uri: string): string {
 /** @param open  keys of the parts that are open. @param frames  the text of G31. */
 export function structureOf(state: GraphState, open: ReadonlySet<string>, frames = ""): Structure {
   const moved = framesOf(frames).flatMap(({ movedBy }) => movedBy ?? []);
-  // An output of several frames has no one pose.
+  // An output that moves several frames has no single pose.
   const poses = moved.filter((port) => moved.indexOf(port) === moved.lastIndexOf(port));
   const nodes: Node[] = [];
   const nodeOf = new Map<string, string>(); // of a module
