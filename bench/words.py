@@ -119,8 +119,7 @@ def read_board(hc, folder, truth, seed, noise):
     shell(
         "rm -f eye && %s send --type rotation 0 -0.04 0.3 --coord 13 >gaze &&"
         " %s simulator --paced=false --count 6 --text '%s' --seed %d --noise %d"
-        " --in gaze=gaze --out left=eye"
-        % (hc, hc, truth, seed, noise),
+        " --in gaze=gaze --out left=eye" % (hc, hc, truth, seed, noise),
         folder,
     )
     command = "%s read --rate 0 --in image=eye --out text=- | %s cat --json"

@@ -6,8 +6,7 @@
 namespace hc::pan_tilt {
 namespace {
 
-class Begun : public testing::Test {
- protected:
+struct Begun : testing::Test {
   void SetUp() override {
     line.begin();
     line.commands();

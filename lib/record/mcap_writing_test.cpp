@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include <record/recording_test.h>
+
 namespace hc::record {
 namespace {
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -29,11 +30,16 @@ struct Played {
   [[nodiscard]] std::chrono::nanoseconds duration() const { return times.back() - times.front(); }
 };
 
+inline std::vector<Place> places_of(const std::vector<std::string>& words) {
+  std::vector<Place> places(words.size());
+  std::ranges::transform(words, places.begin(),
+                         [](const auto& word) { return must(place_of(word)); });
+  return places;
+}
+
 inline Played play(const std::vector<std::string>& words, Time from = {}) {
   Played all;
-  std::vector<Place> places;
-  for (const auto& word : words) places.push_back(must(place_of(word)));
-  auto reader = Reader::open(places, {});
+  auto reader = Reader::open(places_of(words), {});
   if (!reader) {
     all.error = reader.error();
     return all;
@@ -83,7 +89,7 @@ class Recordings : public ::testing::Test {
   [[nodiscard]] std::string in(const std::string& name) const { return folder_ / name; }
   /// Writes a file; returns its path.
   std::string write(const std::string& name, const std::string& bytes) const {
-    const auto path = in(name);
+    auto path = in(name);
     std::filesystem::create_directories(std::filesystem::path(path).parent_path());
     std::ofstream(path, std::ios::binary) << bytes;
     return path;
@@ -91,10 +97,8 @@ class Recordings : public ::testing::Test {
   /// Copies recordings into a new one, as `hc record` does.
   [[nodiscard]] Written copied(const std::vector<std::string>& words, const std::string& name,
                                const WriterOptions& options = {}) const {
-    std::vector<Place> places;
-    for (const auto& word : words) places.push_back(must(place_of(word)));
     auto writer = writer_of(in(name), options);
-    auto reader = Reader::open(places, {}, writer->copied_topics());
+    auto reader = Reader::open(places_of(words), {}, writer->copied_topics());
     EXPECT_TRUE(reader) << reader.error().text();
     EXPECT_TRUE(writer->copy_head(**reader));
     for (auto copied = Result<bool>(true); copied && *copied;) copied = writer->copy(**reader);
