@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recorder.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <set>
 #include <utility>
 
 #include <client/graph_client.h>
-#include <hc/base/natural_order.h>
 #include <hc/compress/compress.h>
 #include <hc/contract/description.h>
-#include <record/reader.h>
 
 #include "encoder.h"
 
@@ -22,12 +17,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMaxName = 40, kMaxPorts = 256;
-constexpr std::string_view kEnding = ".mcap";
-
-bool is_recording_name(std::string_view name) {
-  return !name.empty() && name.size() <= kMaxName &&
-         std::ranges::all_of(name, hc::is_of_graph_name);
-}
 
 /// Records the descriptions of the modules of ports, with the columns of tables.
 void record_descriptions(hc::record::Writer& writer, const hc::RunningGraph& graph,
@@ -45,53 +34,9 @@ void record_descriptions(hc::record::Writer& writer, const hc::RunningGraph& gra
 
 }  // namespace
 
-std::vector<Recorded> list_recordings(const std::string& folder) {
-  std::vector<Recorded> all;
-  std::error_code failed;
-  fs::directory_iterator each(folder, failed);
-  for (; !failed && each != fs::directory_iterator(); each.increment(failed)) {
-    Recorded recorded{each->path().stem().string(), 0, {}, ""};
-    if (each->path().extension() != kEnding || !is_recording_name(recorded.name)) continue;
-    auto reader = hc::mcap::Reader::open(each->path());
-    if (reader) {
-      recorded.bytes = reader->size();
-      for (const auto& stream : hc::record::streams_of(reader->summary()))
-        recorded.streams.push_back(stream.name);
-    } else {
-      std::error_code no_file;
-      recorded.bytes = fs::file_size(each->path(), no_file);
-      if (no_file) continue;
-      recorded.problem = reader.error().detail;
-    }
-    all.push_back(std::move(recorded));
-  }
-  std::ranges::sort(all, hc::natural_less, &Recorded::name);
-  return all;
-}
-
-web::Reply recorded_file(const std::string& folder, const std::string& file) {
-  web::Reply reply;
-  struct stat about {};
-  // O_NONBLOCK, so as not to wait for the writer of a FIFO.
-  if (file.ends_with(kEnding) && is_recording_name(file.substr(0, file.size() - kEnding.size())))
-    reply.file =
-        hc::Descriptor(::open((folder + "/" + file).c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-  if (!reply.file || ::fstat(reply.file.get(), &about) != 0 || !S_ISREG(about.st_mode))
-    return web::refusal(404, "no such recording");
-  reply.size = static_cast<std::uint64_t>(about.st_size);
-  reply.type = "application/octet-stream";
-  reply.fields = {{"Content-Disposition", "attachment; filename=\"" + file + "\""}};
-  return reply;
-}
-
-hc::Status delete_recording(const std::string& folder, const std::string& name) {
-  const fs::path path = folder + "/" + name + std::string(kEnding);
-  std::error_code failed;
-  if (!is_recording_name(name) || fs::symlink_status(path, failed).type() != fs::file_type::regular)
-    return hc::Error{hc::Code::Invalid, "no recording " + name};
-  if (fs::remove(path, failed); failed)
-    return hc::Error{hc::Code::System, path.string() + ": " + failed.message()};
-  return {};
+bool is_recording_name(std::string_view name) {
+  return !name.empty() && name.size() <= kMaxName &&
+         std::ranges::all_of(name, hc::is_of_graph_name);
 }
 
 hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& graph,
@@ -109,7 +54,7 @@ hc::Result<std::unique_ptr<Recorder>> Recorder::begin(const hc::RunningGraph& gr
     if (!hc::is_port_name(port))
       return hc::Error{Code::Invalid, "\"" + port + "\" is not MODULE.PORT"};
   const hc::record::Place place =
-      HC_TRY(hc::record::place_of(options.folder + "/" + name + std::string(kEnding)));
+      HC_TRY(hc::record::place_of(options.folder + "/" + name + ".mcap"));
   std::error_code failed;
   if (fs::symlink_status(place.path, failed).type() != fs::file_type::not_found)
     return hc::Error{Code::Invalid, "recording " + name + " exists already"};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Recordings made by a page, each an MCAP file (spec/page.md, section 6).
+// A recording that a page makes, an MCAP file (spec/page.md, section 6). It waits for the disk: not
+// for the server's thread, which also handles stops.
 
 #include <atomic>
 #include <chrono>
@@ -13,27 +14,9 @@
 #include <client/tap.h>
 #include <hc/base/log.h>
 #include <record/writer.h>
-#include <web/server.h>
 
-namespace web = hc::web;
-
-struct Recorded {
-  std::string name;  ///< 1 to 40 letters, digits, `-` and `_`
-  std::uintmax_t bytes = 0;
-  std::vector<std::string> streams;  ///< MODULE.PORT
-  std::string problem;               ///< why it cannot be read; empty: it can
-};
-
-// Functions that wait for the disk must not run on the server's thread, which also handles stops.
-
-/// The recordings in a folder, by name.
-std::vector<Recorded> list_recordings(const std::string& folder);
-
-/// The recording in a file NAME.mcap, in its current length; 404 if there is none.
-web::Reply recorded_file(const std::string& folder, const std::string& file);
-
-/// Deletes a recording. Errors: Invalid (there is none), System.
-hc::Status delete_recording(const std::string& folder, const std::string& name);
+/// Whether a recording may have that name: 1 to 40 letters, digits, `-` and `_`.
+bool is_recording_name(std::string_view name);
 
 /// A running recording, until end(). A write error, e.g. on a full disk, ends it; the file keeps
 /// all before. Its destructor may wait for the disk, unless it has ended.

@@ -1,11 +1,84 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recordings.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include <hc/base/natural_order.h>
+#include <record/reader.h>
+
+namespace fs = std::filesystem;
+
 namespace {
+
+constexpr std::string_view kEnding = ".mcap";
+
+struct Recorded {
+  std::string name;
+  std::uintmax_t bytes = 0;
+  std::vector<std::string> streams;  // MODULE.PORT
+  std::string problem;               // why it cannot be read; empty: it can
+};
+
+// These wait for the disk: not for the server's thread, which also handles stops.
+
+/// The recordings in a folder, by name.
+std::vector<Recorded> list_recordings(const std::string& folder) {
+  std::vector<Recorded> all;
+  std::error_code failed;
+  fs::directory_iterator each(folder, failed);
+  for (; !failed && each != fs::directory_iterator(); each.increment(failed)) {
+    Recorded recorded{each->path().stem().string(), 0, {}, ""};
+    if (each->path().extension() != kEnding || !is_recording_name(recorded.name)) continue;
+    auto reader = hc::mcap::Reader::open(each->path());
+    if (reader) {
+      recorded.bytes = reader->size();
+      for (const auto& stream : hc::record::streams_of(reader->summary()))
+        recorded.streams.push_back(stream.name);
+    } else {
+      std::error_code no_file;
+      recorded.bytes = fs::file_size(each->path(), no_file);
+      if (no_file) continue;
+      recorded.problem = reader.error().detail;
+    }
+    all.push_back(std::move(recorded));
+  }
+  std::ranges::sort(all, hc::natural_less, &Recorded::name);
+  return all;
+}
+
+/// The recording in a file NAME.mcap, in its current length; 404 if there is none.
+web::Reply recorded_file(const std::string& folder, const std::string& file) {
+  web::Reply reply;
+  struct stat about {};
+  // O_NONBLOCK, so as not to wait for the writer of a FIFO.
+  if (file.ends_with(kEnding) && is_recording_name(file.substr(0, file.size() - kEnding.size())))
+    reply.file =
+        hc::Descriptor(::open((folder + "/" + file).c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  if (!reply.file || ::fstat(reply.file.get(), &about) != 0 || !S_ISREG(about.st_mode))
+    return web::refusal(404, "no such recording");
+  reply.size = static_cast<std::uint64_t>(about.st_size);
+  reply.type = "application/octet-stream";
+  reply.fields = {{"Content-Disposition", "attachment; filename=\"" + file + "\""}};
+  return reply;
+}
+
+/// Errors: Invalid (there is none), System.
+hc::Status delete_recording(const std::string& folder, const std::string& name) {
+  const fs::path path = folder + "/" + name + std::string(kEnding);
+  std::error_code failed;
+  if (!is_recording_name(name) || fs::symlink_status(path, failed).type() != fs::file_type::regular)
+    return hc::Error{hc::Code::Invalid, "no recording " + name};
+  if (fs::remove(path, failed); failed)
+    return hc::Error{hc::Code::System, path.string() + ": " + failed.message()};
+  return {};
+}
 
 web::Reply list_of(const std::string& folder) {
   auto list = nlohmann::json::array();

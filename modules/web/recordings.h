@@ -14,6 +14,8 @@
 #include <web/server.h>
 #include "recorder.h"
 
+namespace web = hc::web;
+
 class Recordings {
  public:
   /// Called on the server's thread.
