@@ -31,8 +31,7 @@ TEST(Markers, that_tremble_are_smoothed_and_that_are_moved_are_not) {
   EXPECT_EQ(markers.find(101)->translation().x(), 2);
 }
 
-class Scenes : public testing::Test {
- protected:
+struct Scenes : testing::Test {
   void make(const std::string& objects) {
     auto renderer = hc::graphics::Renderer::make();
     ASSERT_TRUE(renderer) << renderer.error().text();

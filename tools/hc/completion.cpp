@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <graph/programs.h>
 #include <hc/base/format.h>
@@ -132,7 +133,7 @@ Words with_equals(Words words) {
 std::string take_value_of(Words& words, const std::string& option) {
   const auto found = std::ranges::find(words, option);
   if (words.end() - found <= 2) return "";
-  const auto value = found[1];
+  auto value = std::move(found[1]);
   words.erase(found, found + 2);
   return value;
 }
