@@ -97,13 +97,14 @@ void Follower::see(double time, const Angles& angles) {
   // Unwrap: −π and π are the same direction.
   const double here = pan_.quick.state(0);
   const double pan = is_same ? here + std::remainder(angles.pan - here, 2 * M_PI) : angles.pan;
-  // A target that reverses suddenly still fits the slow filter; one that keeps accelerating is
-  // close to the prediction of the quick one, whose bound after a pause would include any leap.
+  // A target that reverses suddenly still fits the slow filter; one that keeps accelerating fits
+  // the quick one, whose bound is limited, as after a pause it would include any leap.
   if (is_same) {
     for (auto* axis : {&pan_, &tilt_}) step(time - *last_, *axis);
     const auto can_be = [&](const Axis& axis, double angle) {
-      constexpr double kClose = 0.05;  // [rad]
-      return std::abs(angle - axis.quick.state(0)) <= kClose ||
+      constexpr double kMost = 0.4;  // about that of the slow filter at rest [rad]
+      return (axis.quick.can_be(angle, options_) &&
+              std::abs(angle - axis.quick.state(0)) <= kMost) ||
              axis.slow.can_be(angle, slow(options_));
     };
     is_same = can_be(pan_, pan) && can_be(tilt_, angles.tilt);

@@ -93,6 +93,18 @@ TEST(Follower, a_leap_after_a_pause_is_no_motion) {
   }
 }
 
+TEST(Follower, a_pause_in_fast_motion_is_no_leap) {
+  Follower follower({});
+  for (int i = 0; i < 400; ++i) {
+    const double t = 0.05 * i, since = std::fmod(t, 2.0);
+    if (t > 1 && since < 0.3) continue;
+    follower.see(t, {0.8 * std::sin(2 * t), 0});
+    if (t > 1 && since < 0.35) {
+      EXPECT_NE(follower.at(t)->pan_rate, 0) << t;
+    }
+  }
+}
+
 TEST(Follower, smooth_acceleration_is_no_leap) {
   // A person who shakes the head, at 100 measurements a second.
   constexpr double kAmplitude = 0.9, kAngular = 1.4;
