@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <drivers/pan_tilt/neck.h>
 
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include <drivers/pan_tilt/pseudo_terminal_test.h>
@@ -11,6 +13,23 @@ namespace {
 
 using std::chrono::milliseconds;
 using Phase = Conversation::Phase;
+
+/// A manual clock after whose next reading the process waits.
+class WaitingClock final : public Clock {
+ public:
+  [[nodiscard]] MonotonicTime monotonic() const override {
+    const auto time = manual_.monotonic();
+    if (wait) std::exchange(wait, {})();
+    return time;
+  }
+  [[nodiscard]] Time wall() const override { return manual_.wall(); }
+  void advance(std::chrono::nanoseconds by) { manual_.advance(by); }
+
+  mutable std::function<void()> wait;
+
+ private:
+  ManualClock manual_;
+};
 
 /// A neck with a manual clock, and a unit on a pseudo-terminal.
 class NeckTest : public ::testing::Test {
@@ -41,7 +60,7 @@ class NeckTest : public ::testing::Test {
   NeckTest() { clock_.advance(milliseconds(1000)); }
   [[nodiscard]] MonotonicTime now() const { return clock_.monotonic(); }
 
-  ManualClock clock_;
+  WaitingClock clock_;
   std::optional<PseudoTerminal> terminal_;
   Unit unit_;
   bool is_silent_ = false;
@@ -54,6 +73,24 @@ class NeckTest : public ::testing::Test {
              },
              [this](const Gaze& gaze) { seen_.push_back(gaze); }};
 };
+
+TEST_F(NeckTest, an_answer_that_comes_while_the_process_waits_is_of_then) {
+  begin();
+  run(milliseconds(100));
+  seen_.clear();
+  const auto asked = now();
+  neck_.look();
+  clock_.advance(milliseconds(1));
+  clock_.wait = [this] {
+    clock_.advance(milliseconds(40));
+    terminal_->write(unit_.take(std::chrono::duration<double>(now()).count(), terminal_->read()));
+  };
+  neck_.read();
+  neck_.pass(settings_);
+  ASSERT_EQ(seen_.size(), 1U);
+  // Its question was on the line at 960 bytes a second first.
+  EXPECT_GE(seen_[0].time - asked, milliseconds(2));
+}
 
 TEST_F(NeckTest, finds_the_unit_commands_it_and_says_where_it_looks) {
   begin();
