@@ -157,6 +157,10 @@ describe("the seat", { timeout: 10 * watchdog }, () => {
 
   test("a headset shows each eye its depth, in colours and as fog in its images", async () => {
     await page.setViewportSize({ width: 480, height: 400 });
+    let isLost = false;
+    await page.routeWebSocket(/streams\/depth\.right_depth/, (socket) => {
+      socket.connectToServer().onMessage((message) => isLost || socket.send(message));
+    });
     await takeSeat();
     await page.locator(".seat-tools button", { hasText: "Depth" }).click();
     await page.evaluate(() => (window.headset.stereoEnabled = true));
@@ -170,6 +174,11 @@ describe("the seat", { timeout: 10 * watchdog }, () => {
     await until("both halves are the room in fog", async () =>
       (await halvesSeen()).every(({ drawn, coloured }) => drawn > 0.2 && coloured < 0.2 * drawn),
     );
+    isLost = true;
+    await until("the eye whose images are lost is dark, the other one is not", async () => {
+      const [left, right] = await halvesSeen();
+      return left.drawn > 0.2 && right.drawn === 0;
+    });
     await page.getByRole("button", { name: "Leave the headset" }).dispatchEvent("click");
     await page.getByRole("button", { name: "Enter the headset" }).waitFor();
     await page.evaluate(() => (window.headset.stereoEnabled = false));
@@ -192,7 +201,7 @@ describe("the seat", { timeout: 10 * watchdog }, () => {
     await page.locator('[data-task="read"]').click();
     await inFocus("read");
     await page.evaluate(() => {
-      const end = performance.now() + 500; // longer than what is commanded lasts
+      const end = performance.now() + 500; // longer than a command lasts
       while (performance.now() < end);
     });
     const slow = page.locator(".seat-who", { hasText: "this page is too slow" });
@@ -204,7 +213,7 @@ describe("the seat", { timeout: 10 * watchdog }, () => {
     await page.getByRole("button", { name: "Leave the seat" }).click();
   });
 
-  test("who leaves the page leaves the seat", async () => {
+  test("a person who leaves the page leaves the seat", async () => {
     await takeSeat();
     await page.evaluate(() => {
       Object.defineProperty(document, "hidden", { configurable: true, get: () => true });

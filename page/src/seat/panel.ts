@@ -36,6 +36,7 @@ class SeatPanel {
   private readonly tasks: TaskButtons;
   private readonly phone: PhoneTracker;
   private xr?: XrView;
+  private isClosed = false;
   private gaze?: GazeHistory;
   private ears?: Ears;
   private readonly ends: (() => void)[] = [];
@@ -167,6 +168,7 @@ class SeatPanel {
   }
 
   close(): void {
+    this.isClosed = true;
     for (const end of this.ends) end();
     if (this.seat.isHeld) this.host.say("You have left the seat.");
     this.phone.stop();
@@ -238,7 +240,7 @@ class SeatPanel {
       const { XrView } = await import("./xr");
       const pose = headOutput(server.session?.frames ?? "");
       if (pose && !this.gaze) this.gaze = new GazeHistory(server, pose);
-      this.xr = await XrView.enter({
+      const xr = await XrView.enter({
         focal: this.view.focal,
         turned: (angles) => this.seat.turn(angles),
         gazeAt: (time) => this.gaze?.at(time),
@@ -248,8 +250,10 @@ class SeatPanel {
           this.xrButton.textContent = "Enter the headset";
         },
       });
+      if (this.isClosed) return xr.leave();
+      this.xr = xr;
       this.seat.orient();
-      this.view.showIn(this.xr);
+      this.view.showIn(xr);
       this.xrButton.textContent = "Leave the headset";
     } catch (error) {
       this.host.say(error instanceof Error ? error.message : String(error));

@@ -14,6 +14,8 @@ import type { XrView } from "./xr";
 /** Maximum width of requested images [px]. */
 const widest = 1280;
 const waiting = "Waiting for the first image…";
+/** After this time without an image of an eye, a headset shows the other one alone [ms]. */
+const patience = 1000;
 
 const close = ({ bitmap }: Picture): void => bitmap.close();
 
@@ -34,6 +36,8 @@ export class SeatView {
   /** The images shown. */
   private pictures: Pictures = {};
   private readonly pairing = new Pairing<Picture>(close);
+  /** When each eye's last image came, or its stream was opened. */
+  private readonly came: Record<Side, number> = { left: 0, right: 0 };
   private pairs: readonly EyePair[] = [];
   private readonly resizing: ResizeObserver;
   private drawing = false;
@@ -56,7 +60,8 @@ export class SeatView {
 
   close(): void {
     this.resizing.disconnect();
-    this.xr?.leave();
+    this.xr = undefined; // its session ends later, and then opens nothing
+    this.pairs = [];
     this.shut();
   }
 
@@ -163,6 +168,7 @@ export class SeatView {
     const wanted = this.xr ? (["left", "right"] as const) : sidesOf(this.shownWay);
     const range = new SlowRange();
     for (const side of wanted) {
+      this.came[side] = performance.now();
       const port = side === "left" ? pair.left : (pair.right ?? pair.left);
       const image = pair.images?.[side === "left" ? 0 : 1];
       const depth = pair.coding && { coding: pair.coding, image, range };
@@ -176,7 +182,12 @@ export class SeatView {
 
   /** Takes an image of an eye. @param isAlone  The other eye is not shown. */
   private take(side: Side, picture: Picture, isAlone: boolean): void {
-    const pictures = isAlone ? { [side]: picture } : this.pairing.take(side, picture);
+    this.came[side] = performance.now();
+    const since = this.came[side] - this.came[side === "left" ? "right" : "left"];
+    const isOtherLost = this.xr !== undefined && since > patience;
+    if (isOtherLost) this.pairing.close();
+    const pictures =
+      isAlone || isOtherLost ? { [side]: picture } : this.pairing.take(side, picture);
     if (!pictures) return;
     this.xr?.show(pictures);
     this.replace(pictures);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Telepresence in a headset: each eye sees the robot's eye's image, both of one time, in the direction
-// in which the head looked then.
+// Telepresence in a headset: each eye sees the image of the robot's eye, in the direction in which the
+// head looked then.
 import {
   CanvasTexture,
   Group,
@@ -50,7 +50,10 @@ class Quad {
     this.mesh.visible = false;
   }
 
-  show(picture: Picture, focal: number): void {
+  show(picture: Picture | undefined, focal: number): void {
+    this.picture = picture;
+    this.mesh.visible = picture !== undefined;
+    if (!picture) return;
     const { width, height } = picture.bitmap;
     if (!this.texture || this.canvas.width !== width || this.canvas.height !== height) {
       this.canvas.width = width;
@@ -67,8 +70,6 @@ class Quad {
     this.texture.needsUpdate = true;
     const scale = distance / focal;
     this.mesh.scale.set(picture.width * scale, picture.height * scale, 1);
-    this.mesh.visible = true;
-    this.picture = picture;
   }
 
   dispose(): void {
@@ -117,12 +118,10 @@ export class XrView {
     return view;
   }
 
-  /** Shows both eyes' images of one time. */
+  /** Shows both eyes' images, or that of one: the other eye is dark. */
   show(pictures: Pictures): void {
-    for (const side of ["left", "right"] as const) {
-      const picture = pictures[side];
-      if (picture) this.quads[side].show(picture, this.options.focal);
-    }
+    for (const side of ["left", "right"] as const)
+      this.quads[side].show(pictures[side], this.options.focal);
   }
 
   /** Makes the current orientation straight ahead. */
@@ -149,7 +148,7 @@ export class XrView {
       const turned = since(this.zeroed, now);
       this.last = { turned, at: performance.now() };
       this.options.turned(turned);
-      const { picture } = this.quads.left;
+      const picture = this.quads.left.picture ?? this.quads.right.picture;
       const gaze = (picture && this.options.gazeAt(picture.time)) ?? turned;
       this.gaze.position.set(position.x, position.y, position.z);
       // Body axes to WebXR axes: left is -x, forward is -z; angles are about fixed axes.
