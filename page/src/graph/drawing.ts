@@ -74,6 +74,10 @@ export class Drawing {
   private now?: Now;
   /** The last poses, by output. */
   private readonly turned = new Map<string, { readonly pose: Pose; readonly at: number }>();
+  /** Hides poses that are too old, also while nothing comes. */
+  private readonly ageing = window.setInterval(() => {
+    for (const mark of this.nodes) this.updatePose(mark);
+  }, 500);
   /** Keys of the parts that are open. */
   private readonly open = new Set<string>();
   /** Key of the item in the tab order; arrow keys continue from it. */
@@ -88,6 +92,7 @@ export class Drawing {
   }
 
   close(): void {
+    clearInterval(this.ageing);
     this.viewport.close();
   }
 
@@ -216,7 +221,7 @@ export class Drawing {
     setText(title, [`${node.label}${focus}: ${saying.text}`, ...turned, ...loads].join("\n"));
   }
 
-  /** How the frame is turned that a node moves, if that is known now. */
+  /** The latest pose of the frame that a node moves, unless it is too old. */
   private poseOf({ pose }: NodeMark["node"]): Pose | undefined {
     const last = this.turned.get(pose);
     return last && performance.now() - last.at < longestPose ? last.pose : undefined;

@@ -69,6 +69,11 @@ test("a node that moves a frame shows its pose, and has room for it", () => {
   assert.notEqual(structureKey(head, closed, frames), structureKey(head, closed));
 });
 
+test("an output that moves several frames shows no pose", () => {
+  const two = `${frames}; hand 12 robot neck.pose 3`;
+  assert.ok(structureOf(head, closed, two).nodes.every(({ pose }) => pose === ""));
+});
+
 test("angles are whole degrees with their sign", () => {
   assert.deepEqual([12.4, -3.3, -0.4, 179.6].map(degreesText), ["12°", "−3°", "0°", "180°"]);
 });
