@@ -11,7 +11,8 @@
 namespace tool {
 namespace {
 
-/// Warnings of files here that modules would read. Devices are for `hc doctor`: they come and go.
+/// Warnings of missing or unreadable files on this machine that modules would read. Devices are for
+/// `hc doctor`: they come and go.
 std::vector<std::string> warn_of_files(const hc::Plan& plan) {
   std::vector<std::string> warnings;
   for (const auto& [module, text, question] : needs_of(part_of(plan, "")).places) {

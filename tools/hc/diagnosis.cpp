@@ -26,10 +26,10 @@ bool has_word(std::string_view name, std::initializer_list<std::string_view> wor
   });
 }
 
-/// Whether a name ends like that of a file: a dot, and two to five letters and digits, such as mp4.
+/// Whether a name ends like that of a file: a dot, a letter, and one to four letters and digits.
 bool has_extension(std::string_view name) {
-  auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0; };
-  auto is_either = [](unsigned char c) { return std::isalnum(c) != 0; };
+  auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  auto is_either = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
   const auto ending = std::string_view(name).substr(std::min(name.rfind('.'), name.size() - 1) + 1);
   return ending.size() >= 2 && ending.size() <= 5 && ending.size() + 1 < name.size() &&
          is_letter(ending.front()) && std::ranges::all_of(ending, is_either);
@@ -64,10 +64,11 @@ void add_end(const std::string& module, const std::string& text, bool is_input, 
         need_of_path(module, link, uri->rest, !is_input || uri->scheme != "file"));
 }
 
-/// Whether a parameter names a file to write, though its name reads like one to read.
+/// Whether a parameter names a file or folder to write, though its name reads like one to read.
 bool is_result(const hc::PlannedModule& module, std::string_view parameter) {
-  return std::filesystem::path(module.program).filename() == "stereo_calibration" &&
-         parameter == "calibration_file";
+  const auto program = std::filesystem::path(module.program).filename();
+  return (program == "stereo_calibration" && parameter == "calibration_file") ||
+         (program == "recorder" && (parameter == "file" || parameter == "folder"));
 }
 
 std::string gigabytes(std::uint64_t bytes) {
@@ -127,9 +128,7 @@ Needs needs_of(const hc::Plan& plan) {
     if (std::filesystem::path(module.program).filename() == "view" && !may_have_none)
       needs.viewers.push_back(module.name);
     for (const auto& [name, value] : given)
-      if (is_result(module, name))
-        needs.places.push_back(need_of_path(module.name, "parameter " + name, value, true));
-      else if (auto need = need_of_parameter(module.name, name, value))
+      if (auto need = need_of_parameter(module.name, name, value); need && !is_result(module, name))
         needs.places.push_back(std::move(*need));
     for (const auto& end : module.ends) add_end(module.name, end.uri, end.is_input, needs);
   }

@@ -133,6 +133,17 @@ TEST(Doctor, WhatAPlanNamesOutsideOfItself) {
                                                          "read /focus.mtp", "write logs"}));
 }
 
+TEST(Doctor, ResultsNeedNoFile) {
+  hc::Plan plan;
+  plan.modules.resize(2);
+  plan.modules[0].program = "/lib/recorder";
+  plan.modules[0].parameters = {
+      {"file", "run.mcap"}, {"folder", "out/kept"}, {"frames_file", "f.txt"}};
+  plan.modules[1].program = "/lib/stereo_calibration";
+  plan.modules[1].parameters = {{"calibration_file", "head.yml"}};
+  EXPECT_EQ(needs_of(plan).questions(), std::vector<std::string>{"read f.txt"});
+}
+
 TEST(Doctor, AViewWithoutAWindowNeedsNoDisplay) {
   for (const auto& [name, value] : {std::pair("window", "no"), {"save", "a.png"}}) {
     auto plan = some_plan();
