@@ -26,6 +26,7 @@ LINES = {
     "hc send --of NAME --to bright": "hc send --of NAME --to brightness.image",
     "hc graph --of NAME restart cam": "hc graph --of NAME restart camera",
     "hc graph --of NAME set camera.lo": "hc graph --of NAME set camera.loop=",
+    "hc graph --of=NAME set camera.lo": "hc graph --of=NAME set camera.loop=",
 }
 
 

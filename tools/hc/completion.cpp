@@ -128,14 +128,26 @@ Words with_equals(Words words) {
   return words;
 }
 
-/// Removes an option and the value that follows it, unless that is the last word; returns the
-/// value.
-std::string take_value_of(Words& words, const std::string& option) {
-  const auto found = std::ranges::find(words, option);
-  if (words.end() - found <= 2) return "";
-  auto value = std::move(found[1]);
-  words.erase(found, found + 2);
-  return value;
+/// Removes `--of NAME` or `--of=NAME`, which bash gives as three words, unless NAME is the last
+/// word, which may be incomplete; returns NAME.
+std::string take_graph(Words& words) {
+  constexpr std::string_view kOption = "--of", kJoined = "--of=";
+  std::string name;
+  for (auto each = words.begin(); each != words.end(); ++each) {
+    const auto left = words.end() - each;
+    if (each->starts_with(kJoined) && left > 1) {
+      name = each->substr(kJoined.size());
+      words.erase(each);
+      break;
+    }
+    const auto length = left > 1 && each[1] == "=" ? 3 : 2;
+    if (*each == kOption && left > length) {
+      name = each[length - 1];
+      words.erase(each, each + length);
+      break;
+    }
+  }
+  return name;
 }
 
 /// Words for `hc graph VERB`. @param count  of the words after the verb.
@@ -155,7 +167,7 @@ Words words_of_graph(const std::string& verb, std::size_t count, const Running& 
 /// The words that may stand where the last one is.
 /// @param words  of the command line, after `hc`; the last one may be empty.
 Words completions(const CLI::App& app, Words words) {
-  const std::string of = take_value_of(words, "--of");
+  const std::string of = take_graph(words);
   if (words.size() < 2) {
     auto all = verbs_of(app);
     append(all, module_names());
