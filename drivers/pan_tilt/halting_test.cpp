@@ -5,8 +5,7 @@
 namespace hc::pan_tilt {
 namespace {
 
-class Holding : public testing::Test {
- protected:
+struct Holding : testing::Test {
   void SetUp() override {
     line.host.set_hold(milliseconds(200));
     line.begin();

@@ -14,8 +14,7 @@
 namespace hc::graphics {
 namespace {
 
-class Models : public ::testing::Test {
- protected:
+struct Models : testing::Test {
   std::string write(const std::string& name, const std::string& text) {
     std::ofstream(folder / name) << text;
     return folder / name;

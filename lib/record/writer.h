@@ -48,11 +48,11 @@ struct Written {
   /// without number.
   std::string place;
   std::vector<std::string> files;  ///< files with contents that are still there
-  std::uint64_t messages = 0;      ///< written; after close(), in the files
-  std::uint64_t bytes = 0;         ///< of the elements of all messages passed
-  std::uint64_t lost = 0;          ///< messages passed but not written
-  std::uint64_t discarded = 0;     ///< messages removed by `keep`, or by `last` and not saved
-  Status status;                   ///< the error that ended the recording
+  std::uint64_t messages = 0;   ///< written; after close(), in the files, also of those moved since
+  std::uint64_t bytes = 0;      ///< of the elements of all messages passed
+  std::uint64_t lost = 0;       ///< messages passed but not written
+  std::uint64_t discarded = 0;  ///< messages removed by `keep`, or by `last` and not saved
+  Status status;                ///< the error that ended the recording
 };
 
 class Writer {

@@ -85,7 +85,7 @@ TEST(ImageSequence, no_image_is_skipped) {
   };
   EXPECT_EQ(refusal(folder), "");
   const std::string empty = folder / "2.jpg", away = folder / "3.png";
-  std::ofstream{empty};
+  { const std::ofstream file(empty); }
   for (const auto& name : {std::string(folder), empty})
     EXPECT_NE(refusal(name).find(empty + ": not a readable image"), std::string::npos) << name;
   std::filesystem::remove(empty);

@@ -130,8 +130,9 @@ void StreamRecorder::end() {
 
 void StreamRecorder::fail_once(const hc::Status& status) {
   if (status || std::exchange(has_failed_, true)) return;
-  module_.log("recording ended: " + status.error().detail + "; the recording is intact up to here",
-              hc::Level::Error);
+  module_.log(
+      "recording ended: " + status.error().detail + "; the messages written before are kept",
+      hc::Level::Error);
 }
 
 int StreamRecorder::finish(int status) const {

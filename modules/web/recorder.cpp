@@ -105,8 +105,8 @@ void Recorder::write(std::size_t stream, const hc::Message& message) {
 
 void Recorder::fail(const hc::Error& error) {
   if (!has_failed_.exchange(true))
-    log_(hc::Level::Error,
-         "recording of " + name_ + " ended: " + error.detail + "; the file keeps all before");
+    log_(hc::Level::Error, "recording of " + name_ + " ended: " + error.detail +
+                               "; the messages written before are kept");
 }
 
 double Recorder::seconds() const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A recording that a page makes, an MCAP file (spec/page.md, section 6). It waits for the disk: not
-// for the server's thread, which also handles stops.
+// A recording that a page makes, an MCAP file (spec/page.md, section 6). Functions that wait for
+// the disk must not run on the server's thread, which also handles stops.
 
 #include <atomic>
 #include <chrono>

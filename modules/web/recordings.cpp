@@ -26,7 +26,7 @@ struct Recorded {
   std::string problem;               // why it cannot be read; empty: it can
 };
 
-// These wait for the disk: not for the server's thread, which also handles stops.
+// These wait for the disk, so they must not run on the server's thread, which also handles stops.
 
 /// The recordings in a folder, by name.
 std::vector<Recorded> list_recordings(const std::string& folder) {

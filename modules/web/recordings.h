@@ -33,7 +33,7 @@ class Recordings {
   /// Ends a recording that cannot continue. To be called periodically.
   void tick();
 
-  /// What is being recorded: its `name`, `bytes`, `seconds` and `streams`; null: nothing.
+  /// The running recording: its `name`, `bytes`, `seconds` and `streams`; null: none.
   [[nodiscard]] nlohmann::json current() const;
 
  private:

@@ -77,7 +77,7 @@ class Compatibility(Pipes):
 
     def test_graph_files(self):
         def check(_):
-            for name in ("gaze.mtp", "stops.mtp"):  # which links of check.toml read
+            for name in ("gaze.mtp", "stops.mtp"):  # read by links of check.toml
                 self.write(name, "")
             for name in ("check.toml", "run.toml"):
                 self.assertIn("no problems found", self.shell("hc check " + name))

@@ -90,7 +90,7 @@ class Losses(HostsTest):
         lines = self.await_lines(process, "error: recording ended")
         self.assertRegex(
             lines[-1],
-            r"ended: kept/camera\.left\.mtp: write\(\): File too large; the recording is intact up to here",
+            r"ended: kept/camera\.left\.mtp: write\(\): File too large; the messages written before are kept",
         )
         state = self.state(messages)
         self.flows(messages, state["links"][0]["messages"] + 50)

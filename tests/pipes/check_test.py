@@ -110,7 +110,7 @@ class Check(Pipes):
             out = self.shell("hc check %s/graphs/%s" % (ROOT, graph))
             self.assertRegex(out, r"\.toml: [0-9]+ modules?, [0-9]+ links?: no problems found\n$")
 
-    def test_a_file_that_is_missing_is_warned_of(self):
+    def test_warns_of_a_missing_file(self):
         self.write("there.jpg", "")
         graph = "version = 1\n[modules.camera]\nparameters = { source = '%s' }\n"
         for source, problem in (

@@ -75,7 +75,7 @@ class Mcap(Recordings):
     def test_hc_record_on_a_disk_of_2_mb(self):
         self.noise(400)
         self.assertEqual(self.on_a_small_disk("hc record noise.mtp disk/x.mcap"), 1, self.err)
-        self.assertIn("No space left on device; the recording is intact up to here", self.err)
+        self.assertIn("No space left on device; the messages written before are kept", self.err)
         self.assertEqual(self.err.count("\n"), 1, self.err)
         seqs = self.seqs("kept/x.mcap")  # status 0: the file is whole
         self.assertEqual(seqs, list(range(len(seqs))))

@@ -143,7 +143,7 @@ class Recordings(Page):
         path = self.record(graph)
         # As on a full disk: a write that fails.
         resource.prlimit(self.pid(graph), resource.RLIMIT_FSIZE, (path.stat().st_size + 5000,) * 2)
-        self.hear(graph, 2, lambda text: "the file keeps all before" in text)
+        self.hear(graph, 2, lambda text: "the messages written before are kept" in text)
         self.hear(graph, 3, lambda text: json.loads(text)["recording"] is None)
         self.assertRegex(self.shell("hc info recordings/one.mcap"), r"camera\.left +[1-9]")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What tests of modules that see the simulated room share."""
+"""Shared by the tests of modules that see the simulated room."""
 
 import json
 

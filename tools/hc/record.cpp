@@ -187,8 +187,9 @@ class Recording {
   }
   void check(const hc::Status& status) const {
     if (status) return;
-    throw Failure(options_.file, {status.error().code,
-                                  status.error().detail + "; the recording is intact up to here"});
+    throw Failure(
+        options_.file,
+        {status.error().code, status.error().detail + "; the messages written before are kept"});
   }
 
   const RecordOptions& options_;

@@ -143,7 +143,7 @@ std::optional<hc::TraceEvent> Feed::write_handled(const GraphRecording& recordin
   };
   const auto first = std::ranges::find_if(steps, is_found);
   const auto missing = std::find_if(first, steps.end(), is_missing);
-  const auto result = missing == steps.end() ? std::nullopt : std::optional(*missing);
+  auto result = missing == steps.end() ? std::nullopt : std::optional(*missing);
   steps.erase(missing, steps.end());
   std::erase_if(steps, is_missing);
   return result;

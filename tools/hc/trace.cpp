@@ -251,7 +251,7 @@ void take_words(std::vector<std::string> words, TraceOptions& options) {
   if (words.size() == 2 || kind == Kind::Mcap || kind == Kind::Folder) {
     options.recording = words.front();
     words.erase(words.begin());
-  } else if (kind == Kind::File && is_recording_name(words.front())) {
+  } else if (kind == Kind::File && is_recording_file(words.front())) {
     throw Failure(hc::Code::Invalid, words.front() +
                                          " has the messages of one stream; give the "
                                          "folder or FILE.mcap of hc run --record");

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 /// Whether a word can be MODULE.PORT.
 bool may_be_port(const std::string& word) {
-  return hc::is_port_name(word) && !is_recording_name(word);
+  return hc::is_port_name(word) && !is_recording_file(word);
 }
 
 bool has_port(const RunningGraph& graph, const std::string& word) {
@@ -47,7 +47,7 @@ bool is_running_port(const std::string& word, const std::string& of) {
 
 }  // namespace
 
-bool is_recording_name(const std::string& word) {
+bool is_recording_file(const std::string& word) {
   return word.ends_with(".mtp") || hc::is_mcap_path(word);
 }
 
@@ -94,7 +94,7 @@ std::unique_ptr<hc::Sink> open_output(const std::string& word) {
 }
 
 std::string link_end(const std::string& word) {
-  const bool is_path = word.find('/') != std::string::npos || is_recording_name(word);
+  const bool is_path = word.find('/') != std::string::npos || is_recording_file(word);
   if (!is_path || value_or_fail(hc::record::place_of(word)).kind == hc::record::Place::Kind::Link ||
       word.starts_with("file:"))
     return word;

@@ -14,8 +14,8 @@
 
 namespace tool {
 
-/// Whether a word ends as the files of recordings do: `.mtp` or `.mcap`.
-bool is_recording_name(const std::string& word);
+/// Whether a word ends like the file of a recording: `.mtp` or `.mcap`.
+bool is_recording_file(const std::string& word);
 
 /// The running graph of which a word is a port; nullopt for a link or a file. Fails if the word is
 /// neither a port nor a file, and if it is a port of one of several graphs.

@@ -133,10 +133,10 @@ TEST_F(RunningModule, ReportsAgesAndGaps) {
   Taker module{"counted"};
   auto sink = sink_of(uri("in"));
   auto reports = source_of(uri("reports"));
-  constexpr std::chrono::nanoseconds hour = std::chrono::hours(1);
+  constexpr std::chrono::nanoseconds kHour = std::chrono::hours(1);
   for (int i = 0; i < 3; ++i) {
     Message message = table().message({1.0});
-    message.header.time = SystemClock().wall() - hour;
+    message.header.time = SystemClock().wall() - kHour;
     ASSERT_TRUE(sink->send(message));
   }
   ASSERT_TRUE(sink->close());
@@ -146,8 +146,8 @@ TEST_F(RunningModule, ReportsAgesAndGaps) {
   EXPECT_EQ(row[0], 3);
   EXPECT_EQ(row[7], 0);                  // omitted
   for (std::size_t i : {8U, 9U, 10U}) {  // ages
-    EXPECT_GE(row[i], hour.count());
-    EXPECT_LT(row[i], (hour + hour / 7).count());
+    EXPECT_GE(row[i], kHour.count());
+    EXPECT_LT(row[i], (kHour + kHour / 7).count());
   }
   for (std::size_t i : {11U, 12U, 13U}) EXPECT_GE(row[i], 0);  // gaps
 }
@@ -327,7 +327,9 @@ constexpr const char* kWritten = "HC_TEST_WRITTEN";
 
 /// A program, which is to be killed.
 TEST(Writer, DISABLED_SendsOnce) {
-  const auto sink = sink_of(std::getenv(kWritten));
+  const char* link = std::getenv(kWritten);
+  ASSERT_NE(link, nullptr);
+  const auto sink = sink_of(link);
   ASSERT_TRUE(sink->send(table().message({1.0})));
   while (true) ::pause();
 }

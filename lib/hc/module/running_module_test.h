@@ -21,6 +21,7 @@ namespace hc {
 inline int run(Module& module, std::vector<std::string> words) {
   words.insert(words.begin(), "module");
   std::vector<char*> arguments;
+  arguments.reserve(words.size());
   for (auto& word : words) arguments.push_back(word.data());
   return module.run(static_cast<int>(arguments.size()), arguments.data());
 }
@@ -74,7 +75,7 @@ class RunningModule : public ::testing::Test {
     return std::string("inproc:") +
            ::testing::UnitTest::GetInstance()->current_test_info()->name() + "-" + name;
   }
-  void start(Module& module, std::vector<std::string> words) {
+  void start(Module& module, const std::vector<std::string>& words) {
     thread_ = std::thread([this, &module, words] { status_ = hc::run(module, words); });
   }
   /// The same for one that reports and takes commands.
@@ -82,7 +83,7 @@ class RunningModule : public ::testing::Test {
     control_ = sink_of(uri("control"));
     reports_ = source_of(uri("reports"));
     words.insert(words.end(), {"--manage=" + uri("reports"), "--control=" + uri("control")});
-    start(module, std::move(words));
+    start(module, words);
   }
   int join() {
     thread_.join();

@@ -10,11 +10,11 @@
 
 namespace hc {
 
-inline std::unique_ptr<Source> source_of(const std::string& uri, LinkOptions options = {}) {
-  return must(open_source(*parse_uri(uri), std::move(options)));
+inline std::unique_ptr<Source> source_of(const std::string& uri, const LinkOptions& options = {}) {
+  return must(open_source(*parse_uri(uri), options));
 }
-inline std::unique_ptr<Sink> sink_of(const std::string& uri, LinkOptions options = {}) {
-  return must(open_sink(*parse_uri(uri), std::move(options)));
+inline std::unique_ptr<Sink> sink_of(const std::string& uri, const LinkOptions& options = {}) {
+  return must(open_sink(*parse_uri(uri), options));
 }
 
 /// The next message; the end of the source ends the test.

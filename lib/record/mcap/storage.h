@@ -53,7 +53,8 @@ class Storage {
   /// Errors: System; Invalid (`keep` without `split`; `last` with either).
   static Result<Storage> make(const std::string& file, const StorageOptions& options);
 
-  // Errors of all: System. Then only close() may be called, which leaves a valid file.
+  // Errors of all: System. Then only close() may be called, which leaves a valid file; after save()
+  // also the others.
 
   Status add(Repeated record);
   Status add(Chunk chunk);
