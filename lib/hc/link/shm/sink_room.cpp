@@ -77,12 +77,12 @@ Status ShmSink::let_catch_up(std::uint64_t bytes) {
 Status ShmSink::wait_for_room(std::uint64_t wanted, const std::function<bool()>& has_room) {
   struct Wish {
     Head& head;
-    ShmReaders& readers;
+    const std::unique_ptr<ShmReaders>& readers;  // null once the link was abandoned meanwhile
     ~Wish() {
       head.wanted.store(0, memory_order_relaxed);
-      readers.end_waits();
+      if (readers) readers->end_waits();
     }
-  } wish{head_, *readers_};
+  } wish{head_, readers_};
   head_.wanted.store(wanted, memory_order_relaxed);
   while (true) {
     refresh();
