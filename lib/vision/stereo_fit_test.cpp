@@ -118,7 +118,7 @@ TEST(Calibration, FindsCamerasThatAreKnown) {
 
 TEST(Calibration, EachViewMayShowAnotherPartOfTheBoard) {
   const auto truth = squinting();
-  auto pairs = made_up(truth, 25, 0.1);
+  auto pairs = made_up(truth, 40, 0.1);
   std::mt19937 random(7);
   for (auto& view : pairs.views) {
     BoardView part;
