@@ -13,7 +13,6 @@ import {
   show,
   startHead,
   takeSeat,
-  turned,
 } from "./running_head.mjs";
 
 describe("the page", { timeout: 10 * watchdog }, () => {
