@@ -6,7 +6,7 @@
 #include <hosts/agent.h>
 
 #include "common.h"
-#include "examination.h"
+#include "doctor_hosts.h"
 #include "verbs.h"
 
 namespace tool {

@@ -4,7 +4,7 @@
 #include <hc/base/format.h>
 
 #include "common.h"
-#include "examination.h"
+#include "doctor_hosts.h"
 #include "graph.h"
 #include "verbs.h"
 

@@ -3,7 +3,7 @@
 #include <graph/run.h>
 
 #include "common.h"
-#include "examination.h"
+#include "doctor_hosts.h"
 #include "graph.h"
 #include "verbs.h"
 

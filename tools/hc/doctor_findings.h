@@ -9,7 +9,7 @@
 
 #include <graph/plan.h>
 
-#include "facts.h"
+#include "doctor_facts.h"
 
 namespace tool {
 

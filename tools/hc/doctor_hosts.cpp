@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "examination.h"
+#include "doctor_hosts.h"
 
 #include <algorithm>
 #include <set>
@@ -8,7 +8,7 @@
 
 #include <hc/os/program.h>
 
-#include "facts.h"
+#include "doctor_facts.h"
 
 namespace tool {
 namespace {

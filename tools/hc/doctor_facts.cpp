@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Features are tested by use: kernel versions say little about containers.
-#include "facts.h"
+#include "doctor_facts.h"
 
 #include <fcntl.h>
 #include <linux/futex.h>

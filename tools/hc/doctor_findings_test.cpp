@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis.h"
+#include "doctor_findings.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Gathers facts about this machine, and about files and ports that a graph needs, for `hc doctor`;
-// diagnosis.h interprets them.
+// doctor_findings.h interprets them.
 
 #include <cstdint>
 #include <map>

@@ -8,7 +8,7 @@
 #include <graph/hosts.h>
 #include <graph/plan.h>
 
-#include "diagnosis.h"
+#include "doctor_findings.h"
 
 namespace tool {
 
