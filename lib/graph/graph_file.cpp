@@ -212,62 +212,6 @@ Graph parse_graph(std::string_view text, const Environment& environment, Problem
   return graph;
 }
 
-namespace {
-
-/// The outputs to record, with the place where each is first named.
-std::map<std::pair<std::string, std::string>, Place> recorded_outputs(
-    const Graph& graph, const std::vector<GraphPort>& unlinked) {
-  std::map<std::pair<std::string, std::string>, Place> outputs;
-  for (const auto& link : graph.links)
-    if (link.from.uri.empty())
-      outputs.emplace(std::pair(link.from.module, link.from.port), link.place);
-  for (const auto& workspace : graph.workspaces)
-    outputs.emplace(std::pair(workspace.value, "focus"), workspace.place);
-  for (const auto& frame : graph.frames)
-    if (frame.moved_by)
-      outputs.emplace(std::pair(frame.moved_by->value.module, frame.moved_by->value.port),
-                      frame.moved_by->place);
-  for (const auto& output : unlinked)
-    outputs.emplace(std::pair(output.module, output.port),
-                    find_named(graph.modules, output.module)->place);
-  return outputs;
-}
-
-}  // namespace
-
-std::vector<std::string> add_recorder(Graph& graph, const std::vector<GraphPort>& unlinked,
-                                      const std::string& program,
-                                      const std::map<std::string, std::string>& parameters) {
-  // A folder gets all messages; but modules on other hosts never wait for the network.
-  const bool is_whole = parameters.contains("folder");
-  constexpr const char* kKept = "1024";   // messages, while the recorder waits for the disk
-  constexpr const char* kPatience = "1";  // if the recorder hangs or was killed [s]
-  GraphModule recorder;
-  recorder.name = "recorder";
-  while (graph.find(recorder.name) != nullptr) recorder.name += "_added";
-  recorder.program.value = program;
-  recorder.is_recorder = true;
-  for (const auto& [name, value] : parameters) recorder.parameters[name] = {value, {}};
-  std::vector<std::string> inputs;
-  std::string streams;
-  for (const auto& [output, place] : recorded_outputs(graph, unlinked)) {
-    GraphLink link;
-    link.from = {output.first, output.second, ""};
-    link.to = {recorder.name, "stream_" + std::to_string(inputs.size()), ""};
-    link.place = place;
-    const auto* writer = graph.find(output.first);
-    const bool is_here = writer == nullptr || writer->host.value.empty();
-    link.policy["keep"] = {is_whole && is_here ? "all" : kKept, {}};
-    if (is_whole && is_here) link.policy["timeout"] = {kPatience, {}};
-    streams += (streams.empty() ? "" : " ") + link.to.port + "=" + link.from.text();
-    inputs.push_back(link.to.port);
-    graph.links.push_back(std::move(link));
-  }
-  recorder.parameters["streams"] = {streams, {}};
-  graph.modules.push_back(std::move(recorder));
-  return inputs;
-}
-
 void set_parameter(Graph& graph, const Assignment& assignment, Problems& problems,
                    const Place& place) {
   GraphModule* module = graph.find(assignment.module);

@@ -162,16 +162,6 @@ inline constexpr std::array<std::string_view, 10> kPolicyKeys = {
 /// Checks the policy in a URI's options. Errors: Invalid.
 Status check_policy(Uri policy);
 
-/// Adds a module `recorder` on the host of `hc run` that records every linked output and the focus:
-/// either to one MCAP file, without making modules wait, or to a folder, without losing messages
-/// while the recorder runs.
-/// @param unlinked  outputs of its modules that are recorded too.
-/// @param parameters  of the recorder: `file` or `folder`, and others.
-/// @returns  its inputs, one for each output; its program's `--describe` does not list them.
-std::vector<std::string> add_recorder(Graph& graph, const std::vector<GraphPort>& unlinked,
-                                      const std::string& program,
-                                      const std::map<std::string, std::string>& parameters);
-
 /// Sets a parameter. Problems: no such module.
 /// @param place  of the assignment.
 void set_parameter(Graph& graph, const Assignment& assignment, Problems& problems,

@@ -235,47 +235,6 @@ TEST(GraphFile, NumbersAreAsShortAsTheyCanBe) {
   EXPECT_EQ(parameters.at("c").value, "2");
 }
 
-TEST(GraphFile, EveryLinkedOutputIsRecordedOnce) {
-  auto graph = must(parse(R"([modules.a]
-[modules.b]
-[modules.w]
-[workspace]
-module = "w"
-[[modules.b.inputs.in]]
-from = "a.out"
-[[modules.b.inputs.other]]
-from = "a.out"
-[[modules.b.inputs.in]]
-from = "tcp:7000"
-)"));
-  const auto inputs =
-      add_recorder(graph, {{"b", "trace", ""}}, "/bin/recorder", {{"file", "x.mcap"}});
-  EXPECT_EQ(inputs.size(), 3U);
-  ASSERT_EQ(graph.links.size(), 6U);
-  const char* outputs[] = {"a.out", "b.trace", "w.focus"};
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(graph.links[3 + i].from.text(), outputs[i]);
-    EXPECT_EQ(graph.links[3 + i].to.text(), "recorder.stream_" + std::to_string(i));
-    EXPECT_EQ(graph.links[3 + i].policy.at("keep").value, "1024");
-  }
-}
-
-TEST(GraphFile, AFolderIsRecordedWhole) {
-  auto graph = must(parse(R"([modules.a]
-[modules.recorder]
-inputs.in = "a.out"
-)"));
-  add_recorder(graph, {{"a", "trace", ""}}, "/bin/recorder", {{"folder", "kept"}});
-  const auto& recorder = graph.modules.back();
-  EXPECT_EQ(recorder.name, "recorder_added");  // "recorder" is taken
-  EXPECT_EQ(recorder.parameters.at("folder").value, "kept");
-  EXPECT_EQ(recorder.parameters.at("streams").value, "stream_0=a.out stream_1=a.trace");
-  ASSERT_EQ(graph.links.size(), 3U);
-  EXPECT_EQ(graph.links[2].from.text() + " " + graph.links[2].to.text(),
-            "a.trace recorder_added.stream_1");
-  EXPECT_EQ(graph.links[2].policy.at("keep").value, "all");
-}
-
 TEST(GraphFile, AllErrorsAreReportedAtOnceInTheOrderOfTheLines) {
   const auto refused = parse(R"(speed = 3
 [modules.Eye]

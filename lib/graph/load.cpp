@@ -12,11 +12,11 @@
 #include <set>
 #include <system_error>
 
+#include <graph/added_modules.h>
 #include <graph/held_port.h>
 #include <graph/programs.h>
 #include <hc/base/suggestion.h>
 #include <hc/contract/description.h>
-#include <hc/contract/trace.h>
 #include <hc/os/aside.h>
 
 namespace hc {
@@ -61,74 +61,6 @@ Result<std::string> path_of(const std::string& program, const std::string& path,
     if (found.empty()) return Error{Code::NotFound, no_program(program, path)};
     return found;
   });
-}
-
-/// Makes the graph's module `web` open a browser, or adds one; if the graph has a workspace, the
-/// added page can stop the robot and choose its task.
-void add_page(Graph& graph, const std::string& listen, Problems& problems) {
-  auto obey = [&](const std::string& line) {
-    apply_command(graph, parse_graph_command(line).value(), problems);
-  };
-  auto runs = [](const GraphModule& module, std::string_view program) {
-    return fs::path(module.program.value).filename() == program;
-  };
-  std::string page = "web";
-  const auto known = std::ranges::find_if(
-      graph.modules, [&](const GraphModule& module) { return runs(module, "web"); });
-  if (known != graph.modules.end()) {
-    page = known->name;
-  } else {
-    while (graph.find(page) != nullptr) page += "_page";
-    obey("add " + page + " web");
-    const std::string arbiter = graph.workspaces.empty() ? "" : graph.workspaces.front().value;
-    if (const auto* workspace = graph.find(arbiter);
-        workspace != nullptr && runs(*workspace, "workspace")) {
-      obey("link " + page + ".stop " + arbiter + ".stop");
-      obey("link " + page + ".bid " + arbiter + ".person");
-      obey("link " + arbiter + ".stopped " + page + ".stopped rate=20");
-    }
-  }
-  obey("set " + page + ".browser=true");
-  if (!listen.empty()) obey("set " + page + ".listen=" + listen);
-}
-
-/// Whether a module is the last of a chain: links lead to it, and none from it.
-bool is_last(const Graph& graph, const std::string& module) {
-  bool is_fed = false, feeds = false;
-  for (const auto& link : graph.links) {
-    is_fed |= link.to.module == module;
-    feeds |= link.from.module == module;
-  }
-  for (const auto& workspace : graph.workspaces) feeds |= workspace.value == module;
-  for (const auto& frame : graph.frames)
-    feeds |= frame.moved_by && frame.moved_by->value.module == module;
-  return is_fed && !feeds;
-}
-
-/// The outputs without a link that are recorded: `trace` of each module that has it, and the
-/// outputs of modules at the ends of chains, which are the results of the graph.
-std::vector<GraphPort> recorded_unlinked(const Graph& graph, const Describe& describe) {
-  std::vector<GraphPort> outputs;
-  for (const auto& module : graph.modules) {
-    if (module.program.value.empty()) continue;
-    const auto text = describe(module.program.value, module.host.value);
-    const auto description = text ? parse_description(*text) : std::nullopt;
-    if (!description) continue;
-    if (find_output(*description, kTracePort) == &trace_output())
-      outputs.push_back({module.name, kTracePort, ""});
-    if (is_last(graph, module.name))
-      for (const auto& output : description->outputs)
-        outputs.push_back({module.name, output.name, ""});
-  }
-  return outputs;
-}
-
-/// Adds inputs of any type to a description.
-Result<std::string> with_inputs(const std::string& text, const std::vector<std::string>& inputs) {
-  auto description = parse_description(text);
-  if (!description) return text;
-  for (const auto& name : inputs) description->inputs.push_back({name, "a stream", {}, false});
-  return to_json(*description);
 }
 
 class FileLoader : public GraphLoader {
