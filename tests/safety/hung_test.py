@@ -24,6 +24,7 @@ RING = 2048  # messages that a queue without a number holds
 # or the page closes a connection that answers no ping [s].
 WAITS = 5
 SOON = 10  # after which `hc run` restarts a module of the head, where the file says no other [s]
+LATE = 0.2  # after a stop, without what processes waited, until which a command may come [s]
 MORE = 2100  # messages than a queue holds
 WAY = ("web", "workspace", "head_neck", "head_unit")  # of whatever a person drives by
 DRIVES = (
@@ -110,21 +111,25 @@ class Hung(Safety):
     def stop_beside(self, name):
         head, is_driven = self.head, self.drive(name)
         filled = self.seconds_to_fill(name)
-        with head.hung(name):
-            if is_driven:
-                self.fill_queues()
-                head.sit(head.seat.says)
-            self.note_lost(name, is_driven, filled)
-            with head.waits() as waits:
+        with contextlib.ExitStack() as waiting:
+            with head.hung(name):
+                if is_driven:
+                    self.fill_queues()
+                    head.sit(head.seat.says)
+                self.note_lost(name, is_driven, filled)
+                if is_driven:  # places clicked at, of which queues were full, hold it for a while
+                    head.wait_moving()
+                waits = waiting.enter_context(head.waits())
                 stopped = head.press_stop()
                 if name == "head_unit":  # it says nothing, and moves on when it returns
                     head.send_signal(name, signal.SIGCONT)
                     stopped = time.time_ns()
                 self.note_halt(stopped, waits, name)
-        wait_until(head.is_whole)
-        head.motion.rests_at(time.time_ns())  # with what the module has sent since
-        late = stopped + int((0.2 + waits.until(stopped + 10**9)) * 1e9)
-        self.note("commanded", len(head.line.positions(late)), name)
+            wait_until(head.is_whole)
+            head.motion.rests_at(time.time_ns())  # with what the module has sent since
+            after = [(at - stopped) / 1e9 - waits.until(at) for at in head.line.positions(stopped)]
+        late = ["%.3f s" % each for each in after if each > LATE]
+        self.note("commanded", len(late), "%s, after the stop: %s" % (name, late))
 
     def test_stop_beside_a_hung_module(self):
         head = self.head
