@@ -14,6 +14,7 @@ import unittest
 
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
 GRAPHS = pathlib.Path(__file__).resolve().parents[2] / "graphs"
+DATA = pathlib.Path(os.environ.get("HC_DATA", "/usr/share/doc/opencv-doc/examples/data"))
 HC, PEER = BUILD / "bin/hc", BUILD / "tests/programs/dds_peer"
 WATCHDOG = 30  # [s]
 # Loopback alone, as dds: links have it.
@@ -87,6 +88,11 @@ class Dds(unittest.TestCase):
 
     def test_the_graphs_of_a_fleet_share_a_camera(self):
         robot = "robot%d" % os.getpid()
+        images = pathlib.Path(self.folder.name, "images")  # which change, or they come slowly
+        images.mkdir()
+        for number in range(1, 6):
+            name = "left0%d.jpg" % number
+            (images / name).symlink_to(DATA / name)
         words = {"HC_ROBOT": robot, "HC_DOMAIN": "96", "HC_KEEP": "all", "HC_WINDOW": "no"}
         folders = [pathlib.Path(self.folder.name, name) for name in ("a", "b")]
         watchers = []
@@ -97,7 +103,7 @@ class Dds(unittest.TestCase):
             watchers.append(self.start(command, folder, **words))
         graph = GRAPHS / "fleet_camera.toml"
         count = ["--set", "camera.count=5"]
-        camera = self.start([HC, "run", graph, *count], HC_READERS="4", **words)
+        camera = self.start([HC, "run", graph, *count], HC_READERS="4", HC_CAMERA=images, **words)
         self.output(camera)
         for folder, watcher in zip(folders, watchers):
             out = self.output(watcher).decode()

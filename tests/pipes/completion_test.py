@@ -21,7 +21,7 @@ LINES = {
     "hc depth --match": "hc depth --matcher",
     "hc cat numbers.m": "hc cat numbers.mtp",
     "hc completion z": "hc completion zsh",
-    "hc top --of see": "hc top --of NAME",
+    "hc top --of compl": "hc top --of NAME",
     "hc cat --of NAME camera.l": "hc cat --of NAME camera.left",
     "hc send --of NAME --to bright": "hc send --of NAME --to brightness.image",
     "hc graph --of NAME restart cam": "hc graph --of NAME restart camera",
@@ -35,7 +35,7 @@ class Completion(Graphs):
         super().setUp()
         self.environment.update(HOME=self.folder.name, TERM="dumb")
         self.write("numbers.mtp", "")
-        name, _ = self.run_named("seen")
+        name, _ = self.run_named("completed")
         self.lines = {
             typed.replace("NAME", name): expected.replace("NAME", name)
             for typed, expected in LINES.items()
