@@ -132,8 +132,15 @@ class Ports(Graphs):
         self.assertEqual(links, [])
 
     def test_what_an_input_does_not_take_is_refused(self):
-        self.shell("hc send 1 2 --type table --to brightness.image", 1)
-        self.assertIn("brightness.image: R17 info: table does not fit", self.err)
+        takes = " does not fit, the port takes rgb_image of 3 x u8 or intensity_image of 1 x u8"
+        for words, sent in (
+            ("1 2 --type table", "table 2 x 1 of 1 x f64"),
+            ("1 2 --type intensity_image --scalar f32", "intensity_image 2 x 1 of 1 x f32"),
+            ("1 2 3 --scalar f32", "rgb_image 1 x 1 of 3 x f32"),
+        ):
+            self.shell("hc send %s --to brightness.image" % words, 1)
+            self.assertIn("brightness.image: " + sent + takes, self.err)
+        self.shell("hc send 1 2 3 4 5 6 --width 2 --to brightness.image")
         for to, reason in (
             ("brightness.imag", 'no input "brightness.imag", did you mean "brightness.image"?'),
             ("brightness.mean", 'no input "brightness.mean"'),

@@ -37,9 +37,15 @@ struct SendOptions {
   int ttl = 8;
   std::int64_t time = -1;  // -1: now
   std::vector<std::string> numbers;
-  bool has_text = false, has_type = false, has_shape = false;  // given on the command line
-  std::vector<hc::PortType> taken;                             // by the input of --to; empty: any
+  // Given on the command line.
+  bool has_text = false, has_type = false, has_scalar = false, has_width = false;
+  std::vector<hc::PortType> taken;  // by the input of --to; empty: any
 };
+
+/// Whether an option of numbers alone is given.
+bool has_shape(const SendOptions& options) {
+  return options.has_scalar || options.has_width || options.components != 0;
+}
 
 /// The value of a name, or a failure. @param first, last  of all named values.
 template <typename E>
@@ -89,13 +95,23 @@ bool is_shapeless_image(const hc::PortType& type) {
   return is_image && type.width == 0 && type.height == 0;
 }
 
-hc::Message message_of_numbers(const SendOptions& options) {
+/// What is not given is as the first type that the input takes.
+void fill_in(SendOptions& options) {
+  if (options.taken.empty() || options.has_type) return;
+  const hc::Info& info = options.taken.front().info;
+  options.type = hc::name(info.type);
+  if (!options.has_scalar) options.scalar = hc::name(info.scalar);
+  if (options.components == 0) options.components = info.components;
+}
+
+hc::Message message_of_numbers(SendOptions options) {
+  // Without options, the numbers are what the input takes.
+  const bool is_free = !options.has_type && !has_shape(options);
+  fill_in(options);
   hc::Header header;
   header.info.type = type_named(options.type);
   header.info.scalar = named(hc::scalar_of(options.scalar), "scalar", options.scalar,
                              hc::Scalar::U8, hc::Scalar::F64);
-  // Without options, the numbers are what the input takes.
-  const bool is_free = !options.has_type && !options.has_shape;
   if (is_free && !options.taken.empty() && is_shapeless_image(options.taken.front()))
     throw Failure(hc::Code::Invalid,
                   hc::format("{} takes an image, and numbers alone do not say of what size: give "
@@ -176,7 +192,7 @@ void check(const SendOptions& options) {
   if (given.empty() && !options.has_type)
     refuse("nothing to send: give numbers, --text, --image or --npy");
   if (given.size() > 1) refuse(given[0] + " and " + given[1] + " exclude each other");
-  if (given.size() == 1 && given[0] != "numbers" && options.has_shape)
+  if (given.size() == 1 && given[0] != "numbers" && has_shape(options))
     refuse("--scalar, --components and --width are for numbers, not for " + given[0]);
   if (given.size() == 1 && given[0] != "numbers" && given[0] != "--npy" && options.has_type)
     refuse("--type is for numbers and --npy, not for " + given[0]);
@@ -231,7 +247,7 @@ void run(SendOptions options) {
   if (!options.taken.empty() && std::ranges::none_of(options.taken, [&](const auto& type) {
         return hc::fits(message.header, type);
       }))
-    throw Failure(name, hc::misfit(message.header, options.taken.front()));
+    throw Failure(name, hc::misfit(message.header, options.taken));
   auto sink = input ? value_or_fail(hc::record::open_sink(*input, link_options()), name)
                     : open_output(options.out);
   send(*sink, message, name);
@@ -270,8 +286,8 @@ void add_send(CLI::App& app) {
   verb->callback([options, verb] {
     options->has_text = verb->count("--text") > 0;
     options->has_type = verb->count("--type") > 0;
-    for (const char* option : {"--scalar", "--components", "--width"})
-      options->has_shape = options->has_shape || verb->count(option) > 0;
+    options->has_scalar = verb->count("--scalar") > 0;
+    options->has_width = verb->count("--width") > 0;
     run(*options);
   });
 }

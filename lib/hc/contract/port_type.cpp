@@ -52,6 +52,11 @@ Error misfit(const Header& header, const PortType& type) {
                    coord_and_number(type.coord));
 }
 
+Error misfit(const Header& header, const std::vector<PortType>& types) {
+  if (types.size() == 1) return misfit(header, types.front());
+  return {Code::Malformed, in_words(header) + " does not fit, the port takes " + in_words(types)};
+}
+
 bool fits(const std::vector<PortType>& given, const std::vector<PortType>& taken) {
   auto same = [](std::int32_t a, std::int32_t b) { return a == 0 || b == 0 || a == b; };
   if (given.empty() || taken.empty()) return true;
@@ -61,6 +66,12 @@ bool fits(const std::vector<PortType>& given, const std::vector<PortType>& taken
            from.info.components == to.info.components && same(from.width, to.width) &&
            same(from.height, to.height) && same(from.coord, to.coord);
   });
+}
+
+std::string in_words(const Header& header) {
+  std::string text = matrix_text(header.info, header.width, header.height);
+  if (header.coord != 0) text += " in coordinate system " + coord_and_number(header.coord);
+  return text;
 }
 
 std::string in_words(const PortType& type) {

@@ -40,11 +40,16 @@ std::optional<Shape> shape_of(const PortType& type, std::size_t numbers);
 /// Why a message is not of a type: Malformed; the detail begins with the rule of the field,
 /// "R19: …". A message that fits is a bug.
 Error misfit(const Header& header, const PortType& type);
+/// The same of several types; of more than one without a rule: "table 2 x 1 of 1 x f64 does
+/// not fit, the port takes …".
+Error misfit(const Header& header, const std::vector<PortType>& types);
 
 /// Whether an output of type `given` may be linked to an input that takes `taken`; an empty list
 /// means any type.
 bool fits(const std::vector<PortType>& given, const std::vector<PortType>& taken);
 
+/// "table 2 x 1 of 1 x f64 in coordinate system left_rectified (9)".
+std::string in_words(const Header& header);
 /// "rgb_image of 3 x u8 in coordinate system left_rectified (9)"; several joined by "or", none:
 /// "anything".
 std::string in_words(const PortType& type);

@@ -23,16 +23,11 @@ Durations take_durations(internal::Quantiles& quantiles) {
 
 /// Why a message fits no input of its link.
 Error misfit_of(const Inlet& inlet, const Message& message) {
-  const auto& only = *inlet.inputs.back();
-  if (inlet.inputs.size() == 1 && only.types.size() == 1)
-    return misfit(message.header, only.types[0]);
+  if (inlet.inputs.size() == 1) return misfit(message.header, inlet.inputs.back()->types);
   std::string takers;
   for (const auto* input : inlet.inputs)
     takers += (takers.empty() ? "" : ", ") + input->name + " takes " + in_words(input->types);
-  const Header& header = message.header;
-  std::string what = matrix_text(header.info, header.width, header.height);
-  if (header.coord != 0) what += " in coordinate system " + coord_and_number(header.coord);
-  return {Code::Malformed, what + " fits no input: " + takers};
+  return {Code::Malformed, in_words(message.header) + " fits no input: " + takers};
 }
 
 }  // namespace

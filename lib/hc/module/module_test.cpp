@@ -377,7 +377,7 @@ TEST(Module, ABadMessageIsOneBadMessage) {
   ASSERT_TRUE(sink->close());
   EXPECT_EQ(
       said(module, {"--in", "inproc:m4", "--name", "north", "--manage=inproc:m4_reports"}),
-      "north: in: dropped: Malformed: table 1 x 1 of 1 x f64 fits no input: in takes position "
+      "north: in: dropped: Malformed: table 1 x 1 of 1 x f64 does not fit, the port takes position "
       "of 3 x f64 or rgb_image of 3 x u8 (further ones are counted, not logged)\n"
       "north: total: 5 bad at in\n");
   EXPECT_EQ(handled, 2);
