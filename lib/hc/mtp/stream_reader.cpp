@@ -187,7 +187,7 @@ Status StreamReader::finish() const {
   if (state_ == State::Failed) return error_;
   if (state_ == State::Search || (state_ == State::Head && begin_ == end_)) return {};
   return internal::refusal(Code::Truncated, 2, "stream",
-                           "truncated after " + std::to_string(messages_) + " messages",
+                           "truncated in message " + std::to_string(messages_ + 1),
                            byte_ + (end_ - begin_));
 }
 

@@ -94,8 +94,9 @@ TEST(StreamReader, R2_EveryCutGivesTheMessagesBeforeIt) {
     ASSERT_EQ(reading.end.has_value(), clean) << size;
     if (clean) continue;
     EXPECT_EQ(reading.end.error().code, Code::Truncated);
-    EXPECT_EQ(reading.end.error().detail, "R2 stream: truncated after " + std::to_string(whole) +
-                                              " messages, at byte " + std::to_string(size));
+    EXPECT_EQ(reading.end.error().detail, "R2 stream: truncated in message " +
+                                              std::to_string(whole + 1) + ", at byte " +
+                                              std::to_string(size));
   }
 }
 

@@ -136,7 +136,7 @@ TEST_P(SocketLink, AMessageThatIsCutIsReported) {
   EXPECT_EQ(next(*source).header.seq, 3);
   while (warnings.lines.empty()) ASSERT_EQ(*source->take(message), Got::Nothing);
   EXPECT_NE(
-      warnings.lines[0].find(": closed a connection: Truncated: R2 stream: truncated after 1"),
+      warnings.lines[0].find(": closed a connection: Truncated: R2 stream: truncated in message 2"),
       std::string::npos);
 }
 
