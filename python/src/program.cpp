@@ -18,14 +18,20 @@ hc::ModuleError module_error(const std::string& text, std::string_view code) {
 
 int exit_status = 0;
 
-/// Where an exception was raised: " (redness, line 12)".
+/// Where an exception was raised: " (redness, line 12)"; of one in a library, such as NumPy, where
+/// that was called.
 std::string place_of(const py::error_already_set& raised) {
-  py::object trace = raised.trace();
-  if (!trace) return "";
-  while (!trace.attr("tb_next").is_none()) trace = trace.attr("tb_next");
-  const Line line{trace.attr("tb_frame").attr("f_code").attr("co_filename"),
-                  trace.attr("tb_lineno").cast<int>()};
-  return " (" + line.file_name() + ", line " + std::to_string(line.number) + ")";
+  std::string place;
+  for (py::object trace = raised.trace(); trace && !trace.is_none();
+       trace = trace.attr("tb_next")) {
+    const py::object file = trace.attr("tb_frame").attr("f_code").attr("co_filename");
+    const auto name = file.cast<std::string>();
+    const bool is_library = name.find("-packages/") != std::string::npos || name.starts_with('<');
+    if (is_library && !place.empty()) continue;
+    const Line line{file, trace.attr("tb_lineno").cast<int>()};
+    place = " (" + line.file_name() + ", line " + std::to_string(line.number) + ")";
+  }
+  return place;
 }
 
 /// The name of an exception that means a bad message, as in C++: an index that a message does not

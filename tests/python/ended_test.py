@@ -33,6 +33,10 @@ class Ended(Modules):
         for body, text in (
             ("out.send(message.numbers[2])", "tuple index out of range"),
             ("out.send(message.matrix[0, 0])", "index 0 is out of bounds for axis 0 with size 0"),
+            (  # which NumPy's Python raises
+                "import numpy; numpy.take(message.matrix, 0); out.send(1)",
+                "cannot do a non-empty take from an empty axes.",
+            ),
         ):
             with self.subTest(body):
                 out = self.echo("table()", body, "", empty + IN, status=1)
