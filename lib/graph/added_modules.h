@@ -20,9 +20,9 @@ void add_page(Graph& graph, const std::string& listen, Problems& problems);
 /// outputs of modules at the ends of chains, which are the results of the graph.
 std::vector<GraphPort> recorded_unlinked(const Graph& graph, const Describe& describe);
 
-/// `--record`: adds a module `recorder` on the host of `hc run` that records every linked output and the focus:
-/// either to one MCAP file, without making modules wait, or to a folder, without losing messages
-/// while the recorder runs.
+/// `--record`: adds a module `recorder` on the host of `hc run` that records every linked output
+/// and the focus: either to one MCAP file, without making modules wait, or to a folder, without
+/// losing messages while the recorder runs.
 /// @param unlinked  outputs of its modules that are recorded too.
 /// @param parameters  of the recorder: `file` or `folder`, and others.
 /// @returns  its inputs, one for each output; its program's `--describe` does not list them.

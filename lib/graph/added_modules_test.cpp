@@ -10,7 +10,8 @@ namespace {
 
 Result<Graph> graph_of(const std::string& text) {
   Problems problems("g.toml");
-  Graph graph = parse_graph("version = 1\n" + text, [](const char*) { return nullptr; }, problems);
+  Graph graph = parse_graph(
+      "version = 1\n" + text, [](const char*) { return nullptr; }, problems);
   if (problems.empty()) return graph;
   return Error{Code::Invalid, problems.lines().front()};
 }
