@@ -265,7 +265,6 @@ class Contest {
 };
 
 TEST(Contest, in_random_sequences_the_actor_follows_the_focus) {
-  hc::stop_descriptor();  // once, before threads ask for it
   for (unsigned seed = 1; seed <= kSequences; ++seed) {
     SCOPED_TRACE(seed);
     Contest(seed).run();

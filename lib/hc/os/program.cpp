@@ -40,17 +40,7 @@ extern "C" void ask_to_stop(int number) {
   errno = saved;
 }
 
-}  // namespace
-
-void prepare_program() {
-  std::signal(SIGXFSZ, SIG_IGN);
-  int opened = ::open("/dev/null", O_RDWR);
-  while (opened >= 0 && opened <= STDERR_FILENO) opened = ::open("/dev/null", O_RDWR);
-  if (opened >= 0) ::close(opened);
-}
-
-int stop_descriptor() {
-  if (stop_event >= 0) return stop_event;
+int catch_signals() {
   stop_event = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
   struct sigaction action {};
   action.sa_handler = ask_to_stop;
@@ -61,6 +51,20 @@ int stop_descriptor() {
   if (inherited.sa_handler != SIG_IGN) ::sigaction(SIGHUP, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
   return stop_event;
+}
+
+}  // namespace
+
+void prepare_program() {
+  std::signal(SIGXFSZ, SIG_IGN);
+  int opened = ::open("/dev/null", O_RDWR);
+  while (opened >= 0 && opened <= STDERR_FILENO) opened = ::open("/dev/null", O_RDWR);
+  if (opened >= 0) ::close(opened);
+}
+
+int stop_descriptor() {
+  static const int kDescriptor = catch_signals();
+  return kDescriptor;
 }
 
 bool stop_requested() {

@@ -16,8 +16,7 @@ void prepare_program();
 
 /// A descriptor that becomes readable on SIGINT, SIGTERM or SIGHUP (unless that is ignored, as
 /// under nohup); they are caught from the first call on. Repeating a signal kills as usual, except
-/// within 1 s. SIGPIPE is ignored. Always returns the same descriptor. To be called on
-/// the main thread.
+/// within 1 s. SIGPIPE is ignored. Always returns the same descriptor, on any thread.
 int stop_descriptor();
 
 /// Whether such a signal was received. For loops that never wait.

@@ -7,9 +7,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <csignal>
+#include <latch>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace hc {
 namespace {
@@ -51,6 +55,24 @@ TEST(Program, ASignalIsNoticedByThoseWhoWaitAndThoseWhoAsk) {
     std::raise(SIGTERM);
     return stop_requested() && ::poll(&waiting, 1, 0) == 1;
   }));
+}
+
+TEST(Program, ThreadsThatAskAtOnceGetOneDescriptor) {
+  const auto all_get_one = [] {
+    constexpr int kThreads = 8;
+    std::latch ready(kThreads);
+    std::array<int, kThreads> got{};
+    {
+      std::vector<std::jthread> threads;
+      for (int& stop : got)
+        threads.emplace_back([&ready, &stop] {
+          ready.arrive_and_wait();
+          stop = stop_descriptor();
+        });
+    }
+    return std::all_of(got.begin(), got.end(), [&](int stop) { return stop == got[0]; });
+  };
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(holds_in_child(all_get_one)) << i;
 }
 
 TEST(WriteAll, WaitsForASlowReader) {
