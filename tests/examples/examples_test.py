@@ -18,9 +18,8 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "pipes"))
 
 import extract  # noqa: E402
-from harness import BUILD, Pipes, ROOT  # noqa: E402
+from harness import BUILD, Pipes, ROOT, SANITIZERS  # noqa: E402
 
-IS_SANITIZED = "HC_SANITIZE:STRING=\n" not in (BUILD / "CMakeCache.txt").read_text()
 HAS_PYTHON = bool(list(BUILD.glob("python/hypercolumn/_hypercolumn*.so")))
 MOST_ADDRESSES = 2 << 30  # [byte]
 MOST_MEMORY = 400 << 20  # [byte]
@@ -96,7 +95,7 @@ class Examples(Pipes):
 
     def begin(self, command, has_limit=True, **options):
         def limit():
-            if has_limit and not IS_SANITIZED:
+            if has_limit and not SANITIZERS:
                 resource.setrlimit(resource.RLIMIT_AS, (MOST_ADDRESSES,) * 2)
 
         process = subprocess.Popen(
@@ -173,7 +172,7 @@ class Examples(Pipes):
             self.assertTrue(ended.err.strip())
         self.assertNotIn("Sanitizer", ended.err)
         self.assertNotIn("runtime error", ended.err)
-        if not IS_SANITIZED:
+        if not SANITIZERS:
             self.assertLess(ended.memory, MOST_MEMORY)
 
     def check_answers(self, ended, *times):

@@ -9,7 +9,7 @@ import socket
 import time
 import unittest
 
-from harness import ROOT, Pipes, messages_of, wait_until
+from harness import ROOT, Pipes, if_quick, messages_of, wait_until
 
 
 class Driving(Pipes):
@@ -92,6 +92,7 @@ class Driving(Pipes):
         # The head does not move before the stick, within a period of the truth.
         self.assertGreater(median, -2)
 
+    @if_quick
     def test_an_object_stays_in_the_room_while_the_head_turns(self):
         median, most, right, least, fastest = self.score(
             "score_augment",

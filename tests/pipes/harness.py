@@ -19,6 +19,11 @@ import unittest
 ROOT = pathlib.Path(__file__).parents[2]
 DATA = os.environ.get("HC_DATA", "/usr/share/doc/opencv-doc/examples/data")
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
+SANITIZERS = re.search(
+    r"^HC_SANITIZE:STRING=(.*)$", (BUILD / "CMakeCache.txt").read_text(), re.MULTILINE
+)[1]
+# ThreadSanitizer takes 5 to 15 times as long: no depth of large images is in time.
+if_quick = unittest.skipIf("thread" in SANITIZERS, "too slow with ThreadSanitizer")
 PYTHON = "/usr/bin/python3"  # the one that the system's NumPy belongs to
 WATCHDOG = 100  # seconds after which a program hangs
 LONGEST = 300  # a test, unless HC_FULL=1 [s]

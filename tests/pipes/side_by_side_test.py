@@ -11,7 +11,7 @@ import re
 import unittest
 
 from graphs import Graphs
-from harness import ROOT, WATCHDOG
+from harness import ROOT, WATCHDOG, if_quick
 
 # A score: its line, what is set to make it short, and whether its figures are right.
 SCORES = {
@@ -54,6 +54,7 @@ class SideBySide(Graphs):
     def test_a_ball_and_a_text(self):
         self.assert_both_are_right("track", "read")
 
+    @if_quick
     def test_the_head_hears_no_tracker_of_a_score(self):
         self.environment.update(HC_HEAD_TRACKER="0", XDG_STATE_HOME=self.folder.name + "/state")
         head = self.start(

@@ -10,6 +10,7 @@ import unittest
 from bad_messages import CLOSES, bad_messages
 from table import Safety  # which knows the way to the others
 from feeder import Feeder
+from harness import if_quick
 from streams import bid, message, rotation, stick
 
 EACH = 50  # of each of 20 kinds
@@ -52,6 +53,7 @@ class BadMessages(Safety):
         self.head.wait(lambda: gain() <= most, "%s gives back all but %s MB" % (name, most))
         return gain()
 
+    @if_quick
     def test_bad_messages(self):
         head = self.head
         head.quiet()
