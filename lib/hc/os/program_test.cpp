@@ -64,6 +64,7 @@ TEST(Program, ThreadsThatAskAtOnceGetOneDescriptor) {
     std::array<int, kThreads> got{};
     {
       std::vector<std::jthread> threads;
+      threads.reserve(kThreads);
       for (int& stop : got)
         threads.emplace_back([&ready, &stop] {
           ready.arrive_and_wait();
