@@ -18,8 +18,8 @@ hc::ModuleError module_error(const std::string& text, std::string_view code) {
 
 int exit_status = 0;
 
-/// Where an exception was raised: " (redness, line 12)"; of one in a library, such as NumPy, where
-/// that was called.
+/// Where an exception was raised: " (redness, line 12)"; if that was in a library, such as NumPy,
+/// where the library was called.
 std::string place_of(const py::error_already_set& raised) {
   std::string place;
   for (py::object trace = raised.trace(); trace && !trace.is_none();

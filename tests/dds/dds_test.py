@@ -88,7 +88,9 @@ class Dds(unittest.TestCase):
 
     def test_the_graphs_of_a_fleet_share_a_camera(self):
         robot = "robot%d" % os.getpid()
-        images = pathlib.Path(self.folder.name, "images")  # which change, or they come slowly
+        images = pathlib.Path(
+            self.folder.name, "images"
+        )  # different ones, since equal ones are throttled
         images.mkdir()
         for number in range(1, 6):
             name = "left0%d.jpg" % number

@@ -24,7 +24,7 @@ RING = 2048  # messages that a queue without a number holds
 # or the page closes a connection that answers no ping [s].
 WAITS = 5
 SOON = 10  # after which `hc run` restarts a module of the head, where the file says no other [s]
-LATE = 0.2  # after a stop, without what processes waited, until which a command may come [s]
+LATE = 0.2  # a command may come so long after a stop, without the time that processes waited [s]
 MORE = 2100  # messages than a queue holds
 WAY = ("web", "workspace", "head_neck", "head_unit")  # of whatever a person drives by
 DRIVES = (
@@ -117,7 +117,7 @@ class Hung(Safety):
                     self.fill_queues()
                     head.sit(head.seat.says)
                 self.note_lost(name, is_driven, filled)
-                if is_driven:  # places clicked at, of which queues were full, hold it for a while
+                if is_driven:  # the clicks in the queues hold the head for 2 s
                     head.wait_moving()
                 waits = waiting.enter_context(head.waits())
                 stopped = head.press_stop()

@@ -95,7 +95,7 @@ bool is_shapeless_image(const hc::PortType& type) {
   return is_image && type.width == 0 && type.height == 0;
 }
 
-/// What is not given is as the first type that the input takes.
+/// Takes the options that are not given from the first type of the input.
 void fill_in(SendOptions& options) {
   if (options.taken.empty() || options.has_type) return;
   const hc::Info& info = options.taken.front().info;

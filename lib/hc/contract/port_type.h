@@ -40,8 +40,8 @@ std::optional<Shape> shape_of(const PortType& type, std::size_t numbers);
 /// Why a message is not of a type: Malformed; the detail begins with the rule of the field,
 /// "R19: …". A message that fits is a bug.
 Error misfit(const Header& header, const PortType& type);
-/// The same of several types; of more than one without a rule: "table 2 x 1 of 1 x f64 does
-/// not fit, the port takes …".
+/// The same for several types; of more than one, the detail names no rule: "table 2 x 1 of 1 x f64
+/// does not fit, the port takes …".
 Error misfit(const Header& header, const std::vector<PortType>& types);
 
 /// Whether an output of type `given` may be linked to an input that takes `taken`; an empty list
