@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -17,8 +16,6 @@
 #include <graph/process.h>
 #include <hc/base/clock.h>
 #include <hc/base/format.h>
-#include <hc/base/suggestion.h>
-#include <hc/base/text.h>
 #include <hc/base/uri.h>
 #include <hc/compress/compress.h>
 #include <hc/compress/convert.h>
@@ -29,6 +26,7 @@
 #include "comparison.h"
 #include "graph.h"
 #include "graph_recording.h"
+#include "output_settings.h"
 #include "replay_inputs.h"
 #include "verbs.h"
 
@@ -59,42 +57,6 @@ fs::path make_folder(const std::string& given) {
     throw Failure(hc::Code::System, name + ": cannot make the folder");
   return name;
 }
-
-void check_known(const std::string& name, const std::set<std::string>& known) {
-  if (!known.contains(name))
-    throw Failure(hc::Code::Invalid, "no module or recorded output \"" + name + "\"" +
-                                         hc::suggestion(name, {known.begin(), known.end()}));
-}
-
-/// Settings "[MODULE[.PORT]=]VALUE"; the most specific one applies.
-class Settings {
- public:
-  Settings(const std::string& option, const std::vector<std::string>& words, double default_value)
-      : default_(default_value) {
-    for (const auto& word : words) {
-      const auto equals = word.find('=');
-      const auto number = equals == std::string::npos ? word : word.substr(equals + 1);
-      double value = 0;
-      if (!hc::read_number(number, value) || !(value >= 0 && std::isfinite(value)))
-        throw Failure(hc::Code::Invalid, option + " is [MODULE[.PORT]=]NUMBER, not " + word);
-      values_[equals == std::string::npos ? "" : word.substr(0, equals)] = value;
-    }
-  }
-
-  [[nodiscard]] double of(const std::string& output) const {
-    for (const auto& name : {output, output.substr(0, output.find('.')), std::string()})
-      if (const auto found = values_.find(name); found != values_.end()) return found->second;
-    return default_;
-  }
-  void check(const std::set<std::string>& known) const {
-    for (const auto& [name, value] : values_)
-      if (!name.empty()) check_known(name, known);
-  }
-
- private:
-  double default_;
-  std::map<std::string, double> values_;
-};
 
 class Replay {
  public:
@@ -391,7 +353,7 @@ class Replay {
   const GraphRecording recording_;
   hc::Plan plan_;
   fs::path folder_;  // removed at the end, unless given
-  Settings numbers_, shares_;
+  OutputSettings numbers_, shares_;
   std::map<std::string, std::uint64_t> taken_;  // messages of the module that was run last, by port
   mutable std::map<std::string, RecordedTrace> changes_;  // see changes_of()
   std::map<std::string, std::int64_t> last_;  // last `seq` sent in a complete step, by output
