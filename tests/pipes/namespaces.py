@@ -8,7 +8,9 @@ import sys
 
 # Users other than root become it there; root stays it, also where that makes no such namespace, as
 # in a chroot.
-UNSHARE = ["unshare", *([] if os.geteuid() == 0 else ["--map-root-user"])]
+IS_ROOT = os.geteuid() == 0
+UNSHARE = ["unshare", *([] if IS_ROOT else ["--map-root-user"])]
+NSENTER = ["nsenter", *([] if IS_ROOT else ["--user", "--preserve-credentials"])]
 INSIDE = "HC_TEST_NETWORK"
 
 

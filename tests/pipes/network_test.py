@@ -16,6 +16,7 @@ import time
 import unittest
 
 from harness import PYTHON, Pipes, WATCHDOG, free_port, listens, wait_until
+from namespaces import NSENTER, UNSHARE
 
 FULL = bool(os.environ.get("HC_FULL"))
 NOTICED, BACK = (4.0, 2.0) if FULL else (WATCHDOG, WATCHDOG)  # [s]
@@ -42,7 +43,7 @@ class Network(Pipes):
     def setUp(self):
         super().setUp()
         self.cable = subprocess.Popen(
-            ["unshare", "-rn", "sh", "-c", CABLE], stdin=-1, stdout=-1, stderr=-1, text=True
+            [*UNSHARE, "--net", "sh", "-c", CABLE], stdin=-1, stdout=-1, stderr=-1, text=True
         )
         self.addCleanup(self.cut)
         line = self.cable.stdout.readline().split()
@@ -55,15 +56,15 @@ class Network(Pipes):
 
     def within(self, where, command, **options):
         """Starts a command in a namespace: self.near or self.far."""
-        enter = "exec nsenter --preserve-credentials -t %s -U -n " % where
+        enter = "exec %s -t %s -n " % (" ".join(NSENTER), where)
         return self.start(enter + command, **options)
 
+    def configure(self, command):
+        """Runs a command of `ip` in the first namespace."""
+        subprocess.run([*NSENTER, "-t", self.near, "-n", "ip", *command.split()], check=True)
+
     def set_cable(self, state):
-        subprocess.run(
-            ["nsenter", "--preserve-credentials", "-t", self.near, "-U", "-n"]
-            + ["ip", "link", "set", "near", state],
-            check=True,
-        )
+        self.configure("link set near " + state)
 
     def listens_there(self, port):
         table = pathlib.Path("/proc/%s/net/tcp" % self.far).read_text()
@@ -132,11 +133,7 @@ class Network(Pipes):
         self.check_return(reader)
 
     def add_address(self):
-        subprocess.run(
-            ["nsenter", "--preserve-credentials", "-t", self.near, "-U", "-n"]
-            + ["ip", "address", "add", LATE + "/32", "dev", "near"],
-            check=True,
-        )
+        self.configure("address add %s/32 dev near" % LATE)
 
     def check_late_address(self, reader, send, said):
         """A reader waits for an address that comes after its start, and says so once."""
