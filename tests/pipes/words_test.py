@@ -140,7 +140,12 @@ class Ports(Graphs):
         ):
             self.shell("hc send %s --to brightness.image" % words, 1)
             self.assertIn("brightness.image: " + sent + takes, self.err)
-        self.shell("hc send 1 2 3 4 5 6 --width 2 --to brightness.image")
+        for words in (
+            "1 2 3 4 5 6 --width 2",
+            "1 2 3 4 5 6 --width 2 --type rgb_image",
+            "1 2 3 4 --width 2 --components 1",
+        ):
+            self.shell("hc send %s --to brightness.image" % words)
         for to, reason in (
             ("brightness.imag", 'no input "brightness.imag", did you mean "brightness.image"?'),
             ("brightness.mean", 'no input "brightness.mean"'),

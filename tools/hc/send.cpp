@@ -95,13 +95,17 @@ bool is_shapeless_image(const hc::PortType& type) {
   return is_image && type.width == 0 && type.height == 0;
 }
 
-/// Takes the options that are not given from the first type of the input.
+/// Takes the options that are not given from the first type of the input that has those given.
 void fill_in(SendOptions& options) {
-  if (options.taken.empty() || options.has_type) return;
-  const hc::Info& info = options.taken.front().info;
-  options.type = hc::name(info.type);
-  if (!options.has_scalar) options.scalar = hc::name(info.scalar);
-  if (options.components == 0) options.components = info.components;
+  for (const auto& taken : options.taken) {
+    const hc::Info& info = taken.info;
+    if (options.has_type && options.type != hc::name(info.type)) continue;
+    if (options.components != 0 && options.components != info.components) continue;
+    options.type = hc::name(info.type);
+    options.components = info.components;
+    if (!options.has_scalar) options.scalar = hc::name(info.scalar);
+    return;
+  }
 }
 
 hc::Message message_of_numbers(SendOptions options) {
