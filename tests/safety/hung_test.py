@@ -24,7 +24,7 @@ RING = 2048  # messages that a queue without a number holds
 # or the page closes a connection that answers no ping [s].
 WAITS = 5
 SOON = 10  # after which `hc run` restarts a module of the head, where the file says no other [s]
-LATE = 0.2  # a command may come so long after a stop, without the time that processes waited [s]
+LATE = 0.2  # the last command after a stop, not counting waits for a processor [s]
 MORE = 2100  # messages than a queue holds
 WAY = ("web", "workspace", "head_neck", "head_unit")  # of whatever a person drives by
 DRIVES = (
