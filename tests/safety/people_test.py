@@ -42,8 +42,9 @@ class People(Safety):
         self.hold()
 
     def note_turns(self, begun, *feeders):
-        """Of two sources that began after a time [ns], from when the head moves. Where one, or what
-        a command passes through, got no processor for so long that it was silent, a turn is excused.
+        """Of two sources that began after a time [ns], from when the head moves. For each time that
+        one, or what a command passes through, got no processor for so long that it was silent, a
+        turn does not count.
         """
         motion = self.head.motion
         moves = lambda: motion.moves(motion.since(begun))
@@ -53,7 +54,7 @@ class People(Safety):
         silences = sum(pause > SILENCE for each in feeders for pause in each.pauses)
         silences += int(waits.until(time.time_ns()) / SILENCE)
         where = "beside others who had the processor %d times" % silences
-        self.note("turns", motion.turns(moves()[0]), where, silences)
+        self.note("turns", max(0, motion.turns(moves()[0]) - silences), where)
         self.hold()
 
     def note_rest(self):
