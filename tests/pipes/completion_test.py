@@ -17,7 +17,7 @@ LINES = {
     "hc brigh": "hc brightness",
     "hc cat --js": "hc cat --json",
     "hc graph unl": "hc graph unlink",
-    "hc run score_a": "hc run score_augment",
+    "hc run score_au": "hc run score_augment",
     "hc depth --match": "hc depth --matcher",
     "hc cat numbers.m": "hc cat numbers.mtp",
     "hc completion z": "hc completion zsh",

@@ -3,6 +3,7 @@
 """hc run as the first process of a container: a namespace of processes, on a network that others
 share."""
 
+import contextlib
 import os
 import pathlib
 import signal
@@ -22,7 +23,8 @@ def children(number):
     """The names of a process's children, by their numbers."""
     found = {}
     for child in pathlib.Path("/proc/%d/task/%d/children" % (number, number)).read_text().split():
-        found[int(child)] = pathlib.Path("/proc/%s/comm" % child).read_text().strip()
+        with contextlib.suppress(FileNotFoundError):  # it has just been reaped
+            found[int(child)] = pathlib.Path("/proc/%s/comm" % child).read_text().strip()
     return found
 
 
