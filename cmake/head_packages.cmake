@@ -21,7 +21,7 @@ find_package(OpenGL REQUIRED COMPONENTS OpenGL EGL)
 
 # Debian's single OpenCV packages have no CMake package, which is libopencv-dev's with everything.
 find_path(HC_OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
-foreach(module core imgproc imgcodecs videoio calib3d aruco freetype video)
+foreach(module core imgproc imgcodecs videoio calib3d aruco freetype video dnn)
   find_library(HC_OPENCV_${module} opencv_${module} REQUIRED)
   add_library(opencv_${module} UNKNOWN IMPORTED GLOBAL)
   set_target_properties(opencv_${module} PROPERTIES

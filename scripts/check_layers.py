@@ -8,7 +8,7 @@ import re
 import sys
 
 # Library packages: over other libraries, without messages but in the files of MESSAGES.
-PACKAGES = {"frames", "vision", "graphics", "room", "sound", "gaze", "web"}
+PACKAGES = {"frames", "vision", "nets", "people", "graphics", "room", "sound", "gaze", "web"}
 MESSAGES = {"messages", "module_cameras", "module_frames"}
 # A layer, and those that it may include beside itself.
 ALLOWED = {
@@ -24,6 +24,8 @@ ALLOWED = {
     "graph": "base os mtp contract link",
     "frames": "base",
     "vision": "base os frames",
+    "nets": "base",
+    "people": "base nets vision",
     "gaze": "base",
     "graphics": "base compress",
     "room": "base graphics vision",

@@ -1,19 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """The package's copyright file names what is in it: what the page bundles, the headers that are
-compiled in, and the one program that is linked with a library under the GPL.
+compiled in, the weights of networks, and the one program that is linked with a library under the GPL.
 
     copyright_test.py BUILD_FOLDER
 """
 
+import json
 import pathlib
 import re
 import subprocess
 import sys
 import unittest
+from fnmatch import fnmatch
 
 ROOT = pathlib.Path(__file__).parents[2]
 TEXT = (ROOT / "cmake/debian_copyright").read_text()
+PACKAGES = json.loads((ROOT / "nets/package.json").read_text())["dependencies"]
 # Folders of headers by what has their code: our programs, or libraries that these are linked with.
 COMPILED_IN = {
     "CLI": "CLI11",
@@ -63,6 +66,23 @@ class Copyright(unittest.TestCase):
                 notice = re.search(r"^Copyright (?:©|\(c\)) (.*)$", bundled[name], re.M)[1]
                 self.assertTrue(notice.endswith(holder), notice)
                 self.assertIn("\n " + notice, web["Copyright"])
+
+    def test_weights_of_networks(self):
+        folder = BUILD / "share/hypercolumn/nets"
+        weights = {path.name for path in folder.iterdir() if path.suffix in (".tflite", ".bin")}
+        self.assertIn("face_recognition.bin", weights)
+        notice = (ROOT / "NOTICE").read_text()
+        self.assertEqual(set(re.findall(r"^(\w+\.(?:tflite|bin))$", notice, re.M)), weights)
+        covered = [each.get("Files", "").strip() for each in paragraphs()]
+        for name in weights:
+            path = "usr/share/hypercolumn/nets/" + name
+            self.assertTrue([one for one in covered if one != "*" and fnmatch(path, one)], name)
+        holder = re.search(
+            r"^Copyright \(c\) (.*)$", (folder / "LICENSE.face-api").read_text(), re.M
+        )
+        self.assertRegex(TEXT, r"(?m)^Copyright: %s$" % holder[1])
+        for package, version in re.findall(r"(@[\w/-]+) ([\w.]+)", notice):
+            self.assertEqual(PACKAGES[package], version.rstrip("."))
 
     def test_headers_that_are_compiled_in(self):
         own = {path.name for path in (ROOT / "lib").iterdir()} | {"drivers", "gtest"}

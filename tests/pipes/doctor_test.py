@@ -33,6 +33,7 @@ class Doctor(Pipes):
             self.assertRegex(line, "^(ok     |note   )  [a-z]+ +[^ ]")
         self.assertRegex(out, "ok +kernel +Linux .*memfd with seals, pidfd, membarrier, futex")
         self.assertRegex(out, "ok +modules +.*brightness, .*camera")
+        self.assertRegex(out, "ok +networks +face_detection_full_range, .*palm_detection_lite\n")
         self.assertRegex(out, "note +display +none")
 
     def test_a_graph_that_misses_nothing(self):

@@ -170,6 +170,18 @@ std::string display() {
   return "";
 }
 
+/// The names of files of weights; the weights of a .json are in a .bin.
+std::vector<std::string> networks_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(folder, missing))
+    if (const auto& path = entry.path();
+        path.extension() == ".tflite" || path.extension() == ".bin")
+      names.push_back(path.stem());
+  std::ranges::sort(names);
+  return names;
+}
+
 }  // namespace
 
 std::string problem_of(const std::string& question) {
@@ -212,6 +224,8 @@ Facts gather_facts(const std::vector<std::string>& questions) {
     bool starts = ::access((module_folder() / name).c_str(), X_OK) == 0;
     (starts ? facts.modules : facts.broken_modules).push_back(name);
   }
+  facts.networks_folder = hc::graph_folder().parent_path() / "nets";
+  facts.networks = networks_in(facts.networks_folder);
   for (const auto& question : questions) facts.problems[question] = problem_of(question);
   return facts;
 }

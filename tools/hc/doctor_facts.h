@@ -34,6 +34,8 @@ struct Facts {
   std::string display;                      ///< the environment variable, with its value
   bool has_graphviz = false;                ///< `dot` is installed
   std::vector<std::string> modules;         ///< executable
+  std::string networks_folder;              ///< of the weights of neural networks
+  std::vector<std::string> networks;        ///< those that are there
   std::vector<std::string> broken_modules;  ///< in the folder of modules, but not executable
   /// By question: the problem, such as " does not exist"; empty: none.
   std::map<std::string, std::string> problems;

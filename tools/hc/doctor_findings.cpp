@@ -159,6 +159,12 @@ std::vector<Finding> diagnose(const Facts& facts) {
   findings.push_back(facts.has_graphviz ? Finding{Mark::Ok, "graphviz", "dot"}
                                         : Finding{Mark::Note, "graphviz",
                                                   "dot is not installed; hc graph --svg needs it"});
+  findings.push_back(
+      facts.networks.empty()
+          ? Finding{Mark::Note, "networks",
+                    "no weights in " + facts.networks_folder +
+                        ": the Debian package hypercolumn has them, and ./dev build unpacks them"}
+          : Finding{Mark::Ok, "networks", joined(facts.networks)});
   findings.push_back(facts.modules.empty()
                          ? Finding{Mark::Missing, "modules", "none installed with hc"}
                          : Finding{Mark::Ok, "modules", joined(facts.modules)});

@@ -17,6 +17,8 @@ Facts good_facts() {
   facts.free_memory = 8'000'000'000;
   facts.devices = {{"camera", "/dev/video*"}};
   facts.modules = {"camera", "view"};
+  facts.networks_folder = "/usr/share/hypercolumn/nets";
+  facts.networks = {"hand_landmark_lite"};
   return facts;
 }
 
@@ -59,6 +61,18 @@ TEST(Doctor, ModulesAreNeeded) {
   facts.broken_modules.clear();
   facts.modules.clear();
   EXPECT_TRUE(is_ill(diagnose(facts)));
+}
+
+TEST(Doctor, WeightsThatAreMissingComeWithThePackage) {
+  auto facts = good_facts();
+  EXPECT_EQ(find(diagnose(facts), "networks", Mark::Ok)->text, "hand_landmark_lite");
+  facts.networks.clear();
+  const auto findings = diagnose(facts);
+  EXPECT_EQ(
+      find(findings, "networks", Mark::Note)->text,
+      "no weights in /usr/share/hypercolumn/nets: the Debian package hypercolumn has them, and "
+      "./dev build unpacks them");
+  EXPECT_FALSE(is_ill(findings));
 }
 
 TEST(Doctor, LowLimitsAreNotes) {

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What the shapes in a network must be. Pure.
+
+#include <hc/base/result.h>
+#include <nets/layers.h>
+
+namespace hc::nets {
+
+/// The window of a convolution or pool, and the zeros around its image. [px]
+struct Window {
+  int height = 1, width = 1;
+  int top = 0, bottom = 0, left = 0, right = 0;
+};
+/// @param weights  of a convolution; {} of a pool.
+Window window_of(const Layer& layer, const Shape& image, const Shape& weights);
+
+/// The axis of a concatenation, counted from the first.
+int axis_of(const Layer& layer, const Shape& shape);
+
+/// Whether each layer takes what was computed before it, or a constant where it has to be one, and
+/// its shape follows from theirs.
+///
+/// Errors: Malformed, Unsupported, TooLarge (see Network::make()).
+Status check_shapes(const Layers& layers);
+
+}  // namespace hc::nets
