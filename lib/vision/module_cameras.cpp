@@ -89,4 +89,20 @@ PairIntrinsics ModulePair::of(int width, int height) {
   return {focal, focal, (width - 1) / 2.0, (height - 1) / 2.0, baseline};
 }
 
+void RectifiedMount::take(const TimedPose& pose) {
+  if (pose.to == Coord::kLeftEye && pose.from == Coord::kLeftRectified)
+    T_left_rectified_ = pose.T_to_from;
+  else if (pose.to == Coord::kHead && pose.from == Coord::kLeftEye)
+    T_head_left_ = pose.T_to_from;
+}
+
+Eigen::Isometry3d RectifiedMount::pose_in(std::string_view frame, Time time,
+                                          ModuleFrames& frames) const {
+  const auto pose_of = [&](std::string_view other) {
+    const auto known = frames.lookup(frame, other, time);
+    return known ? *known : frames.nearest(frame, other, time);
+  };
+  return (T_head_left_ ? pose_of("head") * *T_head_left_ : pose_of("left_eye")) * T_left_rectified_;
+}
+
 }  // namespace hc::vision

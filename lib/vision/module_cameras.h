@@ -8,7 +8,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
+#include <Eigen/Geometry>
+
+#include <frames/messages.h>
 #include <frames/module_frames.h>
 #include <hc/module/module.h>
 
@@ -75,6 +79,21 @@ class ModulePair {
   AssumedCameras assumed_;
   std::optional<PairIntrinsics> linked_;
   std::deque<std::function<void()>> waiting_;
+};
+
+/// How the left rectified camera is mounted: as the messages `cameras` of rectify say, and until
+/// they do as the graph's frames do.
+class RectifiedMount {
+ public:
+  /// Takes T_head_left_eye or T_left_eye_left_rectified; ignores other poses.
+  void take(const TimedPose& pose);
+  /// T_frame_camera at a time, or with the nearest known poses. An unknown frame ends the module.
+  [[nodiscard]] Eigen::Isometry3d pose_in(std::string_view frame, Time time,
+                                          ModuleFrames& frames) const;
+
+ private:
+  std::optional<Eigen::Isometry3d> T_head_left_;
+  Eigen::Isometry3d T_left_rectified_ = Eigen::Isometry3d::Identity();
 };
 
 }  // namespace hc::vision

@@ -3,7 +3,6 @@
 // The rectified pair of eyes and its pose, from the messages of `rectify`. No ports.
 
 #include <array>
-#include <optional>
 
 #include <frames/messages.h>
 #include <frames/module_frames.h>
@@ -25,14 +24,13 @@ struct Sight {
 
 class Pair {
  public:
-  /// Takes T_head_left_eye or T_left_eye_left_rectified; ignores other poses.
-  void set_camera(const hc::TimedPose& pose);
+  /// @see RectifiedMount::take()
+  void set_camera(const hc::TimedPose& pose) { mount_.take(pose); }
 
   /// The eyes at the time of an image.
   [[nodiscard]] Sight at(const hc::Header& image, const hc::vision::PairIntrinsics& intrinsics,
                          hc::ModuleFrames& frames) const;
 
  private:
-  std::optional<Eigen::Isometry3d> T_head_left_;
-  Eigen::Isometry3d T_left_rectified_ = Eigen::Isometry3d::Identity();
+  hc::vision::RectifiedMount mount_;
 };
