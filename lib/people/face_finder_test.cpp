@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// The photographs are of a package of networks (nets/package.json): private persons, in no picture
+// or document of ours.
+#include <people/face_finder.h>
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include <people/face_search.h>
+#include <people/gallery.h>
+
+namespace {
+
+using namespace std::chrono_literals;
+using hc::people::Face;
+using hc::people::FaceFinder;
+using hc::people::FaceSearch;
+
+hc::Result<FaceFinder> finder(const std::string& range) {
+  auto network = HC_TRY(hc::nets::Network::read(
+      HC_BINARY_DIR "/share/hypercolumn/nets/face_detection_" + range + "_range.tflite"));
+  return FaceFinder::make(std::move(network));
+}
+
+FaceSearch search() {
+  return {*finder("full"), *finder("short")};
+}
+
+/// One of six photographs of 3 to 5 persons, 800 pixels wide; RGB.
+cv::Mat photograph(int number) {
+  cv::Mat bgr = cv::imread(HC_SOURCE_DIR "/nets/node_modules/@vladmandic/face-api/demo/sample" +
+                           std::to_string(number) + ".jpg");
+  EXPECT_FALSE(bgr.empty()) << "the weights have been installed without photographs";
+  cv::Mat rgb;
+  cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
+  cv::resize(rgb, rgb, {800, 800 * rgb.rows / rgb.cols}, 0, 0, cv::INTER_AREA);
+  return rgb;
+}
+
+/// The face around a place, as the small network sees it.
+std::optional<Face> face_around(FaceFinder& near, const cv::Mat& image, cv::Point2f middle,
+                                float side) {
+  const auto found =
+      near.find(image, cv::Rect(cv::Rect2f(middle.x - side / 2, middle.y - side / 2, side, side)));
+  for (const Face& face : found)
+    if (face.box.contains(middle)) return face;
+  return std::nullopt;
+}
+
+cv::Point2f middle_of(const Face& face) {
+  return (face.box.tl() + face.box.br()) / 2;
+}
+
+constexpr int kFaces[] = {3, 3, 3, 4, 5, 4};  // in the photographs
+
+constexpr hc::Time kStart(1'700'000'000s);
+
+TEST(FaceSearch, finds_everybody_in_group_photographs) {
+  for (int i = 0; i < 6; ++i)
+    EXPECT_EQ(search().look(kStart, photograph(i + 1)).size(), kFaces[i]) << i + 1;
+}
+
+TEST(FaceSearch, finds_them_in_black_and_white) {
+  cv::Mat grey;
+  cv::cvtColor(photograph(5), grey, cv::COLOR_RGB2GRAY);
+  EXPECT_EQ(search().look(kStart, grey).size(), 5U);
+}
+
+TEST(FaceSearch, finds_nobody_where_there_is_nobody) {
+  cv::Mat noise(600, 800, CV_8UC3);
+  cv::RNG random(7);
+  random.fill(noise, cv::RNG::UNIFORM, 0, 255);
+  EXPECT_TRUE(search().look(kStart, noise).empty());
+  for (const int level : {0, 128, 255})
+    EXPECT_TRUE(search().look(kStart, cv::Mat(600, 800, CV_8UC3, cv::Scalar::all(level))).empty());
+}
+
+TEST(FaceSearch, takes_images_of_any_size) {
+  for (const cv::Size size :
+       {cv::Size(1, 1), {1, 600}, {800, 1}, {16, 16}, {4000, 300}, {300, 4000}})
+    EXPECT_TRUE(search().look(kStart, cv::Mat(size, CV_8UC3, cv::Scalar::all(90))).empty()) << size;
+  EXPECT_TRUE(search().look(kStart, cv::Mat()).empty());
+}
+
+TEST(FaceSearch, follows_faces_by_the_same_numbers) {
+  FaceSearch faces = search();
+  const cv::Mat image = photograph(3);
+  hc::Time now = kStart;
+  for (int i = 0; i < 10; ++i, now += 50ms) {
+    const cv::Matx23d shift(1, 0, 6 * i, 0, 1, 0);
+    cv::Mat moved;
+    cv::warpAffine(image, moved, shift, image.size());
+    const auto seen = faces.look(now, moved);
+    ASSERT_EQ(seen.size(), 3U) << i;
+    for (const auto& track : seen) EXPECT_LE(track.number, 3) << i;
+  }
+}
+
+TEST(FaceSearch, finds_in_time_who_comes_in_while_others_are_followed) {
+  FaceSearch faces = search();
+  cv::Mat image = photograph(6), without = image.clone();
+  const auto all = search().look(kStart, image);
+  const auto rightmost = std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return a.face.box.x < b.face.box.x;
+  });
+  without.colRange(static_cast<int>(rightmost->face.box.x - 20), without.cols).setTo(40);
+  const std::size_t before = faces.look(kStart, without).size();
+  EXPECT_LT(before, all.size());
+  hc::Time now = kStart;
+  const auto most =
+      FaceSearch::kSweep * static_cast<int>(hc::people::parts_of(image.size()).size());
+  std::size_t seen = before;
+  for (; now <= kStart + most && seen < all.size(); now += 50ms)
+    seen = faces.look(now, image).size();
+  EXPECT_EQ(seen, all.size());
+}
+
+TEST(FaceFinder, finds_faces_that_are_tilted_or_partly_outside) {
+  auto near = *finder("short");
+  const cv::Mat image = photograph(1);
+  const auto middle = middle_of(search().look(kStart, image).at(0).face);
+  const float side = 250;
+  const auto upright = face_around(near, image, middle, side);
+  ASSERT_TRUE(upright);
+  for (const double degrees : {-25, 25}) {
+    cv::Mat turned;
+    cv::warpAffine(image, turned, cv::getRotationMatrix2D(middle, degrees, 1), image.size());
+    const auto found = face_around(near, turned, middle, side);
+    ASSERT_TRUE(found) << degrees;
+    // [rad], since it takes tilted faces for more upright ones than they are.
+    EXPECT_NEAR(found->roll(), upright->roll() - degrees * CV_PI / 180, 0.2) << degrees;
+  }
+  const cv::Mat half = image.colRange(static_cast<int>(middle.x), image.cols);
+  near.find(half, {0, 0, half.cols, half.rows});  // whether it counts is the network's affair
+}
+
+TEST(FaceFinder, refuses_other_networks) {
+  auto network =
+      hc::nets::Network::read(HC_BINARY_DIR "/share/hypercolumn/nets/palm_detection_lite.tflite");
+  ASSERT_TRUE(network);
+  const auto made = FaceFinder::make(std::move(*network));
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, hc::Code::Malformed);
+}
+
+TEST(Identity, is_near_for_one_person_and_far_for_others) {
+  auto network =
+      hc::nets::Network::read(HC_BINARY_DIR "/share/hypercolumn/nets/face_recognition.json");
+  ASSERT_TRUE(network);
+  auto identifier = *hc::people::Identifier::make(std::move(*network));
+  auto near = *finder("short");
+  for (int i = 1; i <= 6; ++i) {
+    const cv::Mat image = photograph(i);
+    std::vector<hc::people::Identity> people;
+    for (const auto& track : search().look(kStart, image)) {
+      people.push_back(identifier.describe(image, track.face));
+      // The same person a little turned, darker and smaller.
+      cv::Mat other;
+      const auto middle = middle_of(track.face);
+      cv::warpAffine(image, other, cv::getRotationMatrix2D(middle, 10, 0.7), image.size());
+      other *= 0.7;
+      const auto found = face_around(near, other, middle, 1.6F * track.face.box.width);
+      ASSERT_TRUE(found);
+      EXPECT_LT(hc::people::distance(people.back(), identifier.describe(other, *found)), 0.4F) << i;
+    }
+    for (std::size_t a = 0; a < people.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        EXPECT_GT(hc::people::distance(people[a], people[b]), 0.5F) << i << ' ' << a << ' ' << b;
+  }
+}
+
+}  // namespace

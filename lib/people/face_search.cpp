@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <people/face_search.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hc::people {
+namespace {
+
+constexpr float kSameFace = 0.3F;  // least overlap
+
+bool overlaps_any(const Face& face, const std::vector<Face>& others) {
+  return std::any_of(others.begin(), others.end(),
+                     [&](const Face& other) { return overlap(face.box, other.box) > kSameFace; });
+}
+
+}  // namespace
+
+std::vector<cv::Rect> parts_of(const cv::Size& image) {
+  const int length = std::max(image.width, image.height);
+  constexpr int kMostSides = 8;  // in a length: an image may be a strip
+  const int side = std::max({std::min(image.width, image.height), length / kMostSides, 1});
+  constexpr double kStep = 0.75;  // of a side
+  const int count = 1 + static_cast<int>(std::ceil((length - side) / (kStep * side)));
+  std::vector<cv::Rect> parts;
+  for (int i = 0; i < count; ++i) {
+    const int at = count == 1 ? 0 : (length - side) * i / (count - 1);
+    parts.push_back(image.width >= image.height ? cv::Rect(at, 0, side, side)
+                                                : cv::Rect(0, at, side, side));
+  }
+  return parts;
+}
+
+std::vector<Face> FaceSearch::look_around(const cv::Mat& image, const cv::Rect2f& box,
+                                          float least) {
+  // As in a picture of one person, for which the network was made.
+  const cv::Point2f middle = (box.tl() + box.br()) / 2;
+  const float side = 2.5F * std::max(box.width, box.height);
+  const cv::Rect around(cv::Rect2f(middle.x - side / 2, middle.y - side / 2, side, side));
+  if ((around & cv::Rect({}, image.size())).empty()) return {};
+  return near_.find(image, around, least);
+}
+
+void FaceSearch::follow(Time time, const cv::Mat& image, float least, std::vector<Face>& faces) {
+  auto boxes = tracks_.expected(time);
+  if (boxes.size() > kMostFollowed) boxes.resize(kMostFollowed);
+  for (const cv::Rect2f& box : boxes) {
+    const auto found = look_around(image, box, least);
+    faces.insert(faces.end(), found.begin(), found.end());
+  }
+}
+
+Face FaceSearch::refined(const cv::Mat& image, const Face& face) {
+  for (const Face& near : look_around(image, face.box))
+    if (overlap(near.box, face.box) > kSameFace) return near;
+  return face;
+}
+
+std::vector<Track> FaceSearch::look(Time time, const cv::Mat& image, float least,
+                                    const cv::Matx33f& turn) {
+  if (image.empty()) return {};
+  tracks_.turn(turn);
+  const auto parts = parts_of(image.size());
+  std::vector<Face> faces;
+  follow(time, image, least, faces);
+  const auto period = faces.empty() ? kSearch : kSweep;
+  const auto due = static_cast<std::size_t>(std::chrono::abs(time - swept_) / period);
+  if (due > 0) swept_ = time;
+  for (std::size_t i = 0; i < std::min(due, parts.size()); ++i)
+    for (const Face& face : wide_.find(image, parts[next_part_++ % parts.size()], least))
+      if (!overlaps_any(face, faces)) faces.push_back(refined(image, face));
+  return tracks_.update(time, merged(std::move(faces)));
+}
+
+}  // namespace hc::people

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Finds and follows the faces in the images of a camera.
+
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include <people/face_finder.h>
+#include <people/face_tracks.h>
+
+namespace hc::people {
+
+/// Follows known faces by the small network, around where they are expected, and searches for
+/// others by the large one: in all parts of the first image, and then in one after the other.
+///
+/// Cost: 3 ms of a core for each known face, and 10 ms for a part.
+class FaceSearch {
+ public:
+  /// How often a part is searched, while there are no faces and while some are followed. After a
+  /// longer time without images, as many parts as would have been.
+  static constexpr std::chrono::milliseconds kSearch{150}, kSweep{200};
+  static constexpr std::size_t kMostFollowed = 8;
+
+  /// @param wide  with face_detection_full_range. @param near  with face_detection_short_range.
+  FaceSearch(FaceFinder wide, FaceFinder near) : wide_(std::move(wide)), near_(std::move(near)) {}
+
+  /// The faces of the next image, (height, width) of u8, RGB or grey, of any size.
+  /// @param least  of their scores.
+  /// @param turn  of the camera since the last image. @see FaceTracks::turn()
+  std::vector<Track> look(Time time, const cv::Mat& image, float least = 0.5F,
+                          const cv::Matx33f& turn = cv::Matx33f::eye());
+  /// The faces around a place, such as that of a known face in the image of the other eye.
+  std::vector<Face> look_around(const cv::Mat& image, const cv::Rect2f& box, float least = 0.5F);
+
+ private:
+  /// A face of the large network as the small one sees it, whose points are more precise.
+  Face refined(const cv::Mat& image, const Face& face);
+  void follow(Time time, const cv::Mat& image, float least, std::vector<Face>& faces);
+
+  FaceFinder wide_, near_;
+  FaceTracks tracks_;
+  std::size_t next_part_ = 0;
+  Time swept_{};
+};
+
+/// Squares that cover an image, each as high or as wide as it, and overlapping by a quarter or
+/// more.
+std::vector<cv::Rect> parts_of(const cv::Size& image);
+
+}  // namespace hc::people

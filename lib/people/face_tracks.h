@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Follows faces from image to image. Pure: times come from the caller; where they go back by more
+// than a track's life, all tracks are new.
+
+#include <chrono>
+#include <vector>
+
+#include <opencv2/core/matx.hpp>
+
+#include <hc/base/time.h>
+#include <people/face.h>
+
+namespace hc::people {
+
+/// A face that was seen in several images.
+struct Track {
+  int number = 0;  ///< from 1; never used again
+  Face face;       ///< as it was seen last
+  Time seen{};
+};
+
+/// Assigns the faces of each image to tracks: each to the one whose predicted box it overlaps most.
+/// A track moves at a constant velocity between images, and ends when it was not seen for kLife.
+class FaceTracks {
+ public:
+  static constexpr std::chrono::milliseconds kLife{1000};
+  static constexpr float kLeastOverlap = 0.3F;
+
+  /// @returns the tracks that are seen in this image, in the order of `faces`.
+  std::vector<Track> update(Time time, const std::vector<Face>& faces);
+
+  /// Moves all tracks as the image has moved since the last one, by the camera's turn.
+  /// @param H  of pixels from the last image to this one.
+  void turn(const cv::Matx33f& H);
+
+  /// Where the tracks are expected at a time, also those that were not seen in the last image.
+  [[nodiscard]] std::vector<cv::Rect2f> expected(Time time) const;
+
+ private:
+  /// A constant velocity, by a Kalman filter for each of the box's centre and width, all with the
+  /// same gains.
+  struct Following {
+    Track track;
+    cv::Point3f at, speed;        // centre and width [px], [px/s]
+    std::array<float, 3> p = {};  // covariance of a place and its speed: (p0 p1; p1 p2)
+    [[nodiscard]] cv::Point3f predicted(Time time) const;
+    [[nodiscard]] cv::Rect2f box(Time time) const;
+    void correct(Time time, const Face& face);
+  };
+  std::vector<Following> all_;
+  int last_ = 0;
+};
+
+}  // namespace hc::people

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The people who are known by name. Pure.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <people/identity.h>
+
+namespace hc::people {
+
+/// The mean of several identities, which is nearer to each view of a person than these are to one
+/// another.
+Identity mean(const std::vector<Identity>& views);
+
+/// Known people, each with a number and the mean identity of some views of the face.
+class Gallery {
+ public:
+  /// @returns  the person's number: from 1 in the order in which names came, never used again for
+  ///     another name.
+  int add(const std::string& name, const Identity& identity);
+  void forget(const std::string& name) { people_.erase(name); }
+
+  struct Match {
+    int number = 0;
+    float distance = 0;
+  };
+  /// The person who is nearest to an identity, if nearer than `most`.
+  [[nodiscard]] std::optional<Match> find(const Identity& identity, float most) const;
+  /// Name and number of all.
+  [[nodiscard]] std::map<std::string, int> names() const;
+
+ private:
+  struct Person {
+    int number = 0;
+    Identity identity = {};
+  };
+  std::map<std::string, Person> people_;
+  std::map<std::string, int> numbers_;  // also of the forgotten
+};
+
+}  // namespace hc::people

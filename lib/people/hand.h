@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// A hand in an image. Pure.
+
+#include <array>
+#include <cstddef>
+
+#include <opencv2/core/types.hpp>
+
+namespace hc::people {
+
+/// A square part of an image that is turned.
+struct Region {
+  cv::Point2f middle;  ///< [px]
+  float side = 0;      ///< [px]
+  float turn = 0;  ///< of its upward direction from the image's, > 0 clockwise [rad, -π … π]
+};
+
+/// A hand, with a joint or tip at each of its points.
+struct Hand {
+  /// Of a finger four points follow one another, from the knuckle to the tip; those of the thumb
+  /// begin at the wrist.
+  enum Point {
+    Wrist,
+    Thumb,
+    ThumbTip = Thumb + 3,
+    Index,
+    IndexTip = Index + 3,
+    Middle,
+    MiddleTip = Middle + 3,
+    Ring,
+    RingTip = Ring + 3,
+    Little,
+    LittleTip = Little + 3,
+    kPoints
+  };
+  /// The person's own.
+  enum class Side { Left, Right };
+
+  std::array<cv::Point2f, kPoints> points;  ///< [px]
+  std::array<float, kPoints> depths = {};   ///< > 0 beyond the wrist, as long as in the image [px]
+  /// In the directions of the camera, x right, y down, z forward, around the hand's middle, for a
+  /// hand of ordinary size. [m]
+  std::array<cv::Point3f, kPoints> world;
+  float presence = 0;  ///< 0 … 1: that there is a hand
+  Side side = Side::Right;
+
+  /// The smallest upright box around the points.
+  [[nodiscard]] cv::Rect2f box() const;
+};
+
+/// Where to look for the points of a hand that had these in the last image.
+/// Source: MediaPipe, hand_landmark_landmarks_to_roi.pbtxt, hand_landmarks_to_rect_calculator.cc.
+Region region_of(const Hand& hand);
+
+}  // namespace hc::people

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// With the real networks, and a photograph of OpenCV's documentation: a player with both hands
+// stretched out.
+#include <people/hand_search.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace hc::people {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Time kFirstImage{100s};
+const std::string kHandWeights = HC_BINARY_DIR "/share/hypercolumn/nets/";
+
+template <typename Finder>
+Finder made(const std::string& weights) {
+  auto network = nets::Network::read(kHandWeights + weights);
+  if (!network) throw std::runtime_error(network.error().text());
+  auto finder = Finder::make(std::move(*network));
+  if (!finder) throw std::runtime_error(finder.error().text());
+  return std::move(*finder);
+}
+PalmFinder made_palms() {
+  return made<PalmFinder>("palm_detection_lite.tflite");
+}
+HandLandmarks made_landmarks() {
+  return made<HandLandmarks>("hand_landmark_lite.tflite");
+}
+
+cv::Mat photograph() {
+  const char* folder = std::getenv("HC_DATA");
+  return cv::imread(
+      (folder ? folder : "/usr/share/doc/opencv-doc/examples/data") + std::string("/messi5.jpg"),
+      cv::IMREAD_COLOR);
+}
+
+class HandsInAPhotograph : public testing::Test {
+ protected:
+  void SetUp() override {
+    const cv::Mat bgr = photograph();
+    if (bgr.empty()) GTEST_SKIP() << "messi5.jpg is not there (opencv-doc)";
+    cv::cvtColor(bgr, image_, cv::COLOR_BGR2RGB);
+  }
+
+  /// The hand before the player, found and looked at again.
+  Hand hand(const cv::Mat& image, Region region) {
+    for (int i = 0; i < 3; ++i) region = region_of(landmarks_.find(image, region));
+    return landmarks_.find(image, region);
+  }
+
+  cv::Mat image_;
+  HandLandmarks landmarks_ = made_landmarks();
+  Region region_{{363, 166}, 54, 1.85F};
+};
+
+TEST_F(HandsInAPhotograph, are_found_by_their_palms) {
+  auto finder = made_palms();
+  const auto palms = finder.find(image_, {0, 0, image_.cols, image_.rows});
+  ASSERT_GE(palms.size(), 1U);
+  EXPECT_GT(palms[0].score, 0.7F);
+  const Region region = region_of(palms[0]);
+  EXPECT_LT(cv::norm(region.middle - cv::Point2f(360, 166)), 10);
+  EXPECT_NEAR(region.turn, 1.6F, 0.4F) << "the fingers are to the right";
+}
+
+TEST_F(HandsInAPhotograph, have_points_that_stay_where_the_region_moves) {
+  const Hand usual = hand(image_, region_);
+  EXPECT_GT(usual.presence, 0.9F);
+  EXPECT_GT(usual.points[Hand::MiddleTip].x, usual.points[Hand::Wrist].x + 20);
+  Region moved = region_;
+  moved.middle += {4, -3};
+  moved.side *= 1.15F;
+  moved.turn -= 0.2F;
+  const Hand other = hand(image_, moved);
+  for (std::size_t i = 0; i < Hand::kPoints; ++i)
+    EXPECT_LT(cv::norm(other.points[i] - usual.points[i]), 3) << i;
+}
+
+TEST_F(HandsInAPhotograph, turn_with_the_image) {
+  const Hand usual = landmarks_.find(image_, region_);
+  cv::Mat turned;  // a pixel (x, y) comes to (height - 1 - y, x)
+  cv::rotate(image_, turned, cv::ROTATE_90_CLOCKWISE);
+  const auto place = [&](const cv::Point2f& p) {
+    return cv::Point2f(static_cast<float>(image_.rows) - 1 - p.y, p.x);
+  };
+  constexpr float kQuarter = 1.5707963F;
+  const Hand after =
+      landmarks_.find(turned, {place(region_.middle), region_.side, region_.turn + kQuarter});
+  EXPECT_NEAR(after.presence, usual.presence, 0.01F);
+  for (std::size_t i = 0; i < Hand::kPoints; ++i) {
+    EXPECT_LT(cv::norm(after.points[i] - place(usual.points[i])), 0.3) << i;
+    EXPECT_NEAR(after.depths[i], usual.depths[i], 0.5F) << i;
+    const cv::Point3f world(-usual.world[i].y, usual.world[i].x, usual.world[i].z);
+    EXPECT_LT(cv::norm(after.world[i] - world), 1e-3) << i;
+  }
+}
+
+TEST_F(HandsInAPhotograph, are_the_other_ones_in_a_mirror) {
+  const Hand usual = hand(image_, region_);
+  cv::Mat mirrored;
+  cv::flip(image_, mirrored, 1);
+  const auto width = static_cast<float>(image_.cols);
+  const Hand other = hand(
+      mirrored, {{width - 1 - region_.middle.x, region_.middle.y}, region_.side, -region_.turn});
+  EXPECT_NE(usual.side, other.side);
+  for (std::size_t i = 0; i < Hand::kPoints; ++i)
+    EXPECT_LT(
+        cv::norm(other.points[i] - cv::Point2f(width - 1 - usual.points[i].x, usual.points[i].y)),
+        6)
+        << i;
+}
+
+TEST_F(HandsInAPhotograph, are_found_and_followed) {
+  HandSearch search(made_palms(), made_landmarks());
+  std::vector<HandTrack> tracks;
+  cv::Mat image;
+  for (int i = 0; i < 20; ++i) {  // the camera turns by 6 px in an image
+    const cv::Matx23f shift(1, 0, static_cast<float>(6 * i), 0, 1, 0);
+    cv::warpAffine(image_, image, shift, image_.size());
+    tracks = search.look(kFirstImage + i * 100ms, image);
+    if (i > 3) {
+      ASSERT_GE(tracks.size(), 1U) << i;
+      EXPECT_EQ(tracks[0].number, 1) << i;
+    }
+  }
+  const auto near = [&](float x, float y) {
+    return std::count_if(tracks.begin(), tracks.end(), [&](const HandTrack& track) {
+      return cv::norm(region_of(track.hand).middle - cv::Point2f(x + 114, y)) < 15;
+    });
+  };
+  EXPECT_EQ(near(360, 166), 1);
+  EXPECT_LE(tracks.size(), 2U);
+}
+
+TEST(HandSearch, finds_nothing_in_a_wall) {
+  HandSearch search(made_palms(), made_landmarks());
+  const cv::Mat wall(600, 800, CV_8UC3, cv::Scalar(120, 110, 100));
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(search.look(kFirstImage + i * 250ms, wall).empty());
+  EXPECT_TRUE(search.look(kFirstImage, cv::Mat()).empty());
+  EXPECT_TRUE(search.look(kFirstImage + 1s, cv::Mat(30, 40, CV_8UC1, cv::Scalar(90))).empty())
+      << "grey";
+}
+
+TEST(HandSearch, searches_at_times) {
+  SearchTimes times;
+  EXPECT_TRUE(times.is_due(kFirstImage, 0, 2));
+  EXPECT_FALSE(times.is_due(kFirstImage + 199ms, 0, 2));
+  EXPECT_TRUE(times.is_due(kFirstImage + 200ms, 0, 2));
+  EXPECT_FALSE(times.is_due(kFirstImage + 600ms, 1, 2));
+  EXPECT_TRUE(times.is_due(kFirstImage + 700ms, 1, 2));
+  EXPECT_FALSE(times.is_due(kFirstImage + 9s, 2, 2)) << "enough hands are followed";
+  EXPECT_TRUE(times.is_due(kFirstImage + 8s, 1, 2));
+  EXPECT_FALSE(times.is_due(kFirstImage + 8900ms, 0, 2, false)) << "nobody is in view";
+  EXPECT_TRUE(times.is_due(kFirstImage + 9s, 0, 2, false));
+  EXPECT_TRUE(times.is_due(kFirstImage, 0, 2)) << "time went back";
+}
+
+TEST(Networks, that_do_not_fit_are_refused) {
+  auto faces = nets::Network::read(kHandWeights + "face_detection_full_range.tflite");
+  ASSERT_TRUE(faces);
+  const auto palms = PalmFinder::make(std::move(*faces));
+  ASSERT_FALSE(palms);
+  EXPECT_EQ(palms.error().text(),
+            "Malformed: not a network that finds palms: its input is 192×192×3");
+  auto other = nets::Network::read(kHandWeights + "palm_detection_lite.tflite");
+  ASSERT_TRUE(other);
+  const auto landmarks = HandLandmarks::make(std::move(*other));
+  ASSERT_FALSE(landmarks);
+  EXPECT_EQ(landmarks.error().text(),
+            "Malformed: not a network that finds the points of hands: its input is 192×192×3");
+}
+
+}  // namespace
+}  // namespace hc::people

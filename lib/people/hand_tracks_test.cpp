@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <people/hand_tracks.h>
+
+#include <gtest/gtest.h>
+
+#include <people/made_hand_test.h>
+
+namespace hc::people {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Time kFirstSeen{100s};
+
+TEST(HandTracks, keep_the_number_of_a_hand_that_was_looked_for) {
+  HandTracks tracks;
+  const auto first =
+      tracks.update(kFirstSeen, {{0, made_hand({}, {100, 300})}, {0, made_hand({}, {500, 300})}});
+  ASSERT_EQ(first.size(), 2U);
+  EXPECT_EQ(first[0].number, 1);
+  EXPECT_EQ(first[1].number, 2);
+  const auto next = tracks.update(kFirstSeen + 50ms, {{2, made_hand({}, {400, 300})}});
+  ASSERT_EQ(next.size(), 1U);
+  EXPECT_EQ(next[0].number, 2);
+  EXPECT_EQ(next[0].seen, kFirstSeen + 50ms);
+}
+
+TEST(HandTracks, are_expected_where_they_move_to) {
+  HandTracks tracks;
+  tracks.update(kFirstSeen, {{0, made_hand({}, {100, 300})}});
+  const Region rest = tracks.expected(kFirstSeen + 100ms).at(0).region;
+  for (int i = 1; i < 12; ++i)
+    tracks.update(kFirstSeen + i * 50ms,
+                  {{1, made_hand({}, {100 + 10 * static_cast<float>(i), 300})}});
+  const Region moved = tracks.expected(kFirstSeen + 600ms).at(0).region;
+  EXPECT_NEAR(moved.middle.x, rest.middle.x + 120, 1) << "200 px/s";
+  EXPECT_NEAR(moved.middle.y, rest.middle.y, 1e-3);
+  EXPECT_NEAR(moved.side, rest.side, 1e-3);
+  const Region lost = tracks.expected(kFirstSeen + 1500ms).at(0).region;
+  EXPECT_NEAR(lost.middle.x, rest.middle.x + 110 + 60, 1) << "where it was after 0.3 s";
+}
+
+TEST(HandTracks, continue_a_lost_hand_that_a_new_one_overlaps) {
+  HandTracks tracks;
+  tracks.update(kFirstSeen, {{0, made_hand({})}});
+  EXPECT_TRUE(tracks.update(kFirstSeen + 100ms, {}).empty());
+  EXPECT_EQ(tracks.expected(kFirstSeen + 200ms).size(), 1U);
+  EXPECT_EQ(tracks.update(kFirstSeen + 200ms, {{0, made_hand({}, {420, 300})}}).at(0).number, 1);
+}
+
+TEST(HandTracks, end_and_their_numbers_are_not_used_again) {
+  HandTracks tracks;
+  tracks.update(kFirstSeen, {{0, made_hand({})}});
+  const auto later = kFirstSeen + HandTracks::kLife + 1ms;
+  EXPECT_TRUE(tracks.expected(later).empty());
+  EXPECT_EQ(tracks.update(later, {{0, made_hand({})}}).at(0).number, 2);
+  EXPECT_EQ(tracks.update(kFirstSeen, {{0, made_hand({})}}).at(0).number, 3) << "time went back";
+}
+
+TEST(HandTracks, of_one_hand_are_one) {
+  HandTracks tracks;
+  EXPECT_EQ(tracks.update(kFirstSeen, {{0, made_hand({})}, {0, made_hand({}, {405, 300})}}).size(),
+            1U);
+  tracks.update(kFirstSeen, {{0, made_hand({}, {600, 300})}});
+  const auto both =
+      tracks.update(kFirstSeen + 50ms, {{1, made_hand({})}, {2, made_hand({}, {405, 300})}});
+  ASSERT_EQ(both.size(), 1U);
+  EXPECT_EQ(both[0].number, 1) << "the older one";
+  EXPECT_EQ(tracks.expected(kFirstSeen + 50ms).size(), 1U);
+}
+
+}  // namespace
+}  // namespace hc::people

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Describes faces by numbers that are near each other for one person (dlib's network).
+
+#include <array>
+#include <memory>
+
+#include <opencv2/core/mat.hpp>
+
+#include <hc/base/result.h>
+#include <nets/network.h>
+#include <people/face.h>
+
+namespace hc::people {
+
+/// What identifies a person's face: this is biometric data.
+using Identity = std::array<float, 128>;
+
+/// Euclidean distance. Views of one person are about 0.3 apart, and those of two more than 0.6.
+float distance(const Identity& a, const Identity& b);
+
+/// Describes faces.
+class Identifier {
+ public:
+  /// Errors: Malformed (not such a network).
+  static Result<Identifier> make(std::unique_ptr<nets::Network> network);
+
+  /// The identity of a face in an image (height, width) of u8, RGB or grey.
+  Identity describe(const cv::Mat& image, const Face& face);
+
+ private:
+  explicit Identifier(std::unique_ptr<nets::Network> network) : network_(std::move(network)) {}
+
+  std::unique_ptr<nets::Network> network_;
+};
+
+/// A square image of a face, upright and in the middle, as the network was trained with.
+/// @returns  (150, 150) of u8, RGB; black outside of the image.
+cv::Mat face_chip(const cv::Mat& image, const Face& face);
+
+}  // namespace hc::people

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <people/track_views.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <people/gallery.h>
+
+namespace hc::people {
+namespace {
+
+/// Whether two faces are so close that a search may take one for the other.
+bool are_close(const cv::Rect2f& a, const cv::Rect2f& b) {
+  const cv::Point2f apart = (a.tl() + a.br() - b.tl() - b.br()) / 2;
+  const float width = std::max(a.width, b.width);
+  return apart.dot(apart) < 2.25F * width * width;  // one and a half widths
+}
+
+}  // namespace
+
+void TrackViews::doubt_close(const std::vector<Track>& seen) {
+  for (const Track& one : seen) {
+    Views& views = tracks_.at(one.number);
+    views.is_close = std::any_of(seen.begin(), seen.end(), [&](const Track& other) {
+      return one.number != other.number && are_close(one.face.box, other.face.box);
+    });
+    if (views.is_close) views.is_sure = false;
+  }
+}
+
+std::optional<std::size_t> TrackViews::due(Time time, const std::vector<Track>& seen) {
+  for (const Track& track : seen) tracks_[track.number].seen = time;
+  std::erase_if(tracks_, [&](const auto& each) {
+    return std::chrono::abs(time - each.second.seen) > FaceTracks::kLife;
+  });
+  doubt_close(seen);
+  // Few views first, then long ago.
+  const auto order = [&](std::size_t place) {
+    const Views& views = tracks_.at(seen[place].number);
+    return std::pair(views.last.size(), views.described);
+  };
+  std::optional<std::size_t> next;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const Views& views = tracks_.at(seen[i].number);
+    const bool is_known = views.is_sure && views.last.size() == kViews;
+    if (is_known && std::chrono::abs(time - views.described) < kPause) continue;
+    if (!next || order(i) < order(*next)) next = i;
+  }
+  return next;
+}
+
+void TrackViews::add(int track, Time time, const Identity& view) {
+  Views& views = tracks_[track];
+  if (!views.last.empty() && distance(view, mean(views.last)) > kApart) views.last.clear();
+  views.last.push_back(view);
+  if (views.last.size() > kViews) views.last.erase(views.last.begin());
+  views.is_sure = !views.is_close && views.last.size() >= kLeast;
+  views.described = views.seen = time;
+}
+
+const std::vector<Identity>& TrackViews::views(int track) const {
+  static const std::vector<Identity> none;
+  const auto found = tracks_.find(track);
+  return found == tracks_.end() ? none : found->second.last;
+}
+
+std::optional<Identity> TrackViews::identity(int track) const {
+  const auto found = tracks_.find(track);
+  if (found == tracks_.end() || !found->second.is_sure) return std::nullopt;
+  return mean(found->second.last);
+}
+
+}  // namespace hc::people

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The identities that the views of tracked faces have given. Pure: times come from the caller.
+
+#include <chrono>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <people/face_tracks.h>
+#include <people/identity.h>
+
+namespace hc::people {
+
+/// Says which face to describe next, since a description costs more than a search, and keeps the
+/// last few of each track. After two faces were close, their tracks may have changed places: they
+/// are unsure until a view has shown that they have not, and begin again where it is another
+/// person's.
+class TrackViews {
+ public:
+  /// Views that are averaged; a track of fewer, or an unsure one, is described in each image, if it
+  /// is its turn.
+  static constexpr std::size_t kViews = 5;
+  /// Views before a track is sure.
+  static constexpr std::size_t kLeast = 3;
+  /// Time between the views of a track that has kViews.
+  static constexpr std::chrono::milliseconds kPause{1000};
+  /// Maximum distance of a view from the mean of the others of its track.
+  static constexpr float kApart = 0.65F;
+
+  /// The track to describe now, by its place in `seen`; nothing if all are known well enough.
+  /// Forgets tracks that have ended.
+  [[nodiscard]] std::optional<std::size_t> due(Time time, const std::vector<Track>& seen);
+  /// Takes a description. A view that is far from the others replaces them all.
+  void add(int track, Time time, const Identity& view);
+
+  /// The last views of a track, at most kViews.
+  [[nodiscard]] const std::vector<Identity>& views(int track) const;
+  /// Their mean; nothing while it is not sure whose they are.
+  [[nodiscard]] std::optional<Identity> identity(int track) const;
+
+ private:
+  struct Views {
+    std::vector<Identity> last;
+    Time seen, described;
+    bool is_close = false, is_sure = false;
+  };
+  void doubt_close(const std::vector<Track>& seen);
+
+  std::map<int, Views> tracks_;
+};
+
+}  // namespace hc::people

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <people/track_views.h>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using namespace std::chrono_literals;
+using hc::people::Identity;
+using hc::people::Track;
+using hc::people::TrackViews;
+
+Identity view(float first) {
+  Identity made = {};
+  made[0] = first;
+  return made;
+}
+
+class TrackViewsTest : public testing::Test {
+ protected:
+  Track track(int number, float x) const {
+    Track made;
+    made.number = number;
+    made.face.box = {x, 100, 60, 60};
+    made.seen = now_;
+    return made;
+  }
+  /// Looks at tracks 1 and 2, whose faces have these identities, for some images.
+  void look(int images, float x, float first, float second) {
+    for (int i = 0; i < images; ++i) {
+      now_ += 50ms;
+      const auto due = views_.due(now_, {track(1, 100), track(2, x)});
+      if (!due) continue;
+      ++described_;
+      views_.add(*due == 0 ? 1 : 2, now_, view(*due == 0 ? first : second));
+    }
+  }
+  TrackViews views_;
+  hc::Time now_{1'700'000'000s};
+  int described_ = 0;
+};
+
+TEST_F(TrackViewsTest, are_taken_in_turn_until_there_are_enough_then_once_a_second) {
+  look(10, 400, 0, 1);
+  EXPECT_EQ(described_, 10);
+  EXPECT_EQ(views_.views(1).size(), TrackViews::kViews);
+  EXPECT_EQ(views_.views(2).size(), TrackViews::kViews);
+  look(100, 400, 0, 1);  // 5 s
+  EXPECT_NEAR(described_, 10 + 10, 2);
+  EXPECT_FLOAT_EQ((*views_.identity(2))[0], 1);
+}
+
+TEST_F(TrackViewsTest, few_are_not_sure) {
+  look(4, 400, 0, 1);
+  EXPECT_FALSE(views_.identity(1));
+  look(2, 400, 0, 1);
+  EXPECT_TRUE(views_.identity(1));
+  EXPECT_FALSE(views_.identity(7));
+  EXPECT_TRUE(views_.views(7).empty());
+}
+
+TEST_F(TrackViewsTest, faces_that_were_close_are_looked_at_again) {
+  look(20, 400, 0, 1);
+  look(5, 120, 0, 1);
+  EXPECT_FALSE(views_.identity(1) || views_.identity(2)) << "they may change places now";
+  look(1, 400, 0, 1);
+  EXPECT_FALSE(views_.identity(1) && views_.identity(2)) << "one has been described since";
+  look(1, 400, 0, 1);
+  EXPECT_TRUE(views_.identity(1) && views_.identity(2));
+}
+
+TEST_F(TrackViewsTest, tracks_that_changed_places_are_nobodys_until_they_are_sure) {
+  look(20, 400, 0, 1);
+  look(1, 120, 0, 1);
+  for (int i = 0; i < 20; ++i) {
+    look(1, 400, 1, 0);
+    for (const int number : {1, 2}) {
+      const auto identity = views_.identity(number);
+      EXPECT_FLOAT_EQ(identity ? (*identity)[0] : 0, identity && number == 1 ? 1 : 0) << i;
+    }
+  }
+  EXPECT_TRUE(views_.identity(1) && views_.identity(2));
+}
+
+TEST_F(TrackViewsTest, end_with_their_track) {
+  look(20, 400, 0, 1);
+  now_ += 2s;
+  EXPECT_FALSE(views_.due(now_, {}));
+  EXPECT_TRUE(views_.views(1).empty());
+}
+
+}  // namespace
