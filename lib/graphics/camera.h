@@ -18,6 +18,11 @@ struct PinholeCamera {
   [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& p_eye) const {
     return {fx * p_eye.x() / p_eye.z() + cx, fy * p_eye.y() / p_eye.z() + cy};
   }
+  /// Whether a pixel is within the image.
+  [[nodiscard]] bool contains(const Eigen::Vector2d& pixel) const {
+    return pixel.x() > -0.5 && pixel.x() < width - 0.5 && pixel.y() > -0.5 &&
+           pixel.y() < height - 0.5;
+  }
 };
 
 }  // namespace hc::graphics

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include <Eigen/Geometry>
@@ -68,6 +69,43 @@ Mesh make_ball(float radius, int rings) {
       mesh.indices.insert(mesh.indices.end(), {a, b, c, a, c, d});
     }
   return mesh;
+}
+
+Mesh make_coarse(const Mesh& mesh, float cell) {
+  Mesh coarse;
+  std::map<std::array<int, 3>, std::uint32_t> cells;
+  std::vector<std::uint32_t> merged;
+  std::vector<float> counts;
+  for (const auto& vertex : mesh.vertices) {
+    const Eigen::Vector3i at = (vertex.position / cell).array().floor().cast<int>();
+    const auto next = static_cast<std::uint32_t>(coarse.vertices.size());
+    const auto [known, is_new] = cells.try_emplace({at.x(), at.y(), at.z()}, next);
+    merged.push_back(known->second);
+    if (is_new) {
+      coarse.vertices.push_back(vertex);
+      counts.push_back(1);
+      continue;
+    }
+    Vertex& sum = coarse.vertices[known->second];
+    sum.position += vertex.position;
+    sum.normal += vertex.normal;
+    sum.texture += vertex.texture;
+    sum.colour += vertex.colour;
+    ++counts[known->second];
+  }
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    Vertex& sum = coarse.vertices[i];
+    sum.position /= counts[i];
+    sum.normal.normalize();
+    sum.texture /= counts[i];
+    sum.colour /= counts[i];
+  }
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const auto a = merged[mesh.indices[i]], b = merged[mesh.indices[i + 1]],
+               c = merged[mesh.indices[i + 2]];
+    if (a != b && b != c && c != a) coarse.indices.insert(coarse.indices.end(), {a, b, c});
+  }
+  return coarse;
 }
 
 }  // namespace hc::graphics

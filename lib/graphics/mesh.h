@@ -44,4 +44,11 @@ Mesh make_box(const Eigen::Vector3f& size);
 /// @param rings  between the poles, at least 2; with twice as many vertices each.
 Mesh make_ball(float radius, int rings = 24);
 
+/// A coarser mesh: all vertices in a cell of a grid become one, which is their mean.
+///
+/// @param cell  side of the cells [m].
+/// Source: Rossignac, Borrel: Multi-resolution 3D approximations for rendering complex scenes,
+/// 1993.
+Mesh make_coarse(const Mesh& mesh, float cell);
+
 }  // namespace hc::graphics

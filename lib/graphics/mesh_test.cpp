@@ -56,4 +56,14 @@ TEST(Mesh, a_rectangle_looks_at_who_stands_before_it) {
 }
 
 }  // namespace
+TEST(Mesh, keeps_its_shape_with_fewer_corners) {
+  const Mesh fine = make_ball(1, 40), coarse = make_coarse(fine, 0.2F);
+  EXPECT_LT(coarse.indices.size(), fine.indices.size() / 2);
+  for (const auto& vertex : coarse.vertices) {
+    EXPECT_NEAR(vertex.position.norm(), 1, 0.03);
+    EXPECT_NEAR(vertex.normal.norm(), 1, 1e-5);
+  }
+  for (const auto index : coarse.indices) EXPECT_LT(index, coarse.vertices.size());
+}
+
 }  // namespace hc::graphics

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 
+#include <room/progress.h>
+
 namespace hc::room {
 
 namespace {
@@ -15,40 +17,11 @@ constexpr double kShortest = 0.5;      // leg [rad]
 constexpr double kBounce = 0.3;        // height of a bounce [m]
 constexpr double kGravity = 9.81;      // [m/s²]
 
-/// Position and speed on the way of a motion from rest to rest.
-struct Progress {
-  double way, speed;
-};
-
-double duration(double distance, double speed) {
-  const double peak = std::min(speed, std::sqrt(distance * kAcceleration));
-  return distance / peak + peak / kAcceleration;
-}
-
-Progress travel(double distance, double speed, double t) {
-  const double peak = std::min(speed, std::sqrt(distance * kAcceleration));
-  const double total = duration(distance, speed), ramp = peak / kAcceleration;
-  if (t <= 0) return {0, 0};
-  if (t >= total) return {distance, 0};
-  if (t < ramp) return {kAcceleration * t * t / 2, kAcceleration * t};
-  const double left = total - t;
-  if (left < ramp) return {distance - kAcceleration * left * left / 2, kAcceleration * left};
-  return {peak * (t - ramp / 2), peak};
-}
-
 }  // namespace
 
-Ball::Ball(const BallMotion& motion) : motion_(motion), state_(motion.seed) {
-  const double first = (2 * random() - 1) * kArcEnd / 2;
+Ball::Ball(const BallMotion& motion) : motion_(motion), chance_(motion.seed) {
+  const double first = (2 * chance_.next() - 1) * kArcEnd / 2;
   legs_.push_back({0, first, first, kRest});
-}
-
-double Ball::random() {
-  // splitmix64: the same on every machine. Source: Steele, Lea, Flood, 2014.
-  std::uint64_t z = (state_ += 0x9e3779b97f4a7c15U);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
-  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
 void Ball::add_leg() {
@@ -57,11 +30,11 @@ void Ball::add_leg() {
   // Every third rest is behind the screen.
   const bool hides = motion_.kind == "hide" && legs_.size() % 3 == 2;
   while (!hides) {
-    to = (2 * random() - 1) * kArcEnd;
+    to = (2 * chance_.next() - 1) * kArcEnd;
     const bool is_clear = motion_.kind != "hide" || std::abs(to - kScreenAngle) > 0.3;
     if (std::abs(to - last.to) > kShortest && is_clear) break;
   }
-  const double travels = duration(std::abs(to - last.to), motion_.speed);
+  const double travels = duration(std::abs(to - last.to), motion_.speed, kAcceleration);
   legs_.push_back({last.end, last.to, to, last.end + travels + (hides ? motion_.hidden : kRest)});
 }
 
@@ -73,7 +46,8 @@ Ball::State Ball::at(double t) {
         std::prev(std::upper_bound(legs_.begin(), legs_.end(), t,
                                    [](double time, const Leg& each) { return time < each.begin; }));
     const double sign = leg->to < leg->from ? -1 : 1;
-    const auto progress = travel(std::abs(leg->to - leg->from), motion_.speed, t - leg->begin);
+    const auto progress =
+        travel(std::abs(leg->to - leg->from), motion_.speed, kAcceleration, t - leg->begin);
     if (leg->to != leg->from) {
       angle = leg->from + sign * progress.way;
       rate = sign * progress.speed;

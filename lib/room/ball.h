@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+#include <room/chance.h>
+
 namespace hc::room {
 
 struct BallMotion {
@@ -34,10 +36,9 @@ class Ball {
     double begin, from, to, end;  // [s], [rad], [rad], end of the rest [s]
   };
   void add_leg();
-  [[nodiscard]] double random();  // 0 … 1
 
   BallMotion motion_;
-  std::uint64_t state_;
+  Chance chance_;
   std::vector<Leg> legs_;
 };
 

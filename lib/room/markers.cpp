@@ -47,7 +47,7 @@ void add_rod(Scenery& room, const Vector3d& marker, double side, double yaw,
 
 }  // namespace
 
-std::vector<RoomMarker> add_markers(Scenery& room) {
+std::vector<RoomMarker> add_markers(Scenery& room, bool only_on_wall) {
   const double d = 0.06;  // random offset of a position [m]
   auto near = [&](double x, double y, double z) {
     const double dz = room.random(-d, d), dy = room.random(-d, d), dx = room.random(-d, d);
@@ -65,12 +65,13 @@ std::vector<RoomMarker> add_markers(Scenery& room) {
   };
   std::vector<RoomMarker> markers;
   for (const auto& placement : placements) {
+    const bool is_on_wall = placement.id == 0;
+    if (only_on_wall && !is_on_wall) continue;
     // The margin is 1/6 of the image of a colour marker, else one of ten cells.
     const bool is_colour = std::string_view(placement.kind) == "colour";
     const auto whole = static_cast<float>(placement.side * (is_colour ? 1.5 : 1.25));
     const Isometry3d place = hang(placement.place, placement.yaw);
     room.add(make_rectangle(whole, whole), paint(placement), place);
-    const bool is_on_wall = placement.id == 0;
     if (!is_on_wall) {
       const cv::Mat grey(1, 1, CV_8UC3, cv::Scalar(90, 90, 92));
       room.add(make_box({whole, whole, 0.01F}), grey, place * Translation3d(0, 0, 0.006));

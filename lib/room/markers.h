@@ -21,6 +21,8 @@ struct RoomMarker {
 };
 
 /// Adds markers in front of the robot, all visible from its neck. @returns  their poses.
-std::vector<RoomMarker> add_markers(Scenery& room);
+///
+/// @param only_on_wall  without those that stand or hang in the room.
+std::vector<RoomMarker> add_markers(Scenery& room, bool only_on_wall = false);
 
 }  // namespace hc::room

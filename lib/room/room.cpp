@@ -9,6 +9,7 @@
 
 #include <room/ball.h>
 #include <room/paint.h>
+#include <room/pointing.h>
 
 namespace hc::room {
 
@@ -86,7 +87,7 @@ void add_shadows(Scenery& room, graphics::SurfaceId floor, const Vector3d& to_li
   room.set_texture(floor, image);
 }
 
-void add_furniture(Scenery& room) {
+void add_furniture(Scenery& room, bool is_cleared) {
   const auto wood = paint_planks(256, 256, room.seed() + 5);
   auto cloth = [&](double r, double g, double b) {
     return paint_grains(128, 128, {r, g, b}, 34, static_cast<std::uint64_t>(room.random(0, 1e6)));
@@ -94,7 +95,7 @@ void add_furniture(Scenery& room) {
   // A table behind the ball's bench, on the left, with a box and a pot on it. One random number per
   // statement, since the order of evaluation in an expression is unspecified.
   auto about = [&](double value, double most) { return value + room.random(-most, most); };
-  const double table_y = about(1.2, 0.1), table_x = about(3.3, 0.1);
+  const double table_y = about(1.2, 0.1), table_x = about(is_cleared ? 4.05 : 3.3, 0.1);
   const Vector3d table(table_x, table_y, 0);
   room.add_box({0.8, 1.4, 0.04}, table + Vector3d(0, 0, 0.74), wood);
   for (double x : {-0.35, 0.35})
@@ -122,11 +123,25 @@ void add_furniture(Scenery& room) {
   const double stool_yaw = about(0, 1);
   const auto stool_cloth = cloth(118, 110, 96);
   const double stool_x = about(1.55, 0.1), stool_y = about(0.75, 0.1);
-  room.add_box({0.3, 0.3, 0.4}, {stool_x, stool_y, 0.2}, stool_cloth, stool_yaw);
+  if (!is_cleared) room.add_box({0.3, 0.3, 0.4}, {stool_x, stool_y, 0.2}, stool_cloth, stool_yaw);
   const auto chest_cloth = cloth(96, 100, 110);
   room.add_box({0.5, 0.9, 0.6}, {3.9, about(-0.4, 0.2), 0.3}, chest_cloth);
   const double cushion_y = about(-2.6, 0.2);
   room.add(make_ball(0.2F), cloth(170, 168, 160), Isometry3d(Translation3d(3.0, cushion_y, 0.2)));
+}
+
+void add_things(Scenery& room) {
+  const cv::Mat grey(1, 1, CV_8UC3, cv::Scalar(96, 96, 98));
+  std::uint64_t number = 0;
+  for (const auto& middle : things()) {
+    const double hue = 0.9 * static_cast<double>(number);
+    const cv::Scalar rgb(110 + 70 * std::cos(hue), 110 + 70 * std::cos(hue - 2.1),
+                         110 + 70 * std::cos(hue - 4.2));
+    room.add(make_ball(static_cast<float>(kThingRadius)), paint_grains(64, 64, rgb, 30, ++number),
+             Isometry3d(Translation3d(middle)));
+    const double height = middle.z() - kThingRadius;
+    room.add_box({0.04, 0.04, height}, {middle.x(), middle.y(), height / 2}, grey);
+  }
 }
 
 void add_bench(Scenery& room) {

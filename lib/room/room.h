@@ -14,7 +14,11 @@ inline constexpr double kRoomCeiling = 2.8;  ///< [m]
 /// Walls with posters, floor and ceiling. @returns  the floor.
 graphics::SurfaceId add_room(Scenery& room);
 /// A table, a shelf with books, a stool, a chest and a round pot.
-void add_furniture(Scenery& room);
+///
+/// @param is_cleared  the table stands at the wall and there is no stool, so that people can walk.
+void add_furniture(Scenery& room, bool is_cleared = false);
+/// Balls on stands, to point at.
+void add_things(Scenery& room);
 /// The bench on which the ball rolls: pieces of an arc.
 void add_bench(Scenery& room);
 /// Paints the shadows of all boxes into the floor's texture, so they cost nothing at rendering.

@@ -5,6 +5,7 @@
 
 #include <room/ball.h>
 #include <room/paint.h>
+#include <room/pointing.h>
 #include <room/room.h>
 #include <room/screen.h>
 
@@ -18,25 +19,28 @@ constexpr float kBoardWidth = 1.5F, kBoardHeight = 0.36F;  // [m]
 
 }  // namespace
 
-World::World(graphics::Renderer& renderer, std::uint64_t seed, const std::string& text)
+World::World(graphics::Renderer& renderer, std::uint64_t seed, const std::string& text, int people)
     : room_(renderer, seed) {
   light_.to_light = Eigen::Vector3f(static_cast<float>(room_.random(-0.6, -0.2)),
                                     static_cast<float>(room_.random(-0.5, 0.5)), 0.8F)
                         .normalized();
   const auto floor = add_room(room_);
-  add_furniture(room_);
-  add_bench(room_);
-  add_screen(room_);
-  markers_ = add_markers(room_);
-  add_board();
+  const bool is_cleared = people > 0;
+  add_furniture(room_, is_cleared);
+  if (is_cleared) add_things(room_);
+  if (!is_cleared) add_bench(room_);
+  if (!is_cleared) add_screen(room_);
+  markers_ = add_markers(room_, is_cleared);
+  add_board(is_cleared ? 4.1 : 3.3);
   add_shadows(room_, floor, light_.to_light.cast<double>());
   write(text);
   room_.add(graphics::make_ball(static_cast<float>(kBallRadius)),
             paint_grains(64, 64, {205, 22, 22}, 14, seed), Eigen::Isometry3d::Identity());
+  for (int i = 0; i < people; ++i) figures_.emplace_back(renderer, i);
 }
 
-void World::add_board() {
-  const Vector3d middle = {3.3 + room_.random(-0.1, 0.1), 1.15 + room_.random(-0.1, 0.1),
+void World::add_board(double x) {
+  const Vector3d middle = {x + room_.random(-0.1, 0.1), 1.15 + room_.random(-0.1, 0.1),
                            1.4 + room_.random(-0.1, 0.1)};
   const double towards = std::atan2(middle.y(), middle.x());
   room_.add_box({0.03, kBoardWidth + 0.06F, kBoardHeight + 0.06F},
@@ -55,9 +59,14 @@ void World::add_board() {
   board_ = room_.items().back().surface;
 }
 
-const std::vector<graphics::Item>& World::items(const Vector3d& ball) {
+const std::vector<graphics::Item>& World::items(const Vector3d& ball,
+                                                const std::vector<Person>& people) {
   room_.move_last(ball);
-  return room_.items();
+  if (figures_.empty()) return room_.items();
+  items_ = room_.items();
+  for (const auto& person : people)
+    figures_.at(static_cast<std::size_t>(person.number)).add_to(items_, person);
+  return items_;
 }
 
 void World::write(const std::string& text) {

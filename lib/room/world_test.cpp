@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <room/ball.h>
+#include <room/people.h>
 #include <room/screen.h>
 
 namespace hc::room {
@@ -98,6 +99,46 @@ TEST_F(Room, every_marker_is_seen_from_the_neck) {
         << marker.kind << " " << marker.id;
     // It faces the viewer.
     EXPECT_GT(marker.T_world_marker.linear().col(2).dot(p - T_world_left.translation()), 0);
+  }
+}
+
+/// Distance of a place on the floor from a box, seen from above; 0 within it [m].
+double distance(const Eigen::Vector2d& place, const std::array<Eigen::Vector3d, 8>& corners) {
+  Eigen::AlignedBox2d around;
+  for (const auto& corner : corners) around.extend(corner.head<2>());
+  return around.exteriorDistance(place);
+}
+
+TEST_F(Room, with_people_leaves_them_space_between_the_furniture) {
+  for (std::uint64_t seed = 1; seed < 4; ++seed) {
+    const World cleared(*renderer, seed, "HELLO", 3);
+    EXPECT_EQ(cleared.markers().size(), 1U);
+    for (const auto* kind : {"still", "walk", "cross"}) {
+      People people({3, kind, seed});
+      for (double t = 0; t < 20; t += 0.2)
+        for (const auto& person : people.at(t))
+          for (const auto& box : cleared.boxes())
+            EXPECT_GT(distance(person.T_world_body.translation().head<2>(), box), 0.3)
+                << kind << box[0].transpose();
+    }
+  }
+}
+
+TEST_F(Room, shows_the_persons_where_they_are) {
+  world = std::make_unique<World>(*renderer, 1, "HELLO", 3);
+  const auto all = People({3, "still", 1}).at(0);
+  const Eigen::Vector3d nowhere(0, 0, -10);
+  cv::Mat depth;
+  T_world_left = Eigen::Translation3d(0, 0, kHeadHeight) * hang({0.06, 0.05, 0.05}, 0);
+  cv::Mat rgb;
+  ASSERT_TRUE(renderer->draw(world->items(nowhere, all), camera, T_world_left, world->light(), rgb,
+                             &depth));
+  for (const auto& person : all) {
+    const Eigen::Vector3d nose = person.T_world_face * Eigen::Vector3d(0.02, 0, -0.034);
+    const auto pixel = pixel_of(nose);
+    const double z = (T_world_left.inverse() * nose).z();
+    EXPECT_NEAR(depth.at<float>(int(std::lround(pixel.y())), int(std::lround(pixel.x()))), z, 0.02)
+        << person.number;
   }
 }
 

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The ears: the sound of the room's loudspeaker, in consecutive pieces without gaps.
+// The ears: the sounds of the room, in consecutive pieces without gaps.
 
 #include <cstdint>
+#include <span>
 
 #include <Eigen/Geometry>
 
 #include <hc/module/module.h>
+
+#include <room/sounds.h>
 
 class Ears {
  public:
@@ -17,9 +20,10 @@ class Ears {
   Ears(const Eigen::Vector3d& left, const Eigen::Vector3d& right, Output sound, hc::Time start)
       : places_{left, right}, sound_(std::move(sound)), start_(start) {}
 
-  /// Sends the sound since the last call, for this pose of the head; skips the time by which the
-  /// clock was set.
-  void hear_until(hc::Time until, const Eigen::Isometry3d& T_world_head);
+  /// Sends the sound since the last call, for this pose of the head and these places of the
+  /// sources; skips the time by which the clock was set.
+  void hear_until(hc::Time until, const Eigen::Isometry3d& T_world_head,
+                  std::span<const hc::room::Source> sources);
 
  private:
   Eigen::Vector3d places_[2];

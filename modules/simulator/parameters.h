@@ -9,6 +9,7 @@
 
 #include <room/ball.h>
 #include <room/head.h>
+#include <room/people.h>
 
 struct Parameters {
   hc::Module& module;
@@ -69,12 +70,27 @@ struct Parameters {
       "ball_speed", 0.349, "rad/s", "as seen from the robot", {.min = 0, .max = 10, .fixed = true});
   hc::Parameter<double> ball_hidden = module.parameter(
       "ball_hidden", 2.0, "s", "rest behind the screen", {.min = 0, .max = 60, .fixed = true});
+  hc::Parameter<std::int64_t> people = module.parameter(
+      "people", 0, "",
+      "persons in the room; if any, it is cleared for them: no ball, bench, screen, stool and "
+      "loudspeaker, and only the marker at the wall",
+      {.min = 0, .max = hc::room::kMostPeople, .fixed = true});
+  hc::Parameter<std::string> people_motion = module.parameter(
+      "people_motion", "still", "",
+      "what they do; one at a time: talk, point, and palm to victory, which are signs of a hand",
+      {.choices = {"still", "walk", "cross", "wave", "talk", "point", "palm", "thumb", "fist",
+                   "victory"},
+       .fixed = true});
   hc::Parameter<std::string> text =
       module.parameter("text", "HELLO ROBOT", "", "text on the board");
 
   [[nodiscard]] std::uint64_t world_seed() const { return static_cast<std::uint64_t>(*seed); }
   [[nodiscard]] hc::room::BallMotion motion() const {
     return {*ball, *ball_speed, *ball_hidden, world_seed()};
+  }
+  [[nodiscard]] bool has_ball() const { return *ball != "absent" && *people == 0; }
+  [[nodiscard]] hc::room::PeopleMotion motion_of_people() const {
+    return {static_cast<int>(*people), *people_motion, world_seed()};
   }
   [[nodiscard]] hc::room::HeadFaults faults() const {
     return {*zero_pan, *zero_tilt, *offset_roll, *offset_pitch, *offset_yaw};

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kTick = 250;  // how often the schedule is checked [Hz]
 constexpr auto kAll = hc::Time::max();
-const Eigen::Vector3d kUnderground(0, 0, -10);  // position of an absent ball [m]
+const Eigen::Vector3d kUnderground(0, 0, -10);       // position of an absent ball [m]
+const Eigen::Vector3d kLoudspeaker(2.4, -1.6, 0.7);  // in the world [m]
 
 }  // namespace
 
@@ -35,7 +36,8 @@ void Simulator::start() {
 std::unique_ptr<Simulator::Scene> Simulator::make_scene() {
   auto renderer = hc::value_or_end(hc::graphics::Renderer::make());
   auto& drawing = *renderer;
-  hc::room::World world(drawing, parameters_.world_seed(), *parameters_.text);
+  hc::room::World world(drawing, parameters_.world_seed(), *parameters_.text,
+                        static_cast<int>(*parameters_.people));
   const hc::room::Head mounted{frames_.fixed("head", "left_eye"),
                                frames_.fixed("head", "right_eye")};
   const hc::room::Head head = mounted.with(parameters_.faults());
@@ -45,11 +47,11 @@ std::unique_ptr<Simulator::Scene> Simulator::make_scene() {
   };
   // Time starts only now, since making the world takes a while.
   const auto start = *parameters_.start > 0 ? hc::unix_time(*parameters_.start) : module_.now();
-  return std::unique_ptr<Scene>(new Scene{std::move(renderer), std::move(world),
-                                          hc::room::Ball(parameters_.motion()), head,
-                                          parameters_.camera(), Schedule(start, *parameters_.rate),
-                                          Eyes(parameters_, head, drawing, left_, right_),
-                                          Ears(ear("left_ear"), ear("right_ear"), sound_, start)});
+  return std::unique_ptr<Scene>(
+      new Scene{std::move(renderer), std::move(world), hc::room::Ball(parameters_.motion()),
+                hc::room::People(parameters_.motion_of_people()), head, parameters_.camera(),
+                Schedule(start, *parameters_.rate), Eyes(parameters_, head, drawing, left_, right_),
+                Ears(ear("left_ear"), ear("right_ear"), sound_, start)});
 }
 
 void Simulator::write(const std::string& what) {
@@ -120,24 +122,38 @@ void Simulator::take() {
   const auto time = schedule.time();
   const Eigen::Isometry3d T_world_head = frames_.nearest("world", "head", time);
   const auto ball = scene_->ball.at(schedule.seconds());
-  const bool is_absent = *parameters_.ball == "absent";
-  look(is_absent ? kUnderground : ball.position, T_world_head);
+  const bool has_ball = parameters_.has_ball();
+  const auto people = scene_->people.at(schedule.seconds());
+  look(scene_->world.items(has_ball ? ball.position : kUnderground, people), T_world_head);
+  const Eigen::Isometry3d T_world_left = T_world_head * scene_->head.left_eye;
   truth_.send_poses(time, T_world_head, scene_->head);
   if (neck_pose_.linked())
     neck_pose_.send(hc::numbers_of(frames_.nearest("robot", "head", time)), time);
-  truth_.send_ball(time, ball, !is_absent, T_world_head * scene_->head.left_eye, scene_->camera);
+  truth_.send_ball(time, ball, has_ball, T_world_left, scene_->camera);
+  people_truth_.send(time, people, T_world_left, scene_->camera);
   if (schedule.begins_second()) {
     truth_.send_board(time, scene_->world.text());
     truth_.send_markers(time, scene_->world.markers());
   }
-  scene_->ears.hear_until(time, T_world_head);
+  scene_->ears.hear_until(time, T_world_head, sources(people));
 }
 
-void Simulator::look(const Eigen::Vector3d& ball, const Eigen::Isometry3d& T_world_head) {
+std::vector<hc::room::Source> Simulator::sources(const std::vector<hc::room::Person>& people) {
+  if (people.empty()) return {{kLoudspeaker, hc::room::chirps}};
+  std::vector<hc::room::Source> voices;
+  for (const auto& person : people) {
+    const int number = person.number;
+    voices.push_back({hc::room::mouth_of(person),
+                      [this, number](double t) { return scene_->people.voice_of(number, t); }});
+  }
+  return voices;
+}
+
+void Simulator::look(const std::vector<hc::graphics::Item>& items,
+                     const Eigen::Isometry3d& T_world_head) {
   const auto& camera = scene_->camera;
   const auto time = scene_->schedule.time();
-  const View view{time, scene_->schedule.number(), T_world_head, scene_->world.items(ball),
-                  scene_->world.light()};
+  const View view{time, scene_->schedule.number(), T_world_head, items, scene_->world.light()};
   if (!truth_.depth.linked() || *parameters_.swapped) return scene_->eyes.take(view, nullptr);
   auto depth = truth_.depth.loan(camera.height, camera.width);
   depth.header.time = time;

@@ -12,11 +12,13 @@
 #include <hc/module/module.h>
 
 #include <room/ball.h>
+#include <room/people.h>
 #include <room/world.h>
 #include "ears.h"
 #include "eyes.h"
 #include "neck.h"
 #include "parameters.h"
+#include "people_truth.h"
 #include "schedule.h"
 #include "truth.h"
 
@@ -31,6 +33,7 @@ class Simulator {
     std::unique_ptr<hc::graphics::Renderer> renderer;
     hc::room::World world;
     hc::room::Ball ball;
+    hc::room::People people;
     hc::room::Head head;
     hc::graphics::PinholeCamera camera;
     Schedule schedule;
@@ -54,7 +57,9 @@ class Simulator {
   void fail_by_silence() const;
 
   void take();
-  void look(const Eigen::Vector3d& ball, const Eigen::Isometry3d& T_world_head);
+  void look(const std::vector<hc::graphics::Item>& items, const Eigen::Isometry3d& T_world_head);
+  /// What is heard: the voices of the persons, or the loudspeaker where nobody is.
+  [[nodiscard]] std::vector<hc::room::Source> sources(const std::vector<hc::room::Person>& people);
   [[nodiscard]] bool is_done() const;
 
   hc::Module& module_;
@@ -74,6 +79,7 @@ class Simulator {
       "neck_pose",
       hc::transformation().in(hc::transform_coord(hc::Coord::kRobot, hc::Coord::kHead)),
       "T_robot_head as the images were taken: what a neck reports");
+  PeopleTruth people_truth_{module_};
   const Parameters parameters_{module_};
   // The head's pose comes from the input `gaze`.
   hc::ModuleFrames frames_{module_, {.input = false}};

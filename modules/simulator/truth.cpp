@@ -27,10 +27,8 @@ std::array<double, 4> seen(const Eigen::Vector3d& ball, const Eigen::Isometry3d&
   const Eigen::Vector3d p_eye = T_world_eye.inverse() * ball;
   if (p_eye.z() <= camera.near) return {0, 0, 0, 0};
   const Eigen::Vector2d pixel = camera.project(p_eye);
-  const bool is_inside = pixel.x() > -0.5 && pixel.x() < camera.width - 0.5 && pixel.y() > -0.5 &&
-                         pixel.y() < camera.height - 0.5;
   return {pixel.x(), pixel.y(), camera.fx * hc::room::kBallRadius / p_eye.z(),
-          is_inside ? hc::room::share_seen(ball, T_world_eye.translation()) : 0};
+          camera.contains(pixel) ? hc::room::share_seen(ball, T_world_eye.translation()) : 0};
 }
 
 std::array<double, 10> row_of(const hc::room::RoomMarker& marker) {
