@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "faces.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+#include <frames/messages.h>
+#include <hc/base/format.h>
+#include <nets/weights.h>
+#include <people/short_number.h>
+#include <vision/messages.h>
+
+using hc::people::Face;
+using hc::people::short_number;
+using hc::people::short_pixel;
+using hc::people::Track;
+
+namespace {
+
+hc::Result<std::unique_ptr<hc::nets::Network>> network(const std::string& name) {
+  return hc::nets::Network::read(hc::nets::weights_path(name));
+}
+
+}  // namespace
+
+Faces::Faces(hc::Module& module) : module_(module) {
+  module.on_start([this] { start(); });
+  module.on(left_, [this](const hc::Image& image) {
+    intrinsics_.when_known([this, kept = image.keep()] {
+      frames_.when_known("robot", "head", time_of(kept), [this, kept](const auto&) { look(kept); });
+    });
+  });
+  module.on(right_, [this](const hc::Image& image) {
+    right_image_ = image.keep();
+    look_right(right_image_);
+  });
+  module.on(cameras_, [this](const hc::Message& message) {
+    mount_.take(hc::value_or_drop(hc::pose_of(message)));
+  });
+  module.on(name_, [this](const auto& message) { learn(message.text()); });
+  module.every(std::chrono::seconds(1), [this] {
+    read_folder();
+    forget();
+  });
+  module.on_end([this] {
+    intrinsics_.answer_all();
+    frames_.answer_all();
+  });
+}
+
+void Faces::start() {
+  using hc::people::FaceFinder, hc::people::Identifier;
+  const auto finder = [](const std::string& name) {
+    return hc::value_or_end(FaceFinder::make(hc::value_or_end(network(name))));
+  };
+  networks_.emplace(Networks{
+      {finder("face_detection_full_range.tflite"), finder("face_detection_short_range.tflite")},
+      hc::value_or_end(Identifier::make(hc::value_or_end(network("face_recognition.json"))))});
+  folder_.emplace(*people_, [this](std::string_view line) { module_.log(line); });
+  read_folder();
+}
+
+void Faces::read_folder() {
+  folder_->read();
+  std::string lines;
+  for (const auto& [name, number] : folder_->gallery().names())
+    lines += hc::format("{}{} {}", lines.empty() ? "" : "\n", number, name);
+  names_.send(lines, module_.now());
+}
+
+void Faces::forget() {
+  if (!std::exchange(is_idle_, true)) return;
+  views_ = {};
+  seen_.clear();
+  right_image_ = {};
+}
+
+void Faces::look(const hc::Message& message) {
+  is_idle_ = false;
+  const cv::Mat image = hc::value_or_drop(hc::as_mat(message));
+  const auto time = time_of(message);
+  const auto turn = turn_to(message.header);
+  last_ = time;
+  seen_ = networks_->search.look(time, image, static_cast<float>(*score_), turn);
+  describe(time, image, seen_);
+  send(message.header, seen_);
+  look_right(right_image_);
+}
+
+cv::Matx33f Faces::turn_to(const hc::Header& image) {
+  const auto cameras = intrinsics_.of(image.width, image.height);
+  Eigen::Matrix3d K;
+  K << cameras.fx, 0, cameras.cx, 0, cameras.fy, cameras.cy, 0, 0, 1;
+  const Eigen::Matrix3d R_robot_now = mount_.pose_in("robot", image.time, frames_).linear();
+  const Eigen::Matrix3d R_robot_last =
+      std::exchange(R_robot_camera_, R_robot_now).value_or(R_robot_now);
+  const Eigen::Matrix3f H =
+      (K * R_robot_now.transpose() * R_robot_last * K.inverse()).cast<float>();
+  cv::Matx33f turn;
+  Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(turn.val) = H;
+  return turn;
+}
+
+void Faces::describe(hc::Time time, const cv::Mat& image, const std::vector<Track>& seen) {
+  const auto due = views_.due(time, seen);
+  if (!due) return;
+  const Track& track = seen[*due];
+  views_.add(track.number, time, networks_->identifier.describe(image, track.face));
+}
+
+void Faces::look_right(const hc::Message& message) {
+  if (message.header.empty() || time_of(message) != last_) return;
+  const cv::Mat image = hc::value_or_drop(hc::as_mat(message));
+  const auto pair = pair_of(intrinsics_.of(image.cols, image.rows));
+  for (const Track& track : seen_) {
+    const auto box = hc::people::expected_in_right(track.face, pair);
+    const auto found = networks_->search.look_around(image, box);
+    if (const auto distance = hc::people::distance_by_eyes(track.face, found, pair))
+      distances_.add(track.number, last_, *distance);
+  }
+}
+
+Eigen::Vector3d Faces::place(const hc::Header& image, const Track& track) {
+  const auto cameras = intrinsics_.of(image.width, image.height);
+  const double z = distances_.find(track.number, last_)
+                       .value_or(hc::people::distance_by_size(track.face, pair_of(cameras)));
+  const cv::Point2f eyes =
+      (track.face.points[Face::RightEye] + track.face.points[Face::LeftEye]) / 2;
+  const Eigen::Vector3d p((eyes.x - cameras.cx) / cameras.fx * z,
+                          (eyes.y - cameras.cy) / cameras.fy * z, z);
+  return mount_.pose_in("head", image.time, frames_) * p;
+}
+
+void Faces::send(const hc::Header& image, const std::vector<Track>& seen) {
+  auto draft = faces_.loan(static_cast<std::int32_t>(seen.size()), kColumns);
+  draft.header.time = image.time;
+  draft.header.coord = image.coord;
+  std::optional<Eigen::Vector3d> nearest;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const auto& [number, face, time] = seen[i];
+    const auto p = place(image, seen[i]);
+    if (!nearest || p.norm() < nearest->norm()) nearest = p;
+    auto to = draft.matrix().row(i).begin();
+    for (const float each : {face.box.x, face.box.y, face.box.width, face.box.height})
+      *to++ = short_pixel(each);
+    *to++ = short_number(face.score);
+    *to++ = number;
+    *to++ = person(number);
+    for (const auto& point : face.points) {
+      *to++ = short_pixel(point.x);
+      *to++ = short_pixel(point.y);
+    }
+    for (const double each : {double(face.roll()), double(face.yaw()), p.x(), p.y(), p.z()})
+      *to++ = short_number(each);
+  }
+  faces_.send(std::move(draft));
+  if (nearest) target_.send({nearest->x(), nearest->y(), nearest->z()}, image.time);
+}
+
+int Faces::person(int track) const {
+  const auto identity = views_.identity(track);
+  if (!identity) return 0;
+  const auto found = folder_->gallery().find(*identity, static_cast<float>(*same_));
+  return found ? found->number : 0;
+}
+
+void Faces::learn(std::string_view text) {
+  int track = 0;
+  const auto [end, why] = std::from_chars(text.data(), text.data() + text.size(), track);
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  if (why != std::errc() || !text.starts_with(' '))
+    throw hc::BadMessage("it is not \"TRACK NAME\"");
+  const std::string name(text.substr(1));
+  const auto& views = views_.views(track);
+  if (views.empty()) throw hc::BadMessage(hc::format("no face has track {} now", track));
+  if (!views_.identity(track))
+    throw hc::BadMessage(hc::format(
+        "it is not certain yet whose face track {} is: try again, away from other faces", track));
+  if (const auto learned = folder_->learn(name, views); !learned)
+    throw hc::BadMessage(learned.error().detail);
+  module_.log(hc::format("learned {} from {} views", name, views.size()));
+  read_folder();
+}

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Finds the faces in the images of one eye or both, and knows people by name.
+
+#include <optional>
+#include <string>
+
+#include <frames/module_frames.h>
+#include <hc/module/module.h>
+#include <people/face_distances.h>
+#include <people/face_search.h>
+#include <people/identity.h>
+#include <people/track_views.h>
+#include <vision/module_cameras.h>
+
+#include "folder.h"
+
+class Faces {
+ public:
+  /// @param module  must outlive it.
+  explicit Faces(hc::Module& module);
+
+ private:
+  /// Made when the parameters are known.
+  struct Networks {
+    hc::people::FaceSearch search;
+    hc::people::Identifier identifier;
+  };
+
+  static constexpr int kColumns = 24;  // of faces
+
+  void start();
+  /// Looks at a left image, once it is known how the head was turned then.
+  void look(const hc::Message& message);
+  /// Measures distances in a right image, if it is of the last pair.
+  void look_right(const hc::Message& message);
+  /// How pixels have moved since the last image by the turn of the head.
+  cv::Matx33f turn_to(const hc::Header& image);
+  /// Describes one of the faces, if it is due.
+  void describe(hc::Time time, const cv::Mat& image, const std::vector<hc::people::Track>& seen);
+  void send(const hc::Header& image, const std::vector<hc::people::Track>& seen);
+  void learn(std::string_view text);
+  void read_folder();
+  /// Forgets everybody where no image has come since the last call.
+  void forget();
+  /// A person's number; 0: nobody who is known.
+  [[nodiscard]] int person(int track) const;
+  /// The middle between the eyes, in the head's frame [m].
+  [[nodiscard]] Eigen::Vector3d place(const hc::Header& image, const hc::people::Track& track);
+  [[nodiscard]] static hc::people::FacePair pair_of(const hc::vision::PairIntrinsics& cameras) {
+    return {static_cast<float>(cameras.fx), static_cast<float>(cameras.baseline)};
+  }
+  [[nodiscard]] hc::Time time_of(const hc::Message& image) const {
+    return image.header.time != hc::Time() ? image.header.time : module_.now();
+  }
+
+  hc::Module& module_;
+  hc::Input<hc::ImageKind> left_ = module_.input(
+      "left", hc::image(), "left image, best rectified: faces are found in it", {.keep = 1});
+  hc::Input<hc::ImageKind> right_ = module_.input(
+      "right", hc::image(), "right image of the rectified pair, for distances", {.keep = 1});
+  hc::Input<hc::TransformationKind<double>> cameras_ =
+      module_.input("cameras", hc::transformation(),
+                    "mounting of the eyes on the head, from rectify; until then from the frames");
+  hc::Input<hc::StringKind> name_ =
+      module_.input("name", hc::string(), "\"TRACK NAME\": learns the person of that track");
+  hc::Output<hc::TableKind<double>> faces_ = module_.output(
+      "faces", hc::table(),
+      "a row for each face of the left image, in its coordinate system; person 0 is nobody known; "
+      "x y z: the middle between the eyes, in the head's frame",
+      {.columns = {"x [px]",
+                   "y [px]",
+                   "width [px]",
+                   "height [px]",
+                   "score",
+                   "track",
+                   "person",
+                   "right eye x [px]",
+                   "right eye y [px]",
+                   "left eye x [px]",
+                   "left eye y [px]",
+                   "nose x [px]",
+                   "nose y [px]",
+                   "mouth x [px]",
+                   "mouth y [px]",
+                   "right ear x [px]",
+                   "right ear y [px]",
+                   "left ear x [px]",
+                   "left ear y [px]",
+                   "roll [rad]",
+                   "yaw [rad]",
+                   "x [m]",
+                   "y [m]",
+                   "z [m]"}});
+  hc::Output<hc::PositionKind<double>> target_ =
+      module_.output("target", hc::position().in(hc::Coord::kHead),
+                     "the nearest face: the middle between its eyes; nothing while there is none");
+  hc::Output<hc::StringKind> names_ = module_.output(
+      "names", hc::string(), "a line \"PERSON NAME\" for each known person, once a second");
+  hc::Parameter<std::string> people_ =
+      module_.parameter("people", "", "",
+                        "folder of the people who are known, a file for each (doc/people.md); "
+                        "made when the first is learned",
+                        {.fixed = true});
+  hc::Parameter<double> same_ = module_.parameter(
+      "same", 0.5, "", "maximum distance of a face from the person it is taken for",
+      {.min = 0, .max = 2});
+  hc::Parameter<double> score_ =
+      module_.parameter("score", 0.5, "", "minimum score of a face", {.min = 0, .max = 1});
+  hc::ModuleFrames frames_{module_};
+  hc::vision::ModulePair intrinsics_{module_, frames_, "distances have no true scale"};
+
+  hc::vision::RectifiedMount mount_;
+  std::optional<Networks> networks_;
+  std::optional<Folder> folder_;
+  hc::people::TrackViews views_;
+  hc::people::FaceDistances distances_;
+  bool is_idle_ = true;
+  hc::Message right_image_;                        // the last one
+  hc::Time last_;                                  // left image
+  std::optional<Eigen::Matrix3d> R_robot_camera_;  // then
+  std::vector<hc::people::Track> seen_;            // then
+};

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "folder.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <tuple>
+
+#include <sys/stat.h>
+
+#include <hc/base/format.h>
+#include <hc/module/kind.h>
+#include <hc/mtp/codec.h>
+#include <hc/mtp/stream_reader.h>
+#include <hc/os/new_file.h>
+
+namespace fs = std::filesystem;
+
+using hc::people::Identity;
+
+namespace {
+
+constexpr std::size_t kMostBytes = 1 << 20;  // of a file
+
+hc::Result<std::vector<Identity>> views_in(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  hc::StreamReader reader({.element_bytes = kMostBytes});
+  hc::Message message;
+  while (true) {
+    if (HC_TRY(reader.next(message))) break;
+    const auto space = reader.space();
+    file.read(reinterpret_cast<char*>(space.data()), static_cast<std::streamsize>(space.size()));
+    if (file.gcount() == 0) return hc::Error{hc::Code::Malformed, "it is no message"};
+    reader.commit(static_cast<std::size_t>(file.gcount()));
+  }
+  const auto& header = message.header;
+  constexpr auto kNumbers = std::tuple_size_v<Identity>;
+  const bool is_table = header.info.type == hc::MatrixType::Table &&
+                        header.width == static_cast<std::int32_t>(kNumbers) && header.height > 0 &&
+                        header.info.components == 1;
+  if (!is_table) return hc::Error{hc::Code::Malformed, "it is no table with 128 columns"};
+  const auto table = HC_TRY(hc::view<float>(message));
+  std::vector<Identity> views;
+  for (std::size_t i = 0; i < table.height(); ++i) {
+    std::ranges::copy(table.row(i), views.emplace_back().begin());
+    if (!std::ranges::all_of(views.back(), [](float each) { return std::abs(each) < 10; }))
+      return hc::Error{hc::Code::Malformed, "it has numbers that no face has"};
+  }
+  return views;
+}
+
+}  // namespace
+
+bool is_name(std::string_view text) {
+  constexpr std::size_t kMost = 64;
+  return !text.empty() && text.size() <= kMost && text[0] != '.' &&
+         !text.ends_with(".unfinished") && std::ranges::none_of(text, [](unsigned char c) {
+           return c < 0x20 || c == 0x7f || c == '/';
+         });
+}
+
+bool Folder::read() {
+  if (path_.empty()) return false;
+  std::map<std::string, hc::FileStamp> now;
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(path_, missing)) {
+    const auto name = entry.path().filename().string();
+    std::error_code unknown;
+    if (!is_name(name) || !entry.is_regular_file(unknown)) continue;
+    if (now.size() == kMostPeople) continue;
+    now.emplace(name, hc::file_stamp(file_of(name)));
+  }
+  if (now == files_) return false;
+  for (const auto& [name, stamp] : files_)
+    if (!now.contains(name)) gallery_.forget(name);
+  for (const auto& [name, stamp] : now) {
+    const auto known = files_.find(name);
+    if (known != files_.end() && known->second == stamp) continue;
+    gallery_.forget(name);
+    if (const auto views = views_in(file_of(name)))
+      gallery_.add(name, hc::people::mean(*views));
+    else
+      log_(hc::format("{} is ignored: {}", file_of(name), views.error().detail));
+  }
+  files_ = std::move(now);
+  return true;
+}
+
+hc::Status Folder::learn(const std::string& name, const std::vector<Identity>& views) {
+  const auto refused = [](std::string why) { return hc::Error{hc::Code::Invalid, std::move(why)}; };
+  if (!is_name(name))
+    return refused("not a name: up to 64 bytes, without \"/\" and a dot at the beginning");
+  if (path_.empty())
+    return refused("nobody can be learned without a folder: set the parameter people");
+  if (::mkdir(path_.c_str(), S_IRWXU) != 0 && errno != EEXIST)
+    return hc::Error{hc::Code::System, path_ + ": " + std::generic_category().message(errno)};
+  std::vector<Identity> all;
+  std::error_code unknown;
+  if (fs::exists(file_of(name), unknown)) {
+    auto before = views_in(file_of(name));
+    if (!before) return refused(file_of(name) + " is not a person's: " + before.error().detail);
+    all = std::move(*before);
+  } else if (files_.size() >= kMostPeople) {
+    return refused(hc::format("{} people are known already", kMostPeople));
+  }
+  all.insert(all.end(), views.begin(), views.end());
+  if (all.size() > kMostViews) all.erase(all.begin(), all.end() - kMostViews);
+  std::vector<float> numbers;
+  for (const auto& view : all) numbers.insert(numbers.end(), view.begin(), view.end());
+  const auto message = hc::table<float>().message(
+      static_cast<std::int32_t>(all.size()), static_cast<std::int32_t>(all[0].size()), numbers);
+  const mode_t others = ::umask(S_IRWXG | S_IRWXO);  // for its owner alone, also in an open folder
+  const auto written = hc::replace_file(file_of(name), hc::encode(message));
+  ::umask(others);
+  HC_TRY(written);
+  read();
+  return {};
+}
