@@ -2,7 +2,10 @@
 #include "driver.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <limits>
+#include <string_view>
 #include <utility>
 
 #include <hc/module/kind.h>
@@ -29,6 +32,29 @@ std::span<const double> numbers_of(const hc::Message& message) {
 }
 
 constexpr std::size_t kMaxText = 4096;  // [byte]
+
+/// Whether a text is "TRACK NAME": a name can be that of a file in a folder of people.
+bool is_track_and_name(std::string_view text) {
+  constexpr std::size_t kMostName = 64;  // [byte]
+  std::int32_t track = 0;
+  const auto [end, why] = std::from_chars(text.data(), text.data() + text.size(), track);
+  if (why != std::errc() || track <= 0) return false;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  if (!text.starts_with(' ')) return false;
+  text.remove_prefix(1);
+  return !text.empty() && text.size() <= kMostName && text[0] != '.' &&
+         std::ranges::none_of(text,
+                              [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '/'; });
+}
+
+bool is_track(double number) {
+  return number >= 0 && number <= std::numeric_limits<std::int32_t>::max() &&
+         number == std::floor(number);
+}
+
+std::string_view text_of(const hc::Message& message) {
+  return {reinterpret_cast<const char*>(message.elements.data()), message.elements.size()};
+}
 
 /// The problem with a message; "" if none.
 std::string problem(Control control, const hc::Message& message,
@@ -66,6 +92,17 @@ std::string problem(Control control, const hc::Message& message,
       if (numbers_of(message)[0] < 0 || numbers_of(message)[0] > 1) return "a bid is from 0 to 1";
       if (!modes.contains(header.mode)) return is_none(header.mode);
       return {};
+    case Control::Name:
+      if (header.info.type != hc::MatrixType::String || !message.plain() || header.height != 1 ||
+          !is_track_and_name(text_of(message)))
+        return "a name is a string \"TRACK NAME\", the name of at most 64 bytes, without \"/\" and "
+               "a "
+               "dot at the beginning";
+      return {};
+    case Control::Hold:
+      if (!is(message, hc::MatrixType::Table, 1) || !is_track(numbers_of(message)[0]))
+        return "a hold is a table 1 x 1 of 1 x f64, a track or 0";
+      return {};
   }
   return "unknown src";
 }
@@ -101,6 +138,7 @@ hc::Result<std::vector<Order>> Driver::take(hc::Message message,
   if (control != Control::Bid && control != Control::Text) header.mode = 0;
   if (control == Control::Stick)
     is_pushed_ = std::ranges::any_of(numbers_of(message), [](double x) { return x != 0; });
+  if (control == Control::Hold) is_holding_ = numbers_of(message)[0] != 0;
   if (control == Control::Bid) {
     // Withdraw the previous task's bid after the new one is sent, so that there is no gap.
     const auto before = std::exchange(
@@ -129,6 +167,8 @@ std::vector<Order> Driver::leave(hc::Time wall) {
   std::vector<Order> orders;
   if (std::exchange(is_pushed_, false))
     orders.push_back({Control::Stick, hc::table().message({0.0, 0.0})});
+  if (std::exchange(is_holding_, false))
+    orders.push_back({Control::Hold, hc::table().message({0.0})});
   if (bid_) orders.push_back({Control::Bid, withdrawn(*std::exchange(bid_, std::nullopt))});
   for (auto& order : orders) order.message.header.time = wall;
   return orders;

@@ -12,8 +12,8 @@
 #include <hc/mtp/message.h>
 
 /// The outputs of `web`; the values are the `src` of the page's messages.
-enum class Control : std::int32_t { Alive, Stick, Rotation, Target, Text, Bid };
-inline constexpr int kControls = 6;
+enum class Control : std::int32_t { Alive, Stick, Rotation, Target, Text, Bid, Name, Hold };
+inline constexpr int kControls = 8;
 
 struct Order {
   Control control = Control::Alive;
@@ -45,5 +45,6 @@ class Driver {
  private:
   hc::MonotonicTime heard_{}, bid_sent_{};
   bool is_pushed_ = false;          // the stick
+  bool is_holding_ = false;         // on to a person
   std::optional<hc::Message> bid_;  // repeated
 };

@@ -11,6 +11,7 @@
 
 struct DriverOutputs {
   static constexpr std::uint32_t kTexts = 8;  ///< queue of texts to speak
+  static constexpr std::uint32_t kNames = 8;  ///< queue of names to learn
   static constexpr std::uint32_t kBids = 4;   ///< queue of bids: the newest and withdrawals
 
   hc::Module& module;
@@ -29,6 +30,11 @@ struct DriverOutputs {
   hc::Output<hc::TableKind<double>> bid =
       module.output("bid", hc::table(), "for the task chosen by the driver",
                     {.keep = kBids, .columns = {"salience"}});
+  hc::Output<hc::StringKind> name = module.output(
+      "name", hc::string(), "\"TRACK NAME\": the name of a person who is seen", {.keep = kNames});
+  hc::Output<hc::TableKind<double>> hold =
+      module.output("hold", hc::table().of(1, 1), "track of the person to look at; 0: of anybody",
+                    {.keep = 1, .columns = {"track"}});
 
   void send(const Order& order) {
     switch (order.control) {
@@ -44,6 +50,10 @@ struct DriverOutputs {
         return text.send({order.message});
       case Control::Bid:
         return bid.send({order.message});
+      case Control::Name:
+        return name.send({order.message});
+      case Control::Hold:
+        return hold.send({order.message});
     }
   }
   /// A bit for each Control whose output is linked.
@@ -52,6 +62,7 @@ struct DriverOutputs {
       return output.linked() ? 1U << static_cast<unsigned>(control) : 0U;
     };
     return bit(Control::Stick, stick) | bit(Control::Rotation, rotation) |
-           bit(Control::Target, target) | bit(Control::Text, text) | bit(Control::Bid, bid);
+           bit(Control::Target, target) | bit(Control::Text, text) | bit(Control::Bid, bid) |
+           bit(Control::Name, name) | bit(Control::Hold, hold);
   }
 };

@@ -30,6 +30,13 @@ hc::Message bid(double salience, int mode) {
   return from(Control::Bid, hc::table().message({salience}), 0, mode);
 }
 
+hc::Message name(std::string_view text) {
+  return from(Control::Name, hc::string().message(text));
+}
+hc::Message hold(double track) {
+  return from(Control::Hold, hc::table().message({track}));
+}
+
 double number(const Order& order, std::size_t i = 0) {
   return hc::view<double>(order.message)->numbers()[i];
 }
@@ -92,11 +99,65 @@ TEST(Driver, anything_else_is_refused) {
       bid(0.5, 0),
       bid(0.5, 2),  // a mode unknown to the graph
       from(Control::Text, hc::string().message("hello"), 0, 2),
-      from(static_cast<Control>(6), hc::table().message({0.0})),
+      from(static_cast<Control>(8), hc::table().message({0.0})),
       from(static_cast<Control>(2147483647), hc::table().message({0.0}))};
   for (const auto& message : wrong) {
     EXPECT_EQ(hc::refused(driver.take(message, kModes, kWall, {})).code, hc::Code::Malformed);
   }
+}
+
+TEST(Driver, a_person_is_named_and_held_by_their_track) {
+  Driver driver;
+  for (const auto* text : {"1 Ann", "2147483647 Zoë van der Berg", "7 a.b"}) {
+    const auto orders = hc::must(driver.take(name(text), kModes, kWall, {}));
+    ASSERT_EQ(orders.size(), 1U);
+    EXPECT_EQ(orders[0].control, Control::Name);
+    const auto& bytes = orders[0].message.elements;
+    EXPECT_EQ(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), text);
+  }
+  for (const double track : {1.0, 2147483647.0, 0.0}) {
+    const auto orders = hc::must(driver.take(hold(track), kModes, kWall, {}));
+    ASSERT_EQ(orders.size(), 1U);
+    EXPECT_EQ(orders[0].control, Control::Hold);
+    EXPECT_EQ(number(orders[0]), track);
+  }
+}
+
+TEST(Driver, what_is_no_name_or_no_track_is_refused) {
+  Driver driver;
+  const std::string long_name(65, 'a');
+  for (const std::string& text :
+       {std::string(), std::string("Ann"), std::string("1"), std::string("1 "),
+        std::string("0 Ann"), std::string("-1 Ann"), std::string("2147483648 Ann"),
+        std::string("1.5 Ann"), std::string(" 1 Ann"), std::string("1 .Ann"),
+        std::string("1 ../Ann"), std::string("1 A/nn"), std::string("1 A\x01nn"),
+        std::string("1 Ann\x7f"), std::string("1 Ann\n2 Bob"), "1 " + long_name})
+    EXPECT_EQ(hc::refused(driver.take(name(text), kModes, kWall, {})).code, hc::Code::Malformed)
+        << text;
+  EXPECT_EQ(
+      hc::refused(driver.take(from(Control::Name, hc::table().message({1.0})), kModes, kWall, {}))
+          .code,
+      hc::Code::Malformed);
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const double track : {-1.0, 0.5, 2147483648.0, 1e300, kNan})
+    EXPECT_EQ(hc::refused(driver.take(hold(track), kModes, kWall, {})).code, hc::Code::Malformed);
+  EXPECT_EQ(hc::refused(driver.take(from(Control::Hold, hc::table().message({1.0, 2.0})), kModes,
+                                    kWall, {}))
+                .code,
+            hc::Code::Malformed);
+}
+
+TEST(Driver, who_leaves_holds_nobody) {
+  Driver driver;
+  const hc::MonotonicTime begin{};
+  ASSERT_TRUE(driver.take(hold(3), kModes, kWall, begin));
+  const auto ended = driver.tick(kWall, begin + milliseconds(201));
+  ASSERT_EQ(ended.size(), 1U);
+  EXPECT_EQ(ended[0].control, Control::Hold);
+  EXPECT_EQ(number(ended[0]), 0);
+  ASSERT_TRUE(driver.take(hold(3), kModes, kWall, begin));
+  ASSERT_TRUE(driver.take(hold(0), kModes, kWall, begin));
+  EXPECT_TRUE(driver.leave(kWall).empty());
 }
 
 TEST(Driver, who_is_silent_for_200_ms_commands_nothing) {

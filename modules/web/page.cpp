@@ -322,7 +322,8 @@ void Page::tick() {
 }
 
 std::string Page::session_text(const Session& session) const {
-  constexpr const char* kNames[] = {"", "stick", "rotation", "target", "text", "bid"};
+  constexpr const char* kNames[] = {"",     "stick", "rotation", "target",
+                                    "text", "bid",   "name",     "hold"};
   nlohmann::json now = {{"right", name_of(session.right)},
                         {"driver", nullptr},
                         {"stopped", nullptr},

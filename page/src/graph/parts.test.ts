@@ -50,6 +50,10 @@ test("the head is eyes, a ball, tasks, a neck, as a person thinks of it", () => 
     "telepresence",
     "ball ×2: left_ball right_ball",
     "track",
+    "faces",
+    "attend: attend attend_gaze",
+    "hands",
+    "follow_finger",
     "read: read read_gaze",
     "speak",
   ]);
@@ -128,8 +132,10 @@ test("data flows from the eyes over tasks of one column to what they move", () =
   assert.deepEqual(shownColumns(stateOfFile("head.toml")), [
     "eyes",
     "hearing person rectify ball ×2",
-    "depth calibrate point telepresence track read",
-    "neck workspace viewers speak",
+    "depth faces",
+    "viewers hands",
+    "calibrate point telepresence track attend follow_finger read",
+    "neck workspace speak",
     "mouth",
   ]);
   assert.deepEqual(shownColumns(stateOfFile("clocked_track.toml")), [
@@ -143,9 +149,11 @@ test("the columns of the others stay where a part opens", () => {
   const state = stateOfFile("head.toml");
   assert.deepEqual(shownColumns(state, ["head_neck:", "person:"]), [
     "eyes",
-    "hearing web joystick head_tracker rectify ball ×2",
-    "head_unit depth calibrate point telepresence track read",
-    "head_neck workspace viewers speak",
+    "hearing web rectify ball ×2",
+    "depth faces",
+    "joystick head_tracker viewers hands",
+    "head_unit calibrate point telepresence track attend follow_finger read",
+    "head_neck workspace speak",
     "mouth",
   ]);
 });

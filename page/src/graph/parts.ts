@@ -123,9 +123,10 @@ class Grouping {
     const steers = new Set(steering.map(({ from }) => moduleOf(from)));
     const members = this.free().filter((name) => {
       if (this.bodyOf(name)) return false;
-      if (steers.has(name)) return true;
+      const writers = [...flow.writers(name)];
+      if (steers.has(name) && writers.every((each) => this.decides(each))) return true;
       const readers = [...flow.readers(name)];
-      const isSource = readers.length > 0 && flow.writers(name).size === 0;
+      const isSource = readers.length > 0 && writers.length === 0;
       return isSource && readers.every((each) => this.isTask(each) && steers.has(each));
     });
     if (members.length > 0) this.take("person", "person", members, "person:");

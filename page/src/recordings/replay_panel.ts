@@ -83,6 +83,10 @@ class Replay {
       open: (port) => player.open(port) ?? missing(port),
       outputsBeside: (port) =>
         Promise.resolve(tracks.find((track) => track.port === port)?.outputs ?? []),
+      outputs: () =>
+        Promise.resolve(
+          tracks.flatMap(({ port, outputs }) => outputs.filter((output) => output.port === port)),
+        ),
     };
     const play = h("button", {
       class: "primary",

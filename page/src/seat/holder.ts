@@ -38,8 +38,10 @@ export class Seat {
   private readonly clock = new WallClock();
   private readonly states = new Signal<SeatState>({ is: "free" });
   private readonly tasks = new Signal<number>(0);
+  private readonly holds = new Signal<number>(0);
   readonly onState = this.states.on;
   readonly onTask = this.tasks.on;
+  readonly onHeld = this.holds.on;
   private drive?: Drive;
   private steering = false;
   /** When this page last sent a command, and when it was last too late [ms]. */
@@ -102,6 +104,11 @@ export class Seat {
     return this.tasks.value ?? 0;
   }
 
+  /** Track of the person who is held; 0: nobody. */
+  get held(): number {
+    return this.holds.value ?? 0;
+  }
+
   /** @param fromOther  takes it from another page. */
   take(fromOther = false): void {
     this.drive?.close();
@@ -129,6 +136,7 @@ export class Seat {
     this.stick.release();
     if (this.steering) this.sendStick();
     if (this.task) this.sendBid(this.task, 0);
+    if (this.held) this.sendHold(0);
     this.drive.close();
     this.forget(why ? { is: "lost", why } : { is: "free" });
   }
@@ -189,6 +197,21 @@ export class Seat {
     return this.drive?.send("text", textMessage(text, { coord: Coord.text, mode })) ?? false;
   }
 
+  /** Gives a person a name; returns whether it was sent. */
+  name(track: number, name: string): boolean {
+    const message = textMessage(`${track} ${name}`, { coord: Coord.text });
+    return this.drive?.send("name", message) ?? false;
+  }
+
+  /** Looks at a person, by their track, until 0 releases them; returns whether it was sent. */
+  hold(track: number): boolean {
+    if (!this.sendHold(track)) return false;
+    this.holds.set(track);
+    if (track) this.claim("hold");
+    else if (this.task && this.task === this.taskOf("hold")) this.release();
+    return true;
+  }
+
   /** Sends the stick while it is pushed, and its centre once at the end. */
   private steer(): void {
     const now = performance.now();
@@ -212,6 +235,7 @@ export class Seat {
 
   private bid(): void {
     if (this.task) this.sendBid(this.task, 1);
+    if (this.held) this.sendHold(this.held);
   }
 
   /** Bids for the task that reads an output, instead of another. */
@@ -234,11 +258,16 @@ export class Seat {
     if (this.isHeld) this.drive?.send("bid", numbersMessage("table", [salience], { mode }));
   }
 
+  private sendHold(track: number): boolean {
+    return this.isHeld && (this.drive?.send("hold", numbersMessage("table", [track])) ?? false);
+  }
+
   private forget(state: SeatState): void {
     this.drive = undefined;
     this.steering = false;
     this.stick.release();
     this.tasks.set(0);
+    this.holds.set(0);
     this.states.set(state);
   }
 }

@@ -2,6 +2,8 @@
 // The supervisor's seat: the robot's images, and the controls to move it.
 import { mayDrive, modeName, modesInFocus, type DriveOutput, type GraphState } from "../server";
 import { earsOf } from "../eyes";
+import { outputsOf } from "../outputs";
+import { People } from "../people";
 import { button, h, meanings, setText, type PanelHost, type PanelKind } from "../shell";
 import { Ears } from "./ears";
 import { GazeHistory, headOutput } from "./gaze";
@@ -9,6 +11,7 @@ import { dragSteers, gamepadsSteer, keysSteer } from "./hands";
 import { Seat, type SeatState } from "./holder";
 import { Hud } from "./hud";
 import { Latency } from "./latency";
+import { SeatPeople } from "./people";
 import { TaskButtons } from "./tasks";
 import { PhoneTracker } from "./telepresence";
 import { SeatView } from "./view";
@@ -32,6 +35,8 @@ class SeatPanel {
   private readonly latency = new Latency();
   private readonly seat: Seat;
   private readonly view: SeatView;
+  private readonly people: People;
+  private readonly persons: SeatPeople;
   private readonly hud: Hud;
   private readonly tasks: TaskButtons;
   private readonly phone: PhoneTracker;
@@ -87,9 +92,23 @@ class SeatPanel {
       (sentence) => host.say(sentence),
       (at) => this.latency.command(at),
     );
-    this.view = new SeatView(server, this.latency);
+    this.people = new People({
+      get state() {
+        return server.state;
+      },
+      outputs: () => outputsOf(server),
+      open: (port) => server.stream(port),
+    });
+    this.view = new SeatView(server, this.latency, this.people);
+    this.persons = new SeatPeople(
+      server,
+      this.seat,
+      this.people,
+      (output) => this.has(output),
+      (sentence) => host.say(sentence),
+    );
     this.hud = new Hud(server, this.latency);
-    this.view.element.append(this.hud.element);
+    this.view.element.append(this.hud.element, this.persons.form);
     this.tasks = new TaskButtons(server, this.seat, () => this.seat.isHeld && this.has("bid"));
     this.phone = new PhoneTracker(
       (angles) => this.seat.turn(angles),
@@ -133,6 +152,7 @@ class SeatPanel {
           ]),
           h("div.seat-choices", [
             this.tasks.element,
+            this.persons.list,
             speak,
             h("div.seat-more.wrap", [
               this.phoneButton,
@@ -163,6 +183,7 @@ class SeatPanel {
     const timer = window.setInterval(() => {
       this.hud.showLatency();
       this.showWho();
+      this.persons.update();
     }, 500);
     this.ends.push(() => clearInterval(timer));
   }
@@ -177,6 +198,8 @@ class SeatPanel {
     this.gaze?.close();
     this.hud.close();
     this.tasks.close();
+    this.persons.close();
+    this.people.close();
     this.view.close();
     this.seat.close();
   }
@@ -193,11 +216,16 @@ class SeatPanel {
     dragSteers(this.pad, stick, "pad", () => this.pad.clientWidth / 2, show);
     const reach = (): number => Math.min(canvas.clientWidth, canvas.clientHeight) / 3;
     dragSteers(canvas, stick, "image", reach, show, (event) => this.lookAt(event));
+    canvas.addEventListener("pointermove", ({ clientX, clientY }) => {
+      canvas.classList.toggle("on-person", this.view.personAt(clientX, clientY) !== undefined);
+    });
     keysSteer(this.element, stick);
     this.ends.push(gamepadsSteer(stick));
   }
 
   private lookAt(event: PointerEvent): void {
+    const person = this.view.personAt(event.clientX, event.clientY);
+    if (person) return this.persons.click(person);
     if (!this.seat.isHeld) return this.host.say("Take the seat first, then point.");
     if (!this.has("target")) return this.host.say("No output target of the page is linked.");
     const pixel = this.view.pixelAt(event.clientX, event.clientY);
@@ -280,6 +308,7 @@ class SeatPanel {
     }
     this.element.classList.toggle("held", state.is === "held");
     this.showWho();
+    this.persons.update();
     if (this.host.server.state) this.tasks.update(this.host.server.state);
   }
 

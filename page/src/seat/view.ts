@@ -4,6 +4,7 @@ import { moduleOf, type GraphState, type Server } from "../server";
 import { button, fill, h } from "../shell";
 import { SlowRange } from "../views/coding";
 import { eyePairs, labelsOf, type EyePair } from "../eyes";
+import { PeopleLayer, type People, type Person } from "../people";
 import { Pairing, type Side } from "../views/pairing";
 import { Eye, type Picture } from "./eye";
 import type { Latency } from "./latency";
@@ -21,6 +22,7 @@ const close = ({ bitmap }: Picture): void => bitmap.close();
 
 export class SeatView {
   readonly canvas = h("canvas.seat-image", { role: "img", "aria-label": "What the robot sees" });
+  private readonly layer = new PeopleLayer();
   private readonly problem = h("p.seat-problem", { role: "status" });
   private readonly way: HTMLSelectElement;
   /** The modules whose images can be shown. */
@@ -41,11 +43,13 @@ export class SeatView {
   private pairs: readonly EyePair[] = [];
   private readonly resizing: ResizeObserver;
   private drawing = false;
+  private readonly endPeople: () => void;
   private xr?: XrView;
 
   constructor(
     private readonly server: Server,
     private readonly latency: Latency,
+    private readonly people: People,
   ) {
     this.way = h(
       "select",
@@ -53,13 +57,15 @@ export class SeatView {
       ways.map((way) => h("option", { value: way }, wayNames[way])),
     );
     const tools = h("div.seat-tools.wrap", [this.sources, this.way, this.coding]);
-    this.element = h("div.seat-view", [this.canvas, tools, this.problem]);
+    this.element = h("div.seat-view", [this.canvas, this.layer.element, tools, this.problem]);
     this.resizing = new ResizeObserver(() => this.resize());
     this.resizing.observe(this.canvas);
+    this.endPeople = people.onChange(() => this.draw());
   }
 
   close(): void {
     this.resizing.disconnect();
+    this.endPeople();
     this.xr = undefined; // its session ends later, and then opens nothing
     this.pairs = [];
     this.shut();
@@ -68,6 +74,7 @@ export class SeatView {
   /** Updates the pairs of eyes in the graph. */
   update(state: GraphState): void {
     const pairs = eyePairs(state);
+    if (this.pair) this.people.follow(this.pair.left);
     if (JSON.stringify(pairs) === JSON.stringify(this.pairs)) return;
     this.pairs = pairs;
     const chips = [...labelsOf(pairs)].map(([module, label]) =>
@@ -129,6 +136,11 @@ export class SeatView {
     return { x: found.x, y: found.y, coord: picture.coord, time: picture.time };
   }
 
+  /** The person in the image at a point of the window. */
+  personAt(clientX: number, clientY: number): Person | undefined {
+    return this.layer.personAt(clientX, clientY);
+  }
+
   /** Also shows the images in a headset; `undefined` ends that. */
   showIn(xr: XrView | undefined): void {
     this.xr = xr;
@@ -164,6 +176,7 @@ export class SeatView {
       return;
     }
     this.problem.textContent = waiting;
+    this.people.follow(pair.left);
     this.way.disabled = pair.right === undefined;
     const wanted = this.xr ? (["left", "right"] as const) : sidesOf(this.shownWay);
     const range = new SlowRange();
@@ -217,6 +230,7 @@ export class SeatView {
       requestAnimationFrame(() => {
         this.drawing = false;
         drawPictures(this.canvas, this.shownWay, this.pictures);
+        this.drawPeople();
       });
     }
     requestAnimationFrame(drawn); // after drawing, since it was requested later
@@ -239,5 +253,24 @@ export class SeatView {
     for (const eye of this.eyes.values()) eye.setWidth(this.width());
     // At once, since resizing clears a canvas.
     drawPictures(this.canvas, this.shownWay, this.pictures);
+    this.drawPeople();
+  }
+
+  /** Draws who is seen over the left eye's image, in which they were found. */
+  private drawPeople(): void {
+    const { canvas, pictures, layer } = this;
+    const places = pictures.left ? placesOf(this.shownWay, pictures.left.bitmap, canvas) : [];
+    const place = places.find(({ side }) => side === "left");
+    layer.element.toggleAttribute("hidden", !place);
+    if (!place || !pictures.left) return;
+    const share = (part: number, whole: number): string => `${(100 * part) / whole}%`;
+    Object.assign(layer.element.style, {
+      left: share(place.x, canvas.width),
+      top: share(place.y, canvas.height),
+      width: share(place.width, canvas.width),
+      height: share(place.height, canvas.height),
+    });
+    const { time, coord } = pictures.left;
+    layer.show(this.people.at(time, coord), pictures.left);
   }
 }

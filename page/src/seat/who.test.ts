@@ -15,6 +15,8 @@ test("an output's task is that of the module that reads it", () => {
       link("web.rotation", "telepresence.setpoint"),
       link("other.target", "track.target"),
       link("web.text", "speak.text"),
+      link("web.hold", "attend.hold"),
+      link("attend.target", "attend_gaze.target"),
     ],
     modules: [
       module("log"),
@@ -22,13 +24,16 @@ test("an output's task is that of the module that reads it", () => {
       module("telepresence", "telepresence"),
       module("track", "track"),
       module("speak"),
+      module("attend"),
+      module("attend_gaze", "attend"),
     ],
-    modes: { point: 2, telepresence: 3, track: 4 },
+    modes: { point: 2, telepresence: 3, track: 4, attend: 6 },
   } as unknown as GraphState;
   assert.equal(taskOf(state, "web", "stick"), 2);
   assert.equal(taskOf(state, "web", "rotation"), 3);
   assert.equal(taskOf(state, "web", "target"), 0);
   assert.equal(taskOf(state, "web", "text"), 0);
+  assert.equal(taskOf(state, "web", "hold"), 6);
   assert.equal(taskOf(state, "page", "stick"), 0);
 });
 

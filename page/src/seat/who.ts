@@ -10,14 +10,17 @@ import {
 } from "../server";
 
 /**
- * The task of the module that reads a driver's output.
+ * The task of the module that reads a driver's output, or that a reader without a task serves.
  *
  * @param web  name of the module that serves the page.
- * @returns  its number; 0: no reader, or one without a mode.
+ * @returns  its number; 0: none.
  */
 export function taskOf(state: GraphState, web: string, output: DriveOutput): number {
-  for (const { to } of state.links.filter(({ from }) => from === `${web}.${output}`)) {
-    const mode = state.modules.find(({ name }) => name === moduleOf(to))?.mode ?? "";
+  const readersOf = (isRead: (from: string) => boolean): string[] =>
+    state.links.filter(({ from }) => isRead(from)).map(({ to }) => moduleOf(to));
+  const readers = readersOf((from) => from === `${web}.${output}`);
+  for (const reader of [...readers, ...readersOf((from) => readers.includes(moduleOf(from)))]) {
+    const mode = state.modules.find(({ name }) => name === reader)?.mode ?? "";
     const task = state.modes[mode];
     if (task) return task;
   }

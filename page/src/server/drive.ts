@@ -11,6 +11,8 @@ export const driveSource: Record<DriveOutput, number> = {
   target: 3,
   text: 4,
   bid: 5,
+  name: 6,
+  hold: 7,
 };
 
 export type DriveStatus =

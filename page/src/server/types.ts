@@ -111,7 +111,7 @@ export function modesInFocus(state: GraphState | null | undefined): Focus[] {
   return Object.values(state?.focus ?? {}).filter((focus) => focus !== null);
 }
 
-export type DriveOutput = "stick" | "rotation" | "target" | "text" | "bid";
+export type DriveOutput = "stick" | "rotation" | "target" | "text" | "bid" | "name" | "hold";
 
 export interface RecordingState {
   readonly name: string;

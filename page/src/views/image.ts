@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Images in colour and grey.
-import { headerOf, type Header } from "../mtp";
+import { Coord, headerOf, type Header } from "../mtp";
 import type { Arrival } from "../server";
+import { People, PeopleLayer } from "../people";
 import { h } from "../shell/h";
 import { isImage, isMeasured, PictureDecoder } from "./picture";
 import { pixelAt, Probe } from "./probe";
@@ -17,12 +18,15 @@ export class ImageView implements View {
   })!;
   private readonly decoder: PictureDecoder;
   private readonly probe: Probe;
+  private readonly layer = new PeopleLayer();
+  private readonly people: People;
+  private isDue = false; // what is new of people
   private readonly endRoom: () => void;
   private shown?: { arrival: Arrival; sent: Header };
   private turns = 0;
   private shownTurn = 0;
 
-  constructor(host: ViewHost) {
+  constructor(private readonly host: ViewHost) {
     this.decoder = new PictureDecoder(() => host.source.restart?.());
     this.canvas.setAttribute("aria-label", `Image of ${host.source.port}`);
     this.probe = new Probe(this.canvas, ({ across, down }) => {
@@ -32,7 +36,13 @@ export class ImageView implements View {
       const [r, g, b] = this.colourAt(across * this.canvas.width, down * this.canvas.height);
       return `${x.toFixed(0)}, ${y.toFixed(0)} px  ${sent.components === 1 ? r : `${r} ${g} ${b}`}`;
     });
-    this.element = h("div.image-view.stack", [this.canvas, this.probe.output]);
+    this.element = h("div.image-view.stack", [this.canvas, this.layer.element, this.probe.output]);
+    this.people = new People(host.surroundings);
+    this.people.onChange(() => {
+      if (this.isDue) return;
+      this.isDue = true;
+      requestAnimationFrame(() => this.drawPeople());
+    });
     this.endRoom = askForWidth(this.canvas, host.source, () => this.shown?.sent);
   }
 
@@ -51,9 +61,21 @@ export class ImageView implements View {
       }
       this.context.drawImage(picture, 0, 0);
       this.shown = { arrival, sent };
+      this.drawPeople();
       this.probe.update();
     }
     picture.close();
+  }
+
+  /** Draws who is seen over the left eye's images, in which they are found. */
+  private drawPeople(): void {
+    this.isDue = false;
+    const { sent, arrival } = this.shown ?? {};
+    if (!sent || !arrival) return;
+    const { coord } = sent;
+    if (coord !== Coord.left_image && coord !== Coord.left_rectified) return;
+    this.people.follow(this.host.source.port);
+    this.layer.show(this.people.at(arrival.message.header.time || sent.time, coord), sent);
   }
 
   /** Red, green, blue [0, 255] of a pixel of the canvas. */
@@ -88,6 +110,7 @@ export class ImageView implements View {
 
   close(): void {
     this.endRoom();
+    this.people.close();
     this.decoder.close();
   }
 }

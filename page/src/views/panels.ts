@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { outputsBeside } from "../outputs";
+import { outputsBeside, outputsOf } from "../outputs";
 import type { Server } from "../server";
 import { h, type PanelKind } from "../shell";
 import { bestEncoding } from "./picture";
@@ -21,6 +21,7 @@ export async function liveSurroundings(server: Server): Promise<Surroundings> {
     ready: () => server.ready(),
     open: (port) => server.stream(port, { as }),
     outputsBeside: (port) => outputsBeside(server, port),
+    outputs: () => outputsOf(server),
   };
 }
 

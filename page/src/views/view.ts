@@ -29,6 +29,8 @@ export interface Surroundings {
   open(port: string): Source;
   /** All outputs of the module of an output, as it describes them; none if unknown. */
   outputsBeside(port: string): Promise<readonly Output[]>;
+  /** All outputs, as their modules describe them. */
+  outputs(): Promise<readonly Output[]>;
 }
 
 /** What the module of a stream says about it. */
