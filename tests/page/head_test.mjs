@@ -51,9 +51,27 @@ describe("the page", { timeout: 10 * watchdog }, () => {
   test("no label of a link covers another one or a box, also with all links", async () => {
     await page.setViewportSize({ width: 1280, height: 800 });
     await show("watch");
+    const places = () =>
+      page.locator(".edge-words").evaluateAll((all) =>
+        all
+          .map((each) => each.getBoundingClientRect())
+          .filter(({ width }) => width > 0)
+          .map((area) => JSON.stringify(area)),
+      );
     for (const all of [false, true]) {
-      if (all) await page.getByLabel("all links").check();
+      const few = (await places()).length;
+      if (all) {
+        await page.getByLabel("all links").check();
+        await until("more links are drawn", async () => (await places()).length > few);
+      }
       await page.locator(".edge-age:not(:empty)").nth(10).waitFor();
+      let [before, same] = ["", 0];
+      await until("the labels rest", async () => {
+        const now = (await places()).join();
+        same = now === before ? same + 1 : 0;
+        before = now;
+        return same > 10; // looks
+      });
       const covered = await page.evaluate(() => {
         const areas = (selector) =>
           [...document.querySelectorAll(selector)]

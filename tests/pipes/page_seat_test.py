@@ -113,9 +113,11 @@ class Stop(Page):
         graph.close()
         while (word := next(words)) != 3:
             self.assertEqual(word, 0)
-        self.assertEqual([next(words), next(words)], [3, 3])
         again = self.socket("/graph", cookie)
-        self.assertEqual(next(words), 0)
+        # It is said several times, of which a page that looks late gets the last.
+        while (word := next(words)) == 3:
+            pass
+        self.assertEqual(word, 0)
         again.close()
         self.stop(process)
 
