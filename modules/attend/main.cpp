@@ -22,6 +22,12 @@ bool is_track(double number) {
   return number >= 0 && number <= kMost;
 }
 
+/// Whether a head can be there. [m]
+bool is_place(const Eigen::Vector3d& p) {
+  constexpr double kNearest = 0.1, kFarthest = 100;
+  return p.norm() >= kNearest && p.norm() <= kFarthest;
+}
+
 class Attend {
  public:
   explicit Attend(hc::Module& module) : module_(module) {
@@ -46,8 +52,8 @@ class Attend {
       const auto rows = faces.matrix();
       for (std::size_t i = 0; i < rows.height(); ++i) {
         const auto row = rows.row(i);
-        if (!is_track(row[kTrack])) continue;
         const Eigen::Vector3d p(row[kPlace], row[kPlace + 1], row[kPlace + 2]);
+        if (!is_track(row[kTrack]) || row[kTrack] < 1 || !is_place(p)) continue;
         attention_.see(static_cast<int>(row[kTrack]), time,
                        {pan_of(T_robot_head.linear() * p), p.norm()});
       }
