@@ -9,7 +9,7 @@
 namespace hc::gaze {
 namespace {
 
-constexpr double kVisible = 0.5;  // least share of a person who is to be looked at
+constexpr double kVisible = 0.5;  // least visible share of a target
 constexpr double kInTime = 1.0;   // to look at one who speaks [s]
 constexpr double kDegrees = 180 / M_PI;
 

@@ -26,7 +26,7 @@ struct TruePerson {
 /// A face that was found in an image, and the person it was taken for.
 struct NamedFace {
   Eigen::Vector2d pixel;  ///< the middle between the eyes [px]
-  int person = 0;         ///< 0: nobody known
+  int person = 0;         ///< 0: unknown
 };
 
 struct AttendScore {
@@ -47,7 +47,7 @@ struct AttendScore {
 /// Collects a run.
 class Attending {
  public:
-  /// @param within  maximum error of a person who is looked at [rad].
+  /// @param within  maximum error of the gaze on target [rad].
   explicit Attending(double within) : within_(within) {}
 
   /// Takes the people of an image. The head is to look at the one who speaks, else at the nearest.

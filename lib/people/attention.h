@@ -3,12 +3,13 @@
 // Decides at whom to look. Pure: times come from the caller.
 //
 // The rules:
-// - A person who is held is looked at while they are seen.
-// - Else the one who speaks: sound came from their direction, more than from any other's.
-// - While nobody speaks, the one who is nearest.
-// - A person who is looked at is kept for a minimum time, a shorter one before somebody who speaks,
-//   and somebody else must be nearer by a margin.
-// - A person who has not been seen for kLife has left.
+// - A held person comes first, while in view.
+// - Then the speaker: the person from whose direction most sound has come.
+// - Without a speaker, the nearest person.
+// - The choice is kept for a minimum time, a shorter one before a speaker, and another person must
+// be
+//   nearer by a margin.
+// - After kLife out of view a person has left.
 
 #include <chrono>
 #include <map>
