@@ -87,7 +87,7 @@ class Graphs(Pipes):
         return process
 
     def end_well(self, process):
-        if process.poll() is None and not self.has_failed():
+        if process.poll() is None and not self.failures():
             self.stop(process)
 
     def run_named(self, name, text=GRAPH, last="brightness: started"):

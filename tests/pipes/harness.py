@@ -101,9 +101,10 @@ class Pipes(unittest.TestCase):
         self.result = result
         return super().run(result)
 
-    def has_failed(self):
+    def failures(self):
+        """The tracebacks of this test so far."""
         failed = self.result.failures + self.result.errors if self.result else []
-        return any(test is self for test, _ in failed)
+        return [trace for test, trace in failed if test is self]
 
     def setUp(self):
         end_when_hung(self)
@@ -136,7 +137,9 @@ class Pipes(unittest.TestCase):
         if process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
         _, log = process.communicate()
-        if log and self.has_failed():
+        failures = self.failures()
+        if log and failures:  # the reason first: who reads a long log may have its beginning alone
+            print("\n".join([each[-1000:] for each in failures]), flush=True)
             print("… " + log[-3000:].decode(errors="replace"), flush=True)
 
     def shell(self, command, status=0, data=b""):
