@@ -229,7 +229,8 @@ class Agent {
       if (!child.process->runs()) continue;
       const auto usage = child.process->usage(with_memory);
       rows.push_back({number, child.process->number(), usage.processor.count(),
-                      static_cast<std::int64_t>(usage.memory), std::int64_t{usage.is_stopped}});
+                      static_cast<std::int64_t>(usage.memory), std::int64_t{usage.is_stopped},
+                      std::int64_t{usage.is_traced}, usage.waited.count()});
     }
     if (!rows.empty()) send({{"what", "usage"}, {"modules", rows}});
   }

@@ -42,9 +42,10 @@ inline constexpr std::size_t kCrowded = std::size_t{256} << 10, kTooMuch = std::
 /// (both monotonic), and the agent's offset from its monotonic to its wall clock. The first two are
 /// 0 in heartbeats that are not answers.
 using Moments = std::array<std::int64_t, 4>;
-/// Usage of a module's processes: number of the module, PID, CPU time [ns], memory [byte], and
-/// whether it is stopped by a signal.
-using UsageRow = std::array<std::int64_t, 5>;
+/// Usage of a module's processes: number of the module, PID, CPU time [ns], memory [byte], whether
+/// it is stopped by a signal or a debugger, whether by a debugger, and for how long it has waited
+/// for a processor [ns].
+using UsageRow = std::array<std::int64_t, 7>;
 
 Message make_order(const Json& order);
 /// Parses an object with a string "what"; null if the message is not an order.

@@ -83,7 +83,11 @@ class RemoteModule final : public ModuleProcess {
   }
   void used(const UsageRow& row) {
     process_ = static_cast<pid_t>(row[1]);
-    usage_ = {std::chrono::nanoseconds(row[2]), static_cast<std::uint64_t>(row[3]), row[4] != 0};
+    usage_ = {.processor = std::chrono::nanoseconds(row[2]),
+              .waited = std::chrono::nanoseconds(row[6]),
+              .memory = static_cast<std::uint64_t>(row[3]),
+              .is_stopped = row[4] != 0,
+              .is_traced = row[5] != 0};
   }
   void ended(int status) {
     if (!std::exchange(runs_, false)) return;

@@ -30,11 +30,21 @@ class Liveness {
   }
 
   /// Called now and then. The time between two calls counts at most 1 s as silence, since this
-  /// process itself may have been stopped or starved.
-  void check(bool is_running, MonotonicTime now) {
-    constexpr MonotonicTime kMostAtOnce = std::chrono::seconds(1);
+  /// process itself may have been stopped or starved; without the time for which the other one has
+  /// waited for a processor, once it is silent for a second.
+  ///
+  /// @param usage  measures the process; called only where it matters.
+  template <typename Measure>
+  void check(bool is_running, MonotonicTime now, const Measure& usage) {
+    constexpr MonotonicTime kMostAtOnce = std::chrono::seconds(1), kShort = std::chrono::seconds(1);
     const auto before = std::exchange(checked_, now);
-    if (is_running && before) silence_ += std::min(now - *before, kMostAtOnce);
+    if (!is_running || !before) return;
+    auto silent = std::min(now - *before, kMostAtOnce);
+    std::optional<MonotonicTime> waited;
+    if (silence_ >= kShort) waited = usage().waited;
+    if (waited && waited_) silent -= std::clamp(*waited - *waited_, MonotonicTime(0), silent);
+    waited_ = waited;
+    silence_ += silent;
   }
 
   /// Its silence has another cause.
@@ -43,7 +53,7 @@ class Liveness {
   void forget() { *this = Liveness(checked_); }
 
   [[nodiscard]] bool has_reported() const { return reported_.has_value(); }
-  /// Without reports, as far as checked.
+  /// Without reports while it could have sent some, as far as checked.
   [[nodiscard]] MonotonicTime silence() const { return silence_; }
   [[nodiscard]] std::optional<MonotonicTime> blocked_since() const { return blocked_; }
 
@@ -82,6 +92,7 @@ class Liveness {
 
   std::optional<MonotonicTime> reported_, checked_;
   MonotonicTime silence_{0};
+  std::optional<MonotonicTime> waited_;   // for a processor, as last measured
   std::optional<MonotonicTime> blocked_;  // since then
 };
 

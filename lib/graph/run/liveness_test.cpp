@@ -8,10 +8,15 @@ namespace {
 
 using namespace std::chrono_literals;
 
+/// Of a process that has never waited for a processor.
+Usage idle() {
+  return {};
+}
+
 TEST(Liveness, IsSilentSinceTheLastReport) {
   Liveness liveness;
-  liveness.check(true, 10s);
-  liveness.check(true, 10500ms);
+  liveness.check(true, 10s, idle);
+  liveness.check(true, 10500ms, idle);
   EXPECT_EQ(liveness.silence(), 500ms);
   EXPECT_FALSE(liveness.has_reported());
   liveness.reported(false, 11s);
@@ -39,9 +44,10 @@ TEST(Liveness, SaysWhatSilenceMeans) {
 /// Silent for so many seconds, after its last report if it has sent one.
 Liveness silent_for(int seconds, std::optional<bool> is_blocked) {
   Liveness liveness;
-  liveness.check(true, 0s);
+  liveness.check(true, 0s, idle);
   if (is_blocked) liveness.reported(*is_blocked, 0s);
-  for (int time = 1; time <= seconds; ++time) liveness.check(true, std::chrono::seconds(time));
+  for (int time = 1; time <= seconds; ++time)
+    liveness.check(true, std::chrono::seconds(time), idle);
   return liveness;
 }
 
@@ -75,15 +81,42 @@ TEST(Liveness, HasMoreTimeForItsFirstReport) {
 
 TEST(Liveness, CountsALongGapBetweenChecksAsASecond) {
   Liveness liveness;
-  liveness.check(true, 10s);
-  liveness.check(true, 60s);
+  liveness.check(true, 10s, idle);
+  liveness.check(true, 60s, idle);
   EXPECT_EQ(liveness.silence(), 1s);
+}
+
+TEST(Liveness, IsNotSilentWhileItWaitsForAProcessor) {
+  Liveness liveness;
+  Usage usage;
+  const auto measure = [&] { return usage; };
+  for (auto time = 0s; time <= 2s; time += 1s) liveness.check(true, time, measure);
+  EXPECT_EQ(liveness.silence(), 2s);
+  usage.waited = 900ms;
+  liveness.check(true, 3s, measure);
+  EXPECT_EQ(liveness.silence(), 2100ms);
+  usage.waited = 9s;  // of several processes, or before this one was looked at
+  liveness.check(true, 4s, measure);
+  EXPECT_EQ(liveness.silence(), 2100ms);
+  liveness.check(true, 5s, measure);
+  EXPECT_EQ(liveness.silence(), 3100ms);
+}
+
+TEST(Liveness, ForgetsHowLongItHasWaitedWhenItReports) {
+  Liveness liveness;
+  Usage usage;
+  const auto measure = [&] { return usage; };
+  for (auto time = 0s; time <= 2s; time += 1s) liveness.check(true, time, measure);
+  liveness.reported(false, 2s);
+  usage.waited = 5s;
+  for (auto time = 3s; time <= 5s; time += 1s) liveness.check(true, time, measure);
+  EXPECT_EQ(liveness.silence(), 3s);
 }
 
 TEST(Liveness, IsNotSilentWithoutAProcess) {
   Liveness liveness;
-  liveness.check(true, 10s);
-  liveness.check(false, 11s);
+  liveness.check(true, 10s, idle);
+  liveness.check(false, 11s, idle);
   EXPECT_EQ(liveness.silence(), 0s);
 }
 
@@ -98,11 +131,11 @@ TEST(Liveness, WaitsForAReaderSinceTheFirstReportOfIt) {
 
 TEST(Liveness, ForgetsAProcessButNotItsLastCheck) {
   Liveness liveness;
-  liveness.check(true, 10s);
+  liveness.check(true, 10s, idle);
   liveness.reported(true, 10s);
   liveness.forget();
   EXPECT_FALSE(liveness.has_reported() || liveness.blocked_since());
-  liveness.check(true, 11s);
+  liveness.check(true, 11s, idle);
   EXPECT_EQ(liveness.silence(), 1s);
 }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sched.h>
+
 #include <algorithm>
 #include <csignal>
 
@@ -43,6 +45,18 @@ TEST(ProcessLook, SaysWhatIsUsed) {
   EXPECT_FALSE(usage.is_stopped);
   ASSERT_EQ(::kill(all[0], SIGSTOP), 0);
   while (!usage_of(all, false).is_stopped) ::sched_yield();
+}
+
+TEST(ProcessLook, SaysForHowLongAProcessorWasAwaited) {
+  auto process = ready_shell("echo; while :; do :; done");
+  auto all = descendants(process.guard_number());
+  // On one processor with another one that never rests.
+  auto other = ready_shell("echo; while :; do :; done");
+  cpu_set_t first{};
+  CPU_SET(static_cast<std::size_t>(::sched_getcpu()), &first);
+  for (const pid_t each : {process.number(), other.number()})
+    ASSERT_EQ(::sched_setaffinity(each, sizeof first, &first), 0);
+  while (usage_of(all, false).waited < 50ms) ::sched_yield();
 }
 
 TEST(ProcessLook, WhoHasGoneUsesNothing) {

@@ -31,9 +31,10 @@ void Supervised::check(MonotonicTime time) {
   send(process_.correct_clock());
   note_dropped_lines(time);
   auto& process = process_.process();
-  liveness_.check(process.runs(), time);
+  const auto usage = [&] { return process.usage(false); };
+  liveness_.check(process.runs(), time, usage);
   if (!process.runs()) return;
-  note_health(liveness_.health(limits_.stall, time, [&] { return process.usage(false); }));
+  note_health(liveness_.health(limits_.stall, time, usage));
   kill_if_hung();
 }
 

@@ -16,9 +16,10 @@ std::vector<pid_t> descendants(pid_t process);
 /// The resources used by processes, summed.
 struct Usage {
   std::chrono::nanoseconds processor{0};  ///< CPU time, with that of children that have ended
-  std::uint64_t memory = 0;               ///< proportional set size (PSS) [byte]
-  bool is_stopped = false;                ///< one is stopped by a signal or a debugger
-  bool is_traced = false;                 ///< one is stopped in a debugger
+  std::chrono::nanoseconds waited{0};  ///< their first threads have been runnable, but not running
+  std::uint64_t memory = 0;            ///< proportional set size (PSS) [byte]
+  bool is_stopped = false;             ///< one is stopped by a signal or a debugger
+  bool is_traced = false;              ///< one is stopped in a debugger
 };
 
 /// @param with_memory  whether to read `memory`, which costs more than the rest.
