@@ -160,6 +160,7 @@ struct Renderer::State {
   GLuint program = 0;
   GLint projection = 0, T_camera_object = 0, to_light = 0, ambient = 0, diffuse = 0;
   std::vector<Surface> surfaces;
+  std::vector<SurfaceId> removed;  // numbers for the next ones
   Target target;
   cv::Mat rgba, raw_depth;
 
@@ -211,9 +212,26 @@ SurfaceId Renderer::add(const Mesh& mesh, const cv::Mat& texture) {
     glVertexAttribPointer(number++, size, GL_FLOAT, GL_FALSE, sizeof(Vertex), place);
   }
   glGenTextures(1, &surface.texture);
-  state_->surfaces.push_back(surface);
-  set_texture(state_->surfaces.size() - 1, texture);
-  return state_->surfaces.size() - 1;
+  SurfaceId id = state_->surfaces.size();
+  if (state_->removed.empty()) {
+    state_->surfaces.push_back(surface);
+  } else {
+    id = state_->removed.back();
+    state_->removed.pop_back();
+    state_->surfaces[id] = surface;
+  }
+  set_texture(id, texture);
+  return id;
+}
+
+void Renderer::remove(SurfaceId surface) {
+  Surface& freed = state_->surfaces.at(surface);
+  glDeleteVertexArrays(1, &freed.vertices);
+  glDeleteBuffers(1, &freed.corners);
+  glDeleteBuffers(1, &freed.indices);
+  glDeleteTextures(1, &freed.texture);
+  freed = {};
+  state_->removed.push_back(surface);
 }
 
 void Renderer::set_texture(SurfaceId surface, const cv::Mat& texture) {

@@ -48,6 +48,8 @@ class Renderer {
   SurfaceId add(const Mesh& mesh, const cv::Mat& texture);
   /// Replaces the texture of a surface.
   void set_texture(SurfaceId surface, const cv::Mat& texture);
+  /// Removes a surface; a later one may get its number.
+  void remove(SurfaceId surface);
 
   /// @param T_world_camera  optical frame.
   /// @param[out] rgb  (H, W, 3) u8, red, green, blue; allocated if it has another shape.

@@ -100,6 +100,20 @@ TEST_F(Drawing, the_same_is_the_same_to_the_byte_and_sizes_may_change) {
   EXPECT_EQ(cv::norm(first, draw({at(ball, 0.1F, 0.1F, 2)}), cv::NORM_INF), 0);
 }
 
+TEST_F(Drawing, the_number_of_a_removed_surface_is_used_again) {
+  const auto small = renderer->add(make_rectangle(0.2F, 0.2F), plain({255, 0, 0}));
+  const auto kept = renderer->add(make_rectangle(0.4F, 0.4F), plain({0, 255, 0}));
+  renderer->remove(small);
+  EXPECT_EQ(lit(draw({at(small, 0, 0, 1), at(kept, 0, 0, 2)}))[2],
+            lit(draw({at(kept, 0, 0, 2)}))[2]);
+  const auto large = renderer->add(make_rectangle(0.6F, 0.6F), plain({0, 0, 255}));
+  EXPECT_EQ(large, small);
+  const cv::Mat drawn = draw({at(large, 0, 0, 1), at(kept, 0, 0, 2)});
+  EXPECT_EQ(drawn.at<cv::Vec3b>(110, 150), cv::Vec3b(0, 0, 255));
+  EXPECT_EQ(drawn.at<cv::Vec3b>(110, 150 + 70), cv::Vec3b(0, 0, 255));
+  EXPECT_NE(renderer->add(make_rectangle(1, 1), plain({9, 9, 9})), kept);
+}
+
 TEST_F(Drawing, an_image_that_is_too_large_is_refused) {
   camera.width = 1 << 20;
   cv::Mat rgb;

@@ -2,13 +2,11 @@
 #include <room/paint.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <functional>
 #include <sstream>
 #include <vector>
 
+#include <graphics/text.h>
 #include <vision/marker_finder.h>
-#include <opencv2/freetype.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace hc::room {
@@ -17,49 +15,6 @@ namespace {
 
 constexpr int kCell = 8;  // of a marker [px]
 const cv::Scalar kInk(20, 20, 25);
-const char* const kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";  // fonts-dejavu-core
-
-/// Measures and draws text in a font, with OpenCV's scale and stroke.
-struct Pen {
-  std::function<cv::Size(const std::string&, double scale, int stroke, int& below)> measure;
-  std::function<void(cv::Mat&, const std::string&, cv::Point, double scale, int stroke)> write;
-};
-
-/// OpenCV's stroke font, which has only ASCII; other letters become "?".
-Pen stroked_pen() {
-  constexpr int kDuplex = cv::FONT_HERSHEY_DUPLEX;
-  const auto plain = [](const std::string& text) {
-    std::string each;
-    for (const char letter : text)
-      if (letter >= ' ' && letter <= '~')
-        each += letter;
-      else if ((letter & 0xC0) != 0x80)  // first byte of a UTF-8 character
-        each += '?';
-    return each;
-  };
-  return {[=](const std::string& text, double scale, int stroke, int& below) {
-            return cv::getTextSize(plain(text), kDuplex, scale, stroke, &below);
-          },
-          [=](cv::Mat& image, const std::string& text, cv::Point at, double scale, int stroke) {
-            cv::putText(image, plain(text), at, kDuplex, scale, kInk, stroke, cv::LINE_AA);
-          }};
-}
-
-/// A TrueType font for text that is not ASCII, else OpenCV's font.
-Pen pen_for(const std::string& text) {
-  const bool is_ascii =
-      std::all_of(text.begin(), text.end(), [](char letter) { return (letter & 0x80) == 0; });
-  if (is_ascii || !std::filesystem::exists(kFont)) return stroked_pen();
-  auto font = cv::freetype::createFreeType2();
-  font->loadFontData(kFont, 0);
-  const auto height = [](double scale) { return std::max(1, static_cast<int>(30 * scale)); };
-  return {[=](const std::string& each, double scale, int, int& below) {
-            return font->getTextSize(each, height(scale), cv::FILLED, &below);
-          },
-          [=](cv::Mat& image, const std::string& each, cv::Point at, double scale, int) {
-            font->putText(image, each, at, height(scale), kInk, cv::FILLED, cv::LINE_AA, true);
-          }};
-}
 
 }  // namespace
 
@@ -142,7 +97,7 @@ cv::Mat paint_board(const std::string& text, int width, int height) {
   std::vector<std::string> lines;
   std::string line;
   for (std::istringstream all(text); std::getline(all, line);) lines.push_back(line);
-  const Pen pen = pen_for(text);
+  const auto pen = graphics::pen_for(text, kInk);
   const int margin = width / 20;
   const int room = (height - 2 * margin) / std::max(1, static_cast<int>(lines.size()));
   double scale = 1e9;
