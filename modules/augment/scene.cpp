@@ -75,11 +75,13 @@ void Scene::place(hc::ModuleFrames& frames, const Markers& markers, hc::Time tim
 }
 
 bool Scene::is_seen(const Sight& sight) const {
-  return std::ranges::any_of(placed_, [&](const auto& body) {
+  const auto is_body_seen = [&](const auto& body) {
     return std::ranges::any_of(sight.T_world_eye, [&](const auto& T_world_eye) {
       return !hc::graphics::part_of(body, sight.camera, T_world_eye).empty();
     });
-  });
+  };
+  return std::ranges::any_of(placed_, is_body_seen) ||
+         std::ranges::any_of(tags_.bodies(), is_body_seen);
 }
 
 std::vector<double> Scene::corners(const Sight& sight) const {
@@ -104,5 +106,7 @@ hc::Status Scene::draw(const Sight& sight, std::size_t eye, const cv::Mat& depth
   view.nearness = [&](const cv::Rect& part, cv::Mat& nearness) {
     hc::graphics::nearness_of(eye == 1, depth, sight.scale, part, nearness);
   };
-  return overlay_.draw(placed_, view, image, mask);
+  auto all = placed_;
+  all.insert(all.end(), tags_.bodies().begin(), tags_.bodies().end());
+  return overlay_.draw(all, view, image, mask);
 }

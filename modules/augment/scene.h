@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The objects, their poses in the world, and their rendering for both eyes. No ports.
+// The objects and people's name tags, their poses in the world, and their rendering for both eyes.
+// No ports.
 
 #include <map>
 #include <memory>
@@ -12,6 +13,7 @@
 
 #include "objects.h"
 #include "pair.h"
+#include "tags.h"
 
 /// Smoothed poses of markers in the world. A pose is kept while its marker is hidden, since the
 /// marked thing is still there.
@@ -31,7 +33,7 @@ class Markers {
   std::map<int, Seen> seen_;
 };
 
-/// Renders the objects. Owns an OpenGL context: one thread only.
+/// Renders the objects and tags. Owns an OpenGL context: one thread only.
 class Scene {
  public:
   /// Errors: as read_objects(), load().
@@ -41,8 +43,11 @@ class Scene {
   /// Places all objects for a time, except those at markers not yet seen. An unknown frame
   /// name ends the module.
   void place(hc::ModuleFrames& frames, const Markers& markers, hc::Time time);
+  /// Places a tag over each face, for the eyes at a time.
+  void tag(const std::vector<NamedFace>& faces, const Sight& sight) { tags_.place(faces, sight); }
+  /// The placed objects.
   [[nodiscard]] const std::vector<hc::graphics::Body>& bodies() const { return placed_; }
-  /// Whether an eye sees any of them.
+  /// Whether an eye sees any object or tag.
   [[nodiscard]] bool is_seen(const Sight& sight) const;
 
   /// Corners of the objects' bounding boxes, 8 an object: x, y in the left and x, y in the right
@@ -56,10 +61,11 @@ class Scene {
 
  private:
   explicit Scene(std::unique_ptr<hc::graphics::Renderer> renderer)
-      : renderer_(std::move(renderer)), overlay_(*renderer_) {}
+      : renderer_(std::move(renderer)), overlay_(*renderer_), tags_(*renderer_) {}
 
   std::unique_ptr<hc::graphics::Renderer> renderer_;
   hc::graphics::Overlay overlay_;
+  Tags tags_;
   std::vector<Object> objects_;
   std::vector<hc::graphics::Body> bodies_, placed_;  // of all objects; of those with a known pose
 };
