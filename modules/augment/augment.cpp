@@ -27,6 +27,9 @@ Augment::Augment(hc::Module& module) : module_(module) {
   module.on(inputs_.target, [this](const auto& message) { see_target(message); });
   module.on(inputs_.confidence,
             [this](const auto& message) { panel_.confidence = hc::as_mat(message).clone(); });
+  module.on(inputs_.faces, [this](const auto& message) { see_faces(message); });
+  module.on(inputs_.names,
+            [this](const auto& message) { hc::succeed_or_drop(faces_.name(message.text())); });
   module.on(hc::together(inputs_.left, inputs_.right, inputs_.depth),
             [this](const hc::Message& left, const hc::Message& right, const hc::Message& metres) {
               look(left, right, metres);
@@ -75,8 +78,16 @@ void Augment::see_marker(const hc::Message& message) {
 void Augment::see_target(const hc::MessageOf<hc::PositionKind<double>>& message) {
   const auto p = message.numbers();
   if (p.size() < 3) return;
-  const auto time = message.header.time != hc::Time() ? message.header.time : module_.now();
-  panel_.target = Panel::Target{time, message.header.coord, {p[0], p[1], p[2]}};
+  panel_.target = Panel::Target{time_of(message.header), message.header.coord, {p[0], p[1], p[2]}};
+}
+
+void Augment::see_faces(const hc::MessageOf<hc::TableKind<double>>& message) {
+  const auto time = time_of(message.header);
+  auto faces = NamedFaces::read(message.matrix());
+  hc::value_or_drop(frames_.tree().chain("world", "head"));
+  frames_.when_known("world", "head", time, [this, time, faces = std::move(faces)](const auto&) {
+    faces_.see(time, faces, frames_.nearest("world", "head", time));
+  });
 }
 
 void Augment::look(const hc::Message& left, const hc::Message& right, const hc::Message& metres) {
@@ -99,6 +110,7 @@ void Augment::draw(const hc::Message& left, const hc::Message& right, const hc::
   const auto intrinsics = intrinsics_.of(left.header.width, left.header.height);
   const Sight sight = pair_.at(left.header, intrinsics, frames_);
   scene_->place(frames_, markers_, sight.time);
+  scene_->tag(faces_.at(sight.time), sight);
   if (outputs_.corners.linked()) send_corners(sight);
   send(sight, 0, left, metres, outputs_.left);
   send(sight, 1, right, metres, outputs_.right);

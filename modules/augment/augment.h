@@ -12,6 +12,7 @@
 #include <vision/module_cameras.h>
 
 #include "instruments.h"
+#include "named_faces.h"
 #include "objects.h"
 #include "pair.h"
 #include "panel.h"
@@ -43,6 +44,12 @@ struct AugmentInputs {
   hc::Input<hc::IntensityImageKind<std::uint8_t>> confidence =
       module.input("confidence", hc::intensity_image(),
                    "confidence of the depth, for the instrument confidence");
+  hc::Input<hc::TableKind<double>> faces = module.input(
+      "faces", hc::table().of(0, static_cast<int>(NamedFaces::kColumns)).finite(),
+      "faces in the left image, from faces: a tag with the name is over each whose person has one",
+      {.keep = 1});
+  hc::Input<hc::StringKind> names =
+      module.input("names", hc::string(), "lines \"PERSON NAME\", from faces", {.keep = 1});
 
   /// An image of an eye, rectified or as it was taken.
   static hc::AnyKind image(std::int32_t rectified, std::int32_t raw) {
@@ -64,8 +71,8 @@ struct AugmentOutputs {
                     {.on_demand = true,
                      .columns = {"left x [px]", "left y [px]", "right x [px]", "right y [px]"}});
   hc::Output<hc::IntensityImageKind<std::uint8_t>> mask = module.output(
-      "mask", hc::intensity_image(), "of the left image: 255 where an object is visible, else 0",
-      {.on_demand = true});
+      "mask", hc::intensity_image(),
+      "of the left image: 255 where an object or tag is visible, else 0", {.on_demand = true});
 };
 
 struct AugmentParameters {
@@ -101,12 +108,18 @@ class Augment {
   void set_camera(const hc::Message& message);
   void see_marker(const hc::Message& message);
   void see_target(const hc::MessageOf<hc::PositionKind<double>>& message);
+  void see_faces(const hc::MessageOf<hc::TableKind<double>>& message);
   void look(const hc::Message& left, const hc::Message& right, const hc::Message& metres);
   void draw(const hc::Message& left, const hc::Message& right, const hc::Message& metres);
   void send_corners(const Sight& sight);
-  /// Sends an image with the objects and instruments drawn; unchanged if there are none.
+  /// Sends an image with the objects, tags and instruments drawn; unchanged if there are none.
   void send(const Sight& sight, std::size_t eye, const hc::Message& image,
             const hc::Message& metres, Colours& output);
+
+  /// Of a message that may have none.
+  [[nodiscard]] hc::Time time_of(const hc::Header& header) const {
+    return header.time != hc::Time() ? header.time : module_.now();
+  }
 
   hc::Module& module_;
   AugmentInputs inputs_{module_};
@@ -119,5 +132,6 @@ class Augment {
   std::optional<std::string> objects_read_, shown_read_, modes_read_;  // parameters
   Pair pair_;
   Markers markers_;
+  NamedFaces faces_;
   Panel panel_;
 };

@@ -252,6 +252,57 @@ class Augment(Sight):
         self.assertEqual(shown["unsure"], shown["unsure_there"])
         self.assertNotEqual(shown["unsure"], shown["sure"])
 
+    def look_ahead(self):
+        options = "--ball absent --count 1"
+        self.simulate(options, left="left.mtp", right="right.mtp", depth="depth.mtp")
+
+    def tag_of(self, faces, names="1 Anna"):
+        """Columns and rows of the left image that tags cover, the first and the last [px], and what
+        is said. @param faces  rows of a table: person, x, y, z in the head's frame."""
+        width = 21 + max(map(len, faces), default=4) - 1
+        rows = [" ".join(map(str, [0] * 6 + [face[0]] + [0] * 14 + face[1:])) for face in faces]
+        header = "1 1 0 0 8 950000000 120190 0 9 %d %d" % (width, len(faces))
+        self.write("faces.mtp", "\n".join([header, *rows]) + ("\n" if rows else "\n\n"))
+        names = names if isinstance(names, bytes) else names.encode()
+        self.write("names.mtp", b"1 1 0 0 8 1 60100 0 0 %d 1\n%b\n" % (len(names), names))
+        links = "--objects '' --clock messages --in faces=faces.mtp --in names=names.mtp"
+        self.shell(self.augment(links, "mask=- >mask.mtp 2>said"))
+        mask = self.read_bytes("mask.mtp").split(b"\n", 1)[1]
+        places = [i for i, each in enumerate(mask[:480000]) if each > 127] or [0]
+        columns = [i % 800 for i in places]
+        return (min(columns), max(columns), places[0] // 800, places[-1] // 800), self.read("said")
+
+    def test_a_tag_is_over_a_face_whose_person_has_a_name(self):
+        self.look_ahead()
+        # The left eye is 0.06 m ahead, 0.05 m to the left and 0.05 m above the head's origin.
+        (left, right, top, bottom), _ = self.tag_of([[1, 1.56, 0.05, 0.05]])
+        self.assertAlmostEqual((left + right) / 2, 399.5, delta=3)
+        self.assertAlmostEqual((top + bottom) / 2, 299.5 - 600 * 0.22 / 1.5, delta=3)
+        nobody = (0, 0, 0, 0)
+        for faces in ([], [[0, 1.56, 0.05, 0.05]], [[2, 1.56, 0.05, 0.05]], [[1, 9, 0.05, 0.05]]):
+            with self.subTest(faces=faces):
+                self.assertEqual(self.tag_of(faces)[0], nobody)
+
+    def test_bad_faces_and_names_are_said_or_ignored(self):
+        self.look_ahead()
+        good = [1, 1.56, 0.05, 0.05]
+        seen, said = self.tag_of([good])
+        self.assertNotIn("faces", said)
+        for bad in ([1, -2, 0, 0], [1e300, 2, 0, 0], [-1, 2, 0, 0], [1, 0, 0, 0], [1, 1e9, 0, 0]):
+            with self.subTest(bad=bad):
+                self.assertEqual(self.tag_of([bad, good])[0], seen)
+        self.assertIn("faces: ", self.tag_of([[1, "nan", 0.05, 0.05]])[1])
+        self.assertIn("faces: ", self.tag_of([good + [0]])[1])
+        for names in (b"x\n1 Anna", b"\n1 Anna", b"1 Anna\n9999999999999 Ben"):
+            with self.subTest(names=names):
+                found, said = self.tag_of([good], names)
+                self.assertEqual(found, seen)
+                self.assertIn("is not PERSON NAME", said)
+        for names in (b"1 \xff\xfe\x1b[2J", b"1 " + b"a" * 100000):
+            found, said = self.tag_of([good], names)
+            self.assertGreater(found[1] - found[0], seen[1] - seen[0])
+            self.assertNotIn("names", said)
+
     def test_images_pass_where_there_is_nothing_to_draw(self):
         self.simulate("", left="left.mtp", right="right.mtp", depth="depth.mtp")
         self.shell(self.augment("--objects ''", "left=augmented.mtp"))
