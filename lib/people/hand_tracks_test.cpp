@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include <people/made_hand_test.h>
 
 namespace hc::people {
@@ -46,6 +48,44 @@ TEST(HandTracks, continue_a_lost_hand_that_a_new_one_overlaps) {
   EXPECT_TRUE(tracks.update(kFirstSeen + 100ms, {}).empty());
   EXPECT_EQ(tracks.expected(kFirstSeen + 200ms).size(), 1U);
   EXPECT_EQ(tracks.update(kFirstSeen + 200ms, {{0, made_hand({}, {420, 300})}}).at(0).number, 1);
+}
+
+TEST(HandTracks, continue_the_lost_hand_that_a_new_one_overlaps_most) {
+  HandTracks tracks;
+  tracks.update(kFirstSeen, {{0, made_hand({}, {400, 300})}, {0, made_hand({}, {440, 300})}});
+  tracks.update(kFirstSeen + 50ms, {});
+  const auto one = tracks.update(kFirstSeen + 100ms, {{0, made_hand({}, {436, 300})}});
+  ASSERT_EQ(one.size(), 1U);
+  EXPECT_EQ(one[0].number, 2);
+  tracks.update(kFirstSeen + 150ms, {});
+  const auto both = tracks.update(kFirstSeen + 200ms,
+                                  {{0, made_hand({}, {430, 300})}, {0, made_hand({}, {395, 300})}});
+  ASSERT_EQ(both.size(), 2U) << "the first of them overlaps both";
+  EXPECT_LT(both[0].hand.points[0].x, both[1].hand.points[0].x);
+}
+
+TEST(HandTracks, that_are_lost_do_not_continue_in_a_hand_beside_them) {
+  const float width = made_hand({}).box().width;
+  for (const auto& [shift, number] : {std::pair(0.5F, 1), std::pair(0.8F, 2)}) {
+    HandTracks tracks;
+    tracks.update(kFirstSeen, {{0, made_hand({}, {400, 300})}});
+    tracks.update(kFirstSeen + 50ms, {});
+    const Hand beside = made_hand({}, {400 + shift * width, 300});
+    EXPECT_EQ(tracks.update(kFirstSeen + 100ms, {{0, beside}}).at(0).number, number) << shift;
+  }
+}
+
+TEST(HandTracks, that_are_lost_take_no_hand_that_is_followed) {
+  HandTracks tracks;
+  tracks.update(kFirstSeen, {{0, made_hand({}, {400, 300})}, {0, made_hand({}, {600, 300})}});
+  tracks.update(kFirstSeen + 50ms, {{2, made_hand({}, {500, 300})}});
+  const auto one = tracks.update(kFirstSeen + 100ms, {{2, made_hand({}, {405, 300})}});
+  ASSERT_EQ(one.size(), 1U) << "where the other one was";
+  EXPECT_EQ(one[0].number, 2);
+  const auto same = tracks.update(kFirstSeen + 150ms,
+                                  {{1, made_hand({}, {405, 300})}, {2, made_hand({}, {405, 300})}});
+  ASSERT_EQ(same.size(), 1U);
+  EXPECT_EQ(same[0].number, 2) << "the hand where the lost one was expected is the other one";
 }
 
 TEST(HandTracks, end_and_their_numbers_are_not_used_again) {
