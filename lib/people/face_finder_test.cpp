@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -84,6 +86,14 @@ TEST(FaceSearch, takes_images_of_any_size) {
   EXPECT_TRUE(search().look(kStart, cv::Mat()).empty());
 }
 
+TEST(FaceSearch, looks_around_no_box_that_is_no_place) {
+  auto faces = search();
+  const cv::Mat image(60, 80, CV_8UC3, cv::Scalar::all(90));
+  for (const cv::Rect2f& box : {cv::Rect2f(NAN, 0, 9, 9), cv::Rect2f(0, 0, INFINITY, 9),
+                                cv::Rect2f(0, 0, 1e6F, 1e6F), cv::Rect2f(1e12F, 0, 9, 9)})
+    EXPECT_TRUE(faces.look_around(image, box).empty()) << box;
+}
+
 TEST(FaceSearch, follows_faces_by_the_same_numbers) {
   FaceSearch faces = search();
   const cv::Mat image = photograph(3);
@@ -155,7 +165,7 @@ TEST(Identity, is_near_for_one_person_and_far_for_others) {
     const cv::Mat image = photograph(i);
     std::vector<hc::people::Identity> people;
     for (const auto& track : search().look(kStart, image)) {
-      people.push_back(identifier.describe(image, track.face));
+      people.push_back(identifier.describe(image, track.face).value());
       // The same person a little turned, darker and smaller.
       cv::Mat other;
       const auto middle = middle_of(track.face);
@@ -163,7 +173,9 @@ TEST(Identity, is_near_for_one_person_and_far_for_others) {
       other *= 0.7;
       const auto found = face_around(near, other, middle, 1.6F * track.face.box.width);
       ASSERT_TRUE(found);
-      EXPECT_LT(hc::people::distance(people.back(), identifier.describe(other, *found)), 0.4F) << i;
+      EXPECT_LT(hc::people::distance(people.back(), identifier.describe(other, *found).value()),
+                0.4F)
+          << i;
     }
     for (std::size_t a = 0; a < people.size(); ++a)
       for (std::size_t b = 0; b < a; ++b)

@@ -36,6 +36,9 @@ std::vector<Face> FaceSearch::look_around(const cv::Mat& image, const cv::Rect2f
   // As in a picture of one person, for which the network was made.
   const cv::Point2f middle = (box.tl() + box.br()) / 2;
   const float side = 2.5F * std::max(box.width, box.height);
+  // A track that jumps may be expected anywhere, with any size.
+  const auto most = 8 * static_cast<float>(std::max(image.cols, image.rows));
+  if (!(side <= most && std::abs(middle.x) <= most && std::abs(middle.y) <= most)) return {};
   const cv::Rect around(cv::Rect2f(middle.x - side / 2, middle.y - side / 2, side, side));
   if ((around & cv::Rect({}, image.size())).empty()) return {};
   return near_.find(image, around, least);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <people/hand_landmarks.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
@@ -24,6 +25,23 @@ cv::Mat input_of(const cv::Mat& image, const Region& region) {
   if (turned.channels() == 1) cv::cvtColor(turned, turned, cv::COLOR_GRAY2RGB);
   turned.convertTo(input, CV_32F, 1 / 255.0);
   return input;
+}
+
+/// Whether numbers can be those of a hand in or beside an image. Those of foreign weights need not
+/// even be finite: regions of images, and casts to int, rely on it.
+bool is_hand(const Hand& hand, const cv::Size& image) {
+  constexpr float kFar = 4;  // sides of the image
+  const float most = kFar * static_cast<float>(std::max(image.width, image.height));
+  constexpr float kLargest = 1;  // from the hand's middle [m]
+  return hand.presence >= 0 && hand.presence <= 1 &&
+         std::ranges::all_of(hand.points,
+                             [&](const cv::Point2f& point) {
+                               return std::abs(point.x) <= most && std::abs(point.y) <= most;
+                             }) &&
+         std::ranges::all_of(hand.world, [](const cv::Point3f& point) {
+           return std::abs(point.x) <= kLargest && std::abs(point.y) <= kLargest &&
+                  std::abs(point.z) <= kLargest;
+         });
 }
 
 }  // namespace
@@ -58,7 +76,7 @@ Hand HandLandmarks::find(const cv::Mat& image, const Region& region) {
   hand.presence = outputs[1].at<float>(0);
   // The network was trained with mirrored images, as a person sees them who looks at the screen.
   hand.side = outputs[2].at<float>(0) > 0.5F ? Hand::Side::Right : Hand::Side::Left;
-  return hand;
+  return is_hand(hand, image.size()) ? hand : Hand();
 }
 
 }  // namespace hc::people

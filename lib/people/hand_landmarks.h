@@ -27,6 +27,7 @@ class HandLandmarks {
 
   /// @param image  (height, width) of u8, RGB or grey, not mirrored.
   /// @param region  with the wrist below and the fingers above; may extend beyond the image.
+  /// @returns  finite numbers; a presence of 0 where the network's are not, or are no hand's.
   Hand find(const cv::Mat& image, const Region& region);
 
  private:

@@ -18,6 +18,11 @@ constexpr Face::Point kPoints[] = {Face::RightEye, Face::LeftEye, Face::Nose, Fa
 
 }  // namespace
 
+bool is_identity(const Identity& numbers) {
+  constexpr float kMost = 10;
+  return std::ranges::all_of(numbers, [](float each) { return std::abs(each) < kMost; });
+}
+
 float distance(const Identity& a, const Identity& b) {
   float sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
@@ -60,13 +65,14 @@ Result<Identifier> Identifier::make(std::unique_ptr<nets::Network> network) {
   return Identifier(std::move(network));
 }
 
-Identity Identifier::describe(const cv::Mat& image, const Face& face) {
+std::optional<Identity> Identifier::describe(const cv::Mat& image, const Face& face) {
   cv::Mat input;
   face_chip(image, face).convertTo(input, CV_32F, 1 / 256.0);
   input -= cv::Scalar(122.782, 117.001, 104.298) / 256;  // Source: dlib, input_rgb_image_sized
   const auto outputs = network_->run(input);
   Identity identity;
   std::copy_n(outputs[0].begin<float>(), identity.size(), identity.begin());
+  if (!is_identity(identity)) return std::nullopt;
   return identity;
 }
 

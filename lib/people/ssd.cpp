@@ -2,6 +2,7 @@
 #include <people/ssd.h>
 
 #include <cmath>
+#include <span>
 
 #include <opencv2/imgproc.hpp>
 
@@ -22,6 +23,14 @@ void add_anchors(const Ssd::Grid& grid, std::vector<cv::Point2f>& anchors) {
 
 float sigmoid(float value) {
   return 1 / (1 + std::exp(-std::clamp(value, -100.F, 100.F)));
+}
+
+/// Whether what a network says of an anchor is in its image or beside it, which numbers of foreign
+/// weights need not be, nor finite: what sorts and merges, and sizes of images, rely on it.
+bool is_near(std::span<const float> numbers, int side) {
+  constexpr float kFar = 2;  // sides
+  const float most = kFar * static_cast<float>(side);
+  return std::ranges::all_of(numbers, [&](float each) { return std::abs(each) <= most; });
 }
 
 /// A square of an image as the network takes it, f32; black outside of the image.
@@ -84,9 +93,10 @@ std::vector<Ssd::Candidate> Ssd::candidates(const cv::Mat& image, const cv::Rect
   for (std::size_t i = 0; i < anchors_.size(); ++i) {
     const auto row = static_cast<int>(i);
     const float score = sigmoid(outputs_[1].at<float>(row, 0));
-    if (!(score >= least)) continue;
-    candidates.push_back({score, outputs_[0].ptr<float>(row),
-                          square.tl() + anchors_[i] * square.width,
+    const auto* numbers = outputs_[0].ptr<float>(row);
+    const auto count = static_cast<std::size_t>(outputs_[0].cols);
+    if (!(score >= least) || !is_near({numbers, count}, side)) continue;
+    candidates.push_back({score, numbers, square.tl() + anchors_[i] * square.width,
                           square.width / static_cast<float>(side)});
   }
   return candidates;

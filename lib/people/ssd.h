@@ -40,7 +40,8 @@ class Ssd {
                           std::size_t points, Range range, std::string_view what);
 
   /// The detections in a part of an image, which may extend beyond it, unmerged, in any order. The
-  /// network sees a square with the part in its middle.
+  /// network sees a square with the part in its middle. Their numbers are finite, and they are at
+  /// most two sides of it away.
   /// @param image  (height, width) of u8, RGB or grey. @param least  of their scores.
   template <typename Detection>
   std::vector<Detection> find(const cv::Mat& image, const cv::Rect& part, float least) {

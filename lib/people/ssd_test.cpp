@@ -4,6 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <people/made_network_test.h>
 
 namespace hc::people {
 namespace {
@@ -29,6 +35,29 @@ TEST(Ssd, boxes_that_overlap_are_merged_into_their_weighted_mean) {
 TEST(Ssd, empty_boxes_are_kept_apart) {
   EXPECT_TRUE(merged<Thing>({}).empty());
   EXPECT_TRUE(merged<Thing>({{{}, 0.9F, {}}, {{}, 0.8F, {}}}).empty());
+}
+
+TEST(Ssd, numbers_that_are_no_places_are_no_detections) {
+  cv::Mat numbers = cv::Mat::zeros(2, 6, CV_32F), scores = cv::Mat::ones(2, 1, CV_32F);
+  numbers.col(2) = 2;
+  numbers.col(3) = 2;
+  auto ssd =
+      Ssd::make(std::make_unique<MadeNetwork>(nets::Shape{4, 4, 3}, std::vector{numbers, scores}),
+                {{1, 2}}, 1, {}, "things");
+  ASSERT_TRUE(ssd);
+  const cv::Mat image(40, 40, CV_8UC3, cv::Scalar::all(90));
+  const auto found = [&] { return ssd->find<Thing>(image, {0, 0, 40, 40}, 0.5F).size(); };
+  EXPECT_EQ(found(), 2U);
+  for (const float wrong : {NAN, INFINITY, -INFINITY, 1e30F, 9.F})
+    for (int i = 0; i < numbers.cols; ++i) {
+      const float right = std::exchange(numbers.at<float>(1, i), wrong);
+      EXPECT_EQ(found(), 1U) << wrong << " in column " << i;
+      numbers.at<float>(1, i) = right;
+    }
+  scores.at<float>(1) = NAN;
+  EXPECT_EQ(found(), 1U);
+  scores.at<float>(1) = -INFINITY;
+  EXPECT_EQ(found(), 1U);
 }
 
 }  // namespace

@@ -108,7 +108,8 @@ void Faces::describe(hc::Time time, const cv::Mat& image, const std::vector<Trac
   const auto due = views_.due(time, seen);
   if (!due) return;
   const Track& track = seen[*due];
-  views_.add(track.number, time, networks_->identifier.describe(image, track.face));
+  if (const auto view = networks_->identifier.describe(image, track.face))
+    views_.add(track.number, time, *view);
 }
 
 void Faces::look_right(const hc::Message& message) {
