@@ -4,15 +4,21 @@
 #include <algorithm>
 
 #include <people/face_search.h>
+#include <people/sign.h>
 
 namespace hc::people {
 
-bool SearchTimes::is_due(Time time, std::size_t followed, std::size_t most, bool is_anybody) {
-  if (followed >= most) return false;
+bool SearchTimes::is_due(Time time, std::size_t followed, bool is_anybody) {
   const auto period = followed > 0 ? kSome : is_anybody ? kNone : kNobody;
   if (last_ && std::chrono::abs(time - *last_) < period) return false;
   last_ = time;
   return true;
+}
+
+void HandSearch::add(const HandTracks::Sighting& found,
+                     std::vector<HandTracks::Sighting>& hands) const {
+  if (found.hand.presence < kHandIsThere) return;
+  if (hands.size() < most_ || sign_of(found.hand) == Sign::Open) hands.push_back(found);
 }
 
 void HandSearch::search(const cv::Mat& image, std::vector<HandTracks::Sighting>& hands) {
@@ -21,14 +27,13 @@ void HandSearch::search(const cv::Mat& image, std::vector<HandTracks::Sighting>&
   for (const cv::Rect& part : parts_of(image.size()))
     if (part.size() != image.size()) parts.push_back(part);
   for (const Palm& palm : palms_.find(image, parts[next_part_++ % parts.size()])) {
-    if (hands.size() >= most_) return;
+    if (hands.size() > most_) return;
     const cv::Point2f middle = region_of(palm).middle;
     const bool is_known = std::any_of(hands.begin(), hands.end(), [&](const auto& one) {
       return one.hand.box().contains(middle);
     });
     if (is_known) continue;
-    const Hand hand = landmarks_.find(image, region_of(palm));
-    if (hand.presence >= kHandIsThere) hands.push_back({0, hand});
+    add({0, landmarks_.find(image, region_of(palm))}, hands);
   }
 }
 
@@ -36,11 +41,10 @@ std::vector<HandTrack> HandSearch::look(Time time, const cv::Mat& image, bool is
   if (image.empty()) return {};
   std::vector<HandTracks::Sighting> hands;
   for (const auto& [number, region] : tracks_.expected(time)) {
-    if (hands.size() >= most_) break;
-    const Hand hand = landmarks_.find(image, region);
-    if (hand.presence >= kHandIsThere) hands.push_back({number, hand});
+    if (hands.size() > most_) break;
+    add({number, landmarks_.find(image, region)}, hands);
   }
-  if (times_.is_due(time, hands.size(), most_, is_anybody)) search(image, hands);
+  if (hands.size() <= most_ && times_.is_due(time, hands.size(), is_anybody)) search(image, hands);
   return tracks_.update(time, hands);
 }
 

@@ -17,25 +17,27 @@ namespace hc::people {
 /// When to search for palms. Pure.
 class SearchTimes {
  public:
-  /// Between searches, while no hand is followed, and while some are but not enough.
+  /// Between searches, while no hand is followed, and while some are.
   static constexpr std::chrono::milliseconds kNone{200}, kSome{500};
   /// The same where nobody is in view, though a hand may be.
   static constexpr std::chrono::milliseconds kNobody{1000};
 
   /// Whether to search now, which the caller then does.
-  bool is_due(Time time, std::size_t followed, std::size_t most, bool is_anybody = true);
+  bool is_due(Time time, std::size_t followed, bool is_anybody = true);
 
  private:
   std::optional<Time> last_;
 };
 
-/// Follows known hands by the network of their points alone, and searches for others now and then
-/// while these are too few: in all of the image and in its parts, in turn.
+/// Follows known hands by the network of their points alone, and searches for others now and then:
+/// in all of the image and in its parts, in turn. While enough are followed it searches for one
+/// more that is open and up, since that is a command to stop, and follows it as long as it is.
 ///
-/// Cost: 14 ms for each known hand, of one core; 30 ms for a search and 14 ms for each new hand.
+/// Cost: 14 ms for each known hand, of one core; 30 ms for a search and 14 ms for each other hand
+/// that it sees.
 class HandSearch {
  public:
-  /// @param most  hands that are followed.
+  /// @param most  hands that are followed, beside one that is open and up.
   HandSearch(PalmFinder palms, HandLandmarks landmarks, std::size_t most = 2)
       : palms_(std::move(palms)), landmarks_(std::move(landmarks)), most_(most) {}
 
@@ -50,6 +52,8 @@ class HandSearch {
 
  private:
   void search(const cv::Mat& image, std::vector<HandTracks::Sighting>& hands);
+  /// Takes a hand that was found, if it is to be followed.
+  void add(const HandTracks::Sighting& found, std::vector<HandTracks::Sighting>& hands) const;
 
   PalmFinder palms_;
   HandLandmarks landmarks_;

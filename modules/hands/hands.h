@@ -112,8 +112,9 @@ class Hands {
   hc::Parameter<std::string> landmarks_ = module_.parameter(
       "landmarks", "", "", "file of the network that finds their points; \"\": the installed one",
       {.fixed = true});
-  hc::Parameter<std::int64_t> most_ =
-      module_.parameter("most", 2, "", "hands that are followed at most", {.min = 1, .max = 8});
+  hc::Parameter<std::int64_t> most_ = module_.parameter(
+      "most", 2, "", "hands that are followed at most, beside one that is open and up",
+      {.min = 1, .max = 8});
   hc::ModuleFrames frames_{module_};
   hc::vision::ModulePair pair_{module_, frames_, "places pointed at have no true scale"};
 
