@@ -3,6 +3,7 @@
 // A face in an image. Pure.
 
 #include <array>
+#include <cstddef>
 
 #include <opencv2/core/types.hpp>
 
@@ -11,7 +12,8 @@ namespace hc::people {
 /// A face. Left and right are the person's own.
 struct Face {
   /// In the order of the network's numbers.
-  enum Point { RightEye, LeftEye, Nose, Mouth, RightEar, LeftEar, kPoints };
+  enum Point { RightEye, LeftEye, Nose, Mouth, RightEar, LeftEar };
+  static constexpr std::size_t kPoints = LeftEar + 1;
 
   cv::Rect2f box;                           ///< from the eyebrows to the chin [px]
   float score = 0;                          ///< 0 … 1

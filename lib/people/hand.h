@@ -31,9 +31,9 @@ struct Hand {
     Ring,
     RingTip = Ring + 3,
     Little,
-    LittleTip = Little + 3,
-    kPoints
+    LittleTip = Little + 3
   };
+  static constexpr std::size_t kPoints = LittleTip + 1;
   /// The person's own.
   enum class Side { Left, Right };
 

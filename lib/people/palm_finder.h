@@ -3,6 +3,7 @@
 // Finds the palms of hands in images, by a small neural network (MediaPipe's palm detection).
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -18,7 +19,8 @@ namespace hc::people {
 /// The palm of a hand.
 struct Palm {
   /// In the order of the network's numbers: knuckles, and two joints of the thumb.
-  enum Point { Wrist, Index, Middle, Ring, Little, Thumb, ThumbKnuckle, kPoints };
+  enum Point { Wrist, Index, Middle, Ring, Little, Thumb, ThumbKnuckle };
+  static constexpr std::size_t kPoints = ThumbKnuckle + 1;
 
   cv::Rect2f box;                           ///< without the fingers [px]
   float score = 0;                          ///< 0 … 1
