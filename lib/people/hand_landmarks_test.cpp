@@ -17,10 +17,9 @@ namespace {
 constexpr int kSide = 224, kNumbers = 63;
 
 TEST(HandLandmarks, that_are_no_hands_are_none) {
-  std::vector<cv::Mat> said{cv::Mat(1, kNumbers, CV_32F, cv::Scalar(100)),
-                            cv::Mat(1, 1, CV_32F, cv::Scalar(0.9)),
-                            cv::Mat(1, 1, CV_32F, cv::Scalar(1)),
-                            cv::Mat(1, kNumbers, CV_32F, cv::Scalar(0.1))};
+  std::vector<cv::Mat> said{
+      cv::Mat(1, kNumbers, CV_32F, cv::Scalar(100)), cv::Mat(1, 1, CV_32F, cv::Scalar(0.9)),
+      cv::Mat(1, 1, CV_32F, cv::Scalar(1)), cv::Mat(1, kNumbers, CV_32F, cv::Scalar(0.1))};
   auto landmarks =
       HandLandmarks::make(std::make_unique<MadeNetwork>(nets::Shape{kSide, kSide, 3}, said));
   ASSERT_TRUE(landmarks);

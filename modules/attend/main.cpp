@@ -2,20 +2,19 @@
 // Chooses the person at whom to look: the one who is held, who speaks, or who is nearest.
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include <frames/messages.h>
 #include <frames/module_frames.h>
 #include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <people/attention.h>
+#include <people/face_table.h>
 #include <transports/all.h>
 
 namespace {
 
 using hc::people::Attention;
-
-// Columns of the table `faces`.
-constexpr std::size_t kColumns = 24, kTrack = 5, kPerson = 6, kPlace = 21;
 
 bool is_track(double number) {
   constexpr double kMost = 1e9;
@@ -50,20 +49,18 @@ class Attend {
       attention_.set_options({.hold = hc::duration(*keep_)});
       const auto T_robot_head = frames_.nearest("robot", "head", time);
       const auto rows = faces.matrix();
-      for (std::size_t i = 0; i < rows.height(); ++i) {
-        const auto row = rows.row(i);
-        const Eigen::Vector3d p(row[kPlace], row[kPlace + 1], row[kPlace + 2]);
-        if (!is_track(row[kTrack]) || row[kTrack] < 1 || !is_place(p)) continue;
-        attention_.see(static_cast<int>(row[kTrack]), time,
-                       {pan_of(T_robot_head.linear() * p), p.norm()});
-      }
+      std::vector<hc::people::FaceRow> seen;
+      for (std::size_t i = 0; i < rows.height(); ++i)
+        if (const auto face = hc::people::face_in(rows.row(i)); face && is_place(face->place))
+          seen.push_back(*face);
+      for (const auto& [face, track, person, p] : seen)
+        attention_.see(track, time, {pan_of(T_robot_head.linear() * p), p.norm()});
       const auto choice = attention_.choose(time);
       if (choice != last_) tell(time, last_ = choice);
-      for (std::size_t i = 0; choice && i < rows.height(); ++i) {
-        const auto row = rows.row(i);
-        if (row[kTrack] != choice->track) continue;
-        target_.send({row[kPlace], row[kPlace + 1], row[kPlace + 2]}, time, hc::Coord::kHead);
-        attended_.send({row[kTrack], row[kPerson], double(choice->reason)}, time);
+      for (const auto& [face, track, person, p] : seen) {
+        if (!choice || track != choice->track) continue;
+        target_.send({p.x(), p.y(), p.z()}, time, hc::Coord::kHead);
+        attended_.send({double(track), double(person), double(choice->reason)}, time);
       }
     });
   }
@@ -94,7 +91,7 @@ class Attend {
 
   hc::Module& module_;
   hc::Input<hc::TableKind<double>> faces_ = module_.input(
-      "faces", hc::table().of(0, static_cast<int>(kColumns)).finite(), "faces of module faces");
+      "faces", hc::table().of(0, hc::people::kFaceColumns).finite(), "faces of module faces");
   hc::Input<hc::RotationKind<double>> direction_ =
       module_.input("direction", hc::rotation().of(1, 1).in(hc::Coord::kHead).finite(),
                     "direction of a sound, from hearing", {.keep = 64});

@@ -8,6 +8,7 @@
 #include <frames/module_frames.h>
 #include <gaze/attend_score.h>
 #include <hc/module/module.h>
+#include <people/face_table.h>
 #include <transports/all.h>
 
 namespace {
@@ -16,8 +17,6 @@ using Rows = hc::MatrixView<const double>;
 
 // Columns of the simulator's people.
 enum PersonColumn { kNumber, kX, kY, kZ, kYaw, kSpeaks, kU, kV, kWidth, kVisible, kPersonColumns };
-// Columns of faces.
-constexpr std::size_t kPerson = 6, kRightEye = 7, kLeftEye = 9, kFaceColumns = 24;
 
 /// @param T_eye_world  of an optical frame midway between the eyes.
 std::vector<hc::gaze::TruePerson> people_of(const Rows& rows,
@@ -40,10 +39,12 @@ std::vector<hc::gaze::TruePerson> people_of(const Rows& rows,
 std::vector<hc::gaze::NamedFace> faces_of(const Rows& rows) {
   std::vector<hc::gaze::NamedFace> faces;
   for (std::size_t i = 0; i < rows.height(); ++i) {
-    const auto row = rows.row(i);
-    faces.push_back(
-        {{(row[kRightEye] + row[kLeftEye]) / 2, (row[kRightEye + 1] + row[kLeftEye + 1]) / 2},
-         static_cast<int>(row[kPerson])});
+    const auto face = hc::people::face_in(rows.row(i));
+    if (!face) continue;
+    using hc::people::Face;
+    const auto& points = face->face.points;
+    const cv::Point2d eyes = (points[Face::RightEye] + points[Face::LeftEye]) / 2;
+    faces.push_back({{eyes.x, eyes.y}, face->person});
   }
   return faces;
 }
@@ -60,8 +61,8 @@ int main(int argc, char** argv) {
                           "truth: T_world_left_eye", {.keep = 64});
   auto truth = module.input("people", hc::table().of(0, kPersonColumns), "truth: of the simulator",
                             {.keep = 64});
-  auto faces =
-      module.input("faces", hc::table().of(0, kFaceColumns), "faces of module faces", {.keep = 64});
+  auto faces = module.input("faces", hc::table().of(0, hc::people::kFaceColumns),
+                            "faces of module faces", {.keep = 64});
   auto result =
       module.output("score", hc::table().of(1, 8), "at the end",
                     {.columns = {"RMS error [rad]", "on target [s]", "overshoot [rad]",

@@ -10,12 +10,9 @@
 #include <frames/messages.h>
 #include <hc/base/format.h>
 #include <nets/weights.h>
-#include <people/short_number.h>
 #include <vision/messages.h>
 
 using hc::people::Face;
-using hc::people::short_number;
-using hc::people::short_pixel;
 using hc::people::Track;
 
 namespace {
@@ -136,7 +133,7 @@ Eigen::Vector3d Faces::place(const hc::Header& image, const Track& track) {
 }
 
 void Faces::send(const hc::Header& image, const std::vector<Track>& seen) {
-  auto draft = faces_.loan(static_cast<std::int32_t>(seen.size()), kColumns);
+  auto draft = faces_.loan(static_cast<std::int32_t>(seen.size()), hc::people::kFaceColumns);
   draft.header.time = image.time;
   draft.header.coord = image.coord;
   std::optional<Eigen::Vector3d> nearest;
@@ -144,18 +141,7 @@ void Faces::send(const hc::Header& image, const std::vector<Track>& seen) {
     const auto& [number, face, time] = seen[i];
     const auto p = place(image, seen[i]);
     if (!nearest || p.norm() < nearest->norm()) nearest = p;
-    auto to = draft.matrix().row(i).begin();
-    for (const float each : {face.box.x, face.box.y, face.box.width, face.box.height})
-      *to++ = short_pixel(each);
-    *to++ = short_number(face.score);
-    *to++ = number;
-    *to++ = person(number);
-    for (const auto& point : face.points) {
-      *to++ = short_pixel(point.x);
-      *to++ = short_pixel(point.y);
-    }
-    for (const double each : {double(face.roll()), double(face.yaw()), p.x(), p.y(), p.z()})
-      *to++ = short_number(each);
+    write(hc::people::FaceRow{face, number, person(number), p}, draft.matrix().row(i));
   }
   faces_.send(std::move(draft));
   if (nearest) target_.send({nearest->x(), nearest->y(), nearest->z()}, image.time);

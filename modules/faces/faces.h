@@ -9,6 +9,7 @@
 #include <hc/module/module.h>
 #include <people/face_distances.h>
 #include <people/face_search.h>
+#include <people/face_table.h>
 #include <people/identity.h>
 #include <people/track_views.h>
 #include <vision/module_cameras.h>
@@ -26,8 +27,6 @@ class Faces {
     hc::people::FaceSearch search;
     hc::people::Identifier identifier;
   };
-
-  static constexpr int kColumns = 24;  // of faces
 
   void start();
   /// Looks at a left image, once it is known how the head was turned then.
@@ -68,30 +67,7 @@ class Faces {
       "faces", hc::table(),
       "a row for each face of the left image, in its coordinate system; person 0 is nobody known; "
       "x y z: the middle between the eyes, in the head's frame",
-      {.columns = {"x [px]",
-                   "y [px]",
-                   "width [px]",
-                   "height [px]",
-                   "score",
-                   "track",
-                   "person",
-                   "right eye x [px]",
-                   "right eye y [px]",
-                   "left eye x [px]",
-                   "left eye y [px]",
-                   "nose x [px]",
-                   "nose y [px]",
-                   "mouth x [px]",
-                   "mouth y [px]",
-                   "right ear x [px]",
-                   "right ear y [px]",
-                   "left ear x [px]",
-                   "left ear y [px]",
-                   "roll [rad]",
-                   "yaw [rad]",
-                   "x [m]",
-                   "y [m]",
-                   "z [m]"}});
+      {.columns = hc::people::face_columns()});
   hc::Output<hc::PositionKind<double>> target_ =
       module_.output("target", hc::position().in(hc::Coord::kHead),
                      "the nearest face: the middle between its eyes; nothing while there is none");

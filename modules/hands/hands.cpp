@@ -14,12 +14,10 @@
 
 using hc::people::Hand;
 using hc::people::short_number;
-using hc::people::short_pixel;
 using hc::people::Sign;
 
 namespace {
 
-constexpr std::int32_t kColumns = 4 + 2 * Hand::kPoints;
 /// How long the depth of a hand stays about the same.
 constexpr std::chrono::milliseconds kDepthLives{500};
 
@@ -37,19 +35,6 @@ hc::vision::Pinhole lens_of(const hc::vision::PairIntrinsics& pair) {
 
 }  // namespace
 
-std::vector<std::string> columns_of_hands() {
-  std::vector<std::string> columns{"track", "side", "presence", "sign"};
-  std::vector<std::string> points{"wrist"};
-  for (const auto* part : {"base", "knuckle", "joint", "tip"})
-    points.push_back(std::string("thumb ") + part);
-  for (const auto* finger : {"index", "middle", "ring", "little"})
-    for (const auto* part : {"knuckle", "joint", "last joint", "tip"})
-      points.push_back(std::string(finger) + " " + part);
-  for (const auto& point : points)
-    for (const auto* axis : {" x [px]", " y [px]"}) columns.push_back(point + axis);
-  return columns;
-}
-
 Hands::Hands(hc::Module& module) : module_(module) {
   module.on_start([this] { start(); });
   module.on(left_, [this](const hc::Image& image) {
@@ -64,7 +49,7 @@ Hands::Hands(hc::Module& module) : module_(module) {
   });
   module.on(faces_, [this](const hc::MessageOf<hc::TableKind<double>>& faces) {
     if (faces.matrix().height() > 0) last_face_ = time_of(faces);
-    hc::succeed_or_drop(seen_faces_.take(time_of(faces), faces.matrix()));
+    seen_faces_.take(time_of(faces), faces.matrix());
   });
 }
 
@@ -107,20 +92,14 @@ std::vector<hc::people::HandTrack> Hands::look(const hc::Message& message) {
 }
 
 void Hands::send(const hc::Header& image, const std::vector<HandTrack>& tracks) {
-  auto draft = hands_.loan(static_cast<std::int32_t>(tracks.size()), kColumns);
+  auto draft = hands_.loan(static_cast<std::int32_t>(tracks.size()), hc::people::kHandColumns);
   draft.header.time = image.time;
   draft.header.coord = image.coord;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const auto& [number, hand, seen] = tracks[i];
-    auto to = draft.matrix().row(i).begin();
-    *to++ = number;
-    *to++ = hand.side == Hand::Side::Right ? 1 : 0;
-    *to++ = short_number(hand.presence);
-    *to++ = static_cast<double>(hc::people::sign_of(hand));
-    for (const auto& point : hand.points) {
-      *to++ = short_pixel(point.x);
-      *to++ = short_pixel(point.y);
-    }
+    write(hc::people::HandRow{number, hand.side, hand.presence, hc::people::sign_of(hand),
+                              hand.points},
+          draft.matrix().row(i));
   }
   hands_.send(std::move(draft));
 }
@@ -160,8 +139,7 @@ void Hands::aim(const hc::Message* right) {
   const auto joints = joints_of(track, right);
   if (!joints) return;
   const auto T = T_head_camera(track.seen);
-  const auto eyes =
-      seen_faces_.eyes_near(track.seen, (*joints)[Hand::IndexTip], lens_of(pair()), T);
+  const auto eyes = seen_faces_.eyes_near(track.seen, (*joints)[Hand::IndexTip], T);
   const auto ray = hc::people::pointing_ray(*joints, eyes);
   aims_.add({track.seen, ray});
   const Eigen::Vector3d from = T * ray.from, direction = T.linear() * ray.direction;
@@ -186,7 +164,7 @@ std::optional<hc::people::Joints> Hands::joints_of(const HandTrack& track,
     const Hand other = search_->look_at(hc::value_or_drop(hc::as_mat(*right)),
                                         hc::people::region_in_right(track.hand, disparity));
     if (other.presence >= hc::people::kHandIsThere)
-      if (const auto by_eyes =
+      if (auto by_eyes =
               hc::people::joints_by_eyes(track.hand, other, lens_of(cameras), cameras.baseline))
         return by_eyes;
   }

@@ -11,17 +11,16 @@
 
 #include <frames/module_frames.h>
 #include <hc/module/module.h>
+#include <people/face_table.h>
 #include <people/hand_command.h>
 #include <people/hand_search.h>
+#include <people/hand_table.h>
 #include <people/sign.h>
 #include <vision/module_cameras.h>
 
 #include "aims.h"
 #include "palm_stop.h"
 #include "seen_faces.h"
-
-/// Names of the numbers in a row of `hands`: track, side, presence, sign, and each point's place.
-std::vector<std::string> columns_of_hands();
 
 class Hands {
  public:
@@ -81,13 +80,13 @@ class Hands {
       module_.input("cameras", hc::transformation(),
                     "mounting of the eyes on the head, from rectify; until then from the frames");
   hc::Input<hc::TableKind<double>> faces_ =
-      module_.input("faces", hc::table(),
+      module_.input("faces", hc::table().of(0, hc::people::kFaceColumns),
                     "faces in the left image, from faces: people aim with their eyes", {.keep = 1});
   hc::Output<hc::TableKind<double>> hands_ = module_.output(
       "hands", hc::table(),
       "a row for each hand, in the coordinate system of the image; side: 0 left, 1 right; sign: 0 "
       "none, 1 open and up, 2 fist, 3 point, 4 victory, 5 thumb up",
-      {.columns = columns_of_hands()});
+      {.columns = hc::people::hand_columns()});
   hc::Output<hc::TableKind<double>> sign_ =
       module_.output("sign", hc::table().of(1, 2), "a sign, once it has been held for 0.3 s",
                      {.columns = {"sign", "track"}});

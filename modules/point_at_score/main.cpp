@@ -8,6 +8,7 @@
 #include <frames/messages.h>
 #include <hc/base/format.h>
 #include <hc/module/module.h>
+#include <people/hand_table.h>
 #include <transports/all.h>
 
 #include "score.h"
@@ -19,8 +20,6 @@ using Rows = hc::MatrixView<const double>;
 // Columns of the simulator's hand_joints and pointed.
 enum JointColumn { kPerson, kHand, kJoint, kX, kY, kZ, kU, kV, kJointColumns };
 constexpr int kPointedColumns = 4;
-// Columns of hands.
-constexpr int kFirstPoint = 4, kHandColumns = kFirstPoint + 2 * static_cast<int>(kJoints);
 
 std::vector<TrueScene::TrueHand> hands_of(const Rows& rows) {
   std::map<std::pair<int, int>, TrueScene::TrueHand> hands;
@@ -87,9 +86,9 @@ class PointAtScore {
     const auto rows = message.matrix();
     for (std::size_t i = 0; image != nullptr && i < rows.height(); ++i) {
       std::array<Eigen::Vector2d, kJoints> found;
-      const auto row = rows.row(i);
-      for (std::size_t k = 0; k < kJoints; ++k)
-        found[k] = {row[kFirstPoint + 2 * k], row[kFirstPoint + 2 * k + 1]};
+      const auto hand = hc::people::hand_in(rows.row(i));
+      if (!hand) continue;
+      for (std::size_t k = 0; k < kJoints; ++k) found[k] = {hand->points[k].x, hand->points[k].y};
       score_.add_hand(image->scene, found);
     }
   }
@@ -110,8 +109,8 @@ class PointAtScore {
       "hand_joints", hc::table().of(0, kJointColumns), "truth: of the simulator", {.keep = 64});
   hc::Input<hc::TableKind<double>> pointed_ = module_.input(
       "pointed", hc::table().of(1, kPointedColumns), "truth: of the simulator", {.keep = 64});
-  hc::Input<hc::TableKind<double>> hands_ = module_.input("hands", hc::table().of(0, kHandColumns),
-                                                          "hands of module hands", {.keep = 64});
+  hc::Input<hc::TableKind<double>> hands_ = module_.input(
+      "hands", hc::table().of(0, hc::people::kHandColumns), "hands of module hands", {.keep = 64});
   hc::Input<hc::PositionKind<double>> target_ =
       module_.input("target", hc::position().of(1, 1).in(hc::Coord::kHead),
                     "target of module hands", {.keep = 64});

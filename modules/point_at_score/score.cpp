@@ -9,7 +9,8 @@
 
 namespace {
 
-constexpr std::size_t kWrist = 0, kIndexTip = 8;
+using hc::people::Hand;
+
 /// A wrist that is farther from a true one belongs to no hand. [px]
 constexpr double kSameHand = 60;
 
@@ -25,7 +26,7 @@ double median(std::vector<double> numbers) {
 void Score::add_place(const TrueScene& scene, const Eigen::Vector3d& found) {
   if (!scene.pointed || scene.hands.empty()) return;
   // The hand that points is raised towards the place: its tip is the nearest.
-  const auto tip_of = [](const auto& hand) { return hand.places[kIndexTip]; };
+  const auto tip_of = [](const auto& hand) { return hand.places[Hand::IndexTip]; };
   const auto nearest =
       std::min_element(scene.hands.begin(), scene.hands.end(), [&](const auto& a, const auto& b) {
         return (tip_of(a) - *scene.pointed).norm() < (tip_of(b) - *scene.pointed).norm();
@@ -39,7 +40,7 @@ void Score::add_hand(const TrueScene& scene, const std::array<Eigen::Vector2d, k
   const TrueScene::TrueHand* nearest = nullptr;
   double least = kSameHand;
   for (const auto& hand : scene.hands) {
-    const double apart = (hand.pixels[kWrist] - found[kWrist]).norm();
+    const double apart = (hand.pixels[Hand::Wrist] - found[Hand::Wrist]).norm();
     if (apart >= least) continue;
     least = apart;
     nearest = &hand;

@@ -9,7 +9,9 @@
 
 #include <Eigen/Geometry>
 
-inline constexpr std::size_t kJoints = 21;  ///< of a hand, in MediaPipe's order
+#include <people/hand.h>
+
+inline constexpr std::size_t kJoints = hc::people::Hand::kPoints;
 
 /// The hands and the place pointed at, as a simulation knows them at the time of an image.
 struct TrueScene {
