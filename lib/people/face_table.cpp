@@ -21,7 +21,8 @@ struct FaceAt {
 std::vector<std::string> face_columns() {
   std::vector<std::string> columns{"x [px]", "y [px]", "width [px]", "height [px]",
                                    "score",  "track",  "person"};
-  for (const std::string point : {"right eye", "left eye", "nose", "mouth", "right ear", "left ear"})
+  for (const std::string point :
+       {"right eye", "left eye", "nose", "mouth", "right ear", "left ear"})
     for (const auto* axis : {" x [px]", " y [px]"}) columns.push_back(point + axis);
   for (const auto* last : {"roll [rad]", "yaw [rad]", "x [m]", "y [m]", "z [m]"})
     columns.emplace_back(last);

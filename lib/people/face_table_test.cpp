@@ -59,7 +59,8 @@ TEST(FaceTable, rows_that_are_no_faces_are_none) {
       EXPECT_FALSE(face_in(row)) << wrong << " in column " << &number - row.data();
       number = right;
     }
-  for (const auto& [column, wrong] : {std::pair(5, 0.0), {5, 2.5}, {5, -1.0}, {6, -1.0}, {6, 0.5}}) {
+  for (const auto& [column, wrong] :
+       {std::pair(5, 0.0), {5, 2.5}, {5, -1.0}, {6, -1.0}, {6, 0.5}}) {
     auto other = row;
     other[static_cast<std::size_t>(column)] = wrong;
     EXPECT_FALSE(face_in(other)) << wrong << " in column " << column;

@@ -2,7 +2,6 @@
 #include "faces.h"
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
@@ -10,6 +9,7 @@
 #include <frames/messages.h>
 #include <hc/base/format.h>
 #include <nets/weights.h>
+#include <people/person_name.h>
 #include <vision/messages.h>
 
 using hc::people::Face;
@@ -155,12 +155,10 @@ int Faces::person(int track) const {
 }
 
 void Faces::learn(std::string_view text) {
-  int track = 0;
-  const auto [end, why] = std::from_chars(text.data(), text.data() + text.size(), track);
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  if (why != std::errc() || !text.starts_with(' '))
-    throw hc::BadMessage("it is not \"TRACK NAME\"");
-  const std::string name(text.substr(1));
+  const auto named = hc::people::named_track(text);
+  if (!named) throw hc::BadMessage("it is not \"TRACK NAME\"");
+  const int track = named->track;
+  const std::string name(named->name);
   const auto& views = views_.views(track);
   if (views.empty()) throw hc::BadMessage(hc::format("no face has track {} now", track));
   if (!views_.identity(track))

@@ -15,6 +15,7 @@
 #include <hc/mtp/codec.h>
 #include <hc/mtp/stream_reader.h>
 #include <hc/os/new_file.h>
+#include <people/person_name.h>
 
 namespace fs = std::filesystem;
 
@@ -51,15 +52,12 @@ hc::Result<std::vector<Identity>> views_in(const std::string& path) {
   return views;
 }
 
-}  // namespace
-
-bool is_name(std::string_view text) {
-  constexpr std::size_t kMost = 64;
-  return !text.empty() && text.size() <= kMost && text[0] != '.' &&
-         !text.ends_with(".unfinished") && std::ranges::none_of(text, [](unsigned char c) {
-           return c < 0x20 || c == 0x7f || c == '/';
-         });
+/// Whether a name can be that of a file; hc::replace_file has others while it writes them.
+bool is_file_name(std::string_view name) {
+  return hc::people::is_person_name(name) && !name.ends_with(".unfinished");
 }
+
+}  // namespace
 
 bool Folder::read() {
   if (path_.empty()) return false;
@@ -68,7 +66,7 @@ bool Folder::read() {
   for (const auto& entry : fs::directory_iterator(path_, missing)) {
     const auto name = entry.path().filename().string();
     std::error_code unknown;
-    if (!is_name(name) || !entry.is_regular_file(unknown)) continue;
+    if (!is_file_name(name) || !entry.is_regular_file(unknown)) continue;
     if (now.size() == kMostPeople) continue;
     now.emplace(name, hc::file_stamp(file_of(name)));
   }
@@ -90,8 +88,8 @@ bool Folder::read() {
 
 hc::Status Folder::learn(const std::string& name, const std::vector<Identity>& views) {
   const auto refused = [](std::string why) { return hc::Error{hc::Code::Invalid, std::move(why)}; };
-  if (!is_name(name))
-    return refused("not a name: up to 64 bytes, without \"/\" and a dot at the beginning");
+  if (!is_file_name(name))
+    return refused("not a name: up to 64 bytes of UTF-8, without \"/\" and a dot at the beginning");
   if (path_.empty())
     return refused("nobody can be learned without a folder: set the parameter people");
   if (::mkdir(path_.c_str(), S_IRWXU) != 0 && errno != EEXIST)

@@ -43,7 +43,3 @@ class Folder {
   hc::people::Gallery gallery_;
   std::map<std::string, hc::FileStamp> files_;  // as they were read
 };
-
-/// Whether a text can be the name of a person and of their file: 1 to 64 bytes, without control
-/// characters, "/" and a dot at its beginning.
-bool is_name(std::string_view text);

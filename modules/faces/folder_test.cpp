@@ -126,7 +126,8 @@ TEST_F(FolderTest, files_are_for_their_owner_alone) {
 
 TEST_F(FolderTest, names_cannot_lead_out_of_it) {
   Folder folder = open();
-  for (const char* name : {"", "../Anna", "a/b", ".", "..", ".bashrc", "a\nb", "Anna.unfinished"}) {
+  for (const char* name :
+       {"", "../Anna", "a/b", ".", "..", ".bashrc", "a\nb", "Anna.unfinished", "Zo\xeb"}) {
     const auto learned = folder.learn(name, {identity(0)});
     ASSERT_FALSE(learned) << name;
     EXPECT_EQ(learned.error().code, hc::Code::Invalid);

@@ -2,13 +2,13 @@
 #include "driver.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string_view>
 #include <utility>
 
 #include <hc/module/kind.h>
+#include <people/person_name.h>
 
 namespace {
 
@@ -33,18 +33,10 @@ std::span<const double> numbers_of(const hc::Message& message) {
 
 constexpr std::size_t kMaxText = 4096;  // [byte]
 
-/// Whether a text is "TRACK NAME": a name can be that of a file in a folder of people.
+/// Whether a text is "TRACK NAME".
 bool is_track_and_name(std::string_view text) {
-  constexpr std::size_t kMostName = 64;  // [byte]
-  std::int32_t track = 0;
-  const auto [end, why] = std::from_chars(text.data(), text.data() + text.size(), track);
-  if (why != std::errc() || track <= 0) return false;
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  if (!text.starts_with(' ')) return false;
-  text.remove_prefix(1);
-  return !text.empty() && text.size() <= kMostName && text[0] != '.' &&
-         std::ranges::none_of(text,
-                              [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '/'; });
+  const auto named = hc::people::named_track(text);
+  return named && hc::people::is_person_name(named->name);
 }
 
 bool is_track(double number) {
@@ -95,9 +87,8 @@ std::string problem(Control control, const hc::Message& message,
     case Control::Name:
       if (header.info.type != hc::MatrixType::String || !message.plain() || header.height != 1 ||
           !is_track_and_name(text_of(message)))
-        return "a name is a string \"TRACK NAME\", the name of at most 64 bytes, without \"/\" and "
-               "a "
-               "dot at the beginning";
+        return "a name is a string \"TRACK NAME\", the name of at most 64 bytes of UTF-8, without "
+               "\"/\" and a dot at the beginning";
       return {};
     case Control::Hold:
       if (!is(message, hc::MatrixType::Table, 1) || !is_track(numbers_of(message)[0]))

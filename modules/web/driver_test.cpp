@@ -131,7 +131,8 @@ TEST(Driver, what_is_no_name_or_no_track_is_refused) {
         std::string("0 Ann"), std::string("-1 Ann"), std::string("2147483648 Ann"),
         std::string("1.5 Ann"), std::string(" 1 Ann"), std::string("1 .Ann"),
         std::string("1 ../Ann"), std::string("1 A/nn"), std::string("1 A\x01nn"),
-        std::string("1 Ann\x7f"), std::string("1 Ann\n2 Bob"), "1 " + long_name})
+        std::string("1 Ann\x7f"), std::string("1 Ann\n2 Bob"), std::string("1 Zo\xeb"),
+        "1 " + long_name})
     EXPECT_EQ(hc::refused(driver.take(name(text), kModes, kWall, {})).code, hc::Code::Malformed)
         << text;
   EXPECT_EQ(

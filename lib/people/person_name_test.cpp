@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <people/person_name.h>
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace hc::people {
+namespace {
+
+TEST(PersonName, can_be_that_of_a_file) {
+  for (const std::string name : {"Anna", "Zoë de la Cruz", "王小明", "a", "x.y"})
+    EXPECT_TRUE(is_person_name(name)) << name;
+  EXPECT_TRUE(is_person_name(std::string(64, 'a')));
+  for (const std::string name : {"", ".", "..", ".hidden", "a/b", "a\nb", "a\x7f"})
+    EXPECT_FALSE(is_person_name(name)) << name;
+  EXPECT_FALSE(is_person_name(std::string(65, 'a')));
+  EXPECT_FALSE(is_person_name(std::string("a\0b", 3)));
+}
+
+TEST(PersonName, is_utf8) {
+  for (const std::string name : {"\xff", "Zo\xeb", "Zo\xc3", "\xc0\xaf", "\xed\xa0\x80"})
+    EXPECT_FALSE(is_person_name(name));
+}
+
+TEST(PersonName, is_asked_for_by_a_track) {
+  const auto named = named_track("12 Zoë de la Cruz");
+  ASSERT_TRUE(named);
+  EXPECT_EQ(named->track, 12);
+  EXPECT_EQ(named->name, "Zoë de la Cruz");
+  EXPECT_EQ(named_track("1 ")->name, "");
+  EXPECT_EQ(named_track("1")->name, "");
+  for (const auto* text : {"", " Ann", "Ann", "0 Ann", "-1 Ann", "1.5 Ann", "99999999999 Ann"})
+    EXPECT_FALSE(named_track(text)) << text;
+}
+
+}  // namespace
+}  // namespace hc::people
