@@ -38,7 +38,6 @@ struct Hand {
   enum class Side { Left, Right };
 
   std::array<cv::Point2f, kPoints> points;  ///< [px]
-  std::array<float, kPoints> depths = {};   ///< > 0 beyond the wrist, as long as in the image [px]
   /// In the directions of the camera, x right, y down, z forward, around the hand's middle, for a
   /// hand of ordinary size. [m]
   std::array<cv::Point3f, kPoints> world;

@@ -11,7 +11,6 @@ namespace {
 
 constexpr int kImage = 224;  // of the network's image [px]
 constexpr int kCoordinates = 3 * Hand::kPoints;
-constexpr float kDepthScale = 0.4F;  // Source: MediaPipe, hand_landmark_cpu.pbtxt, normalize_z
 
 cv::Mat input_of(const cv::Mat& image, const Region& region) {
   const float scale = region.side / kImage;
@@ -70,7 +69,6 @@ Hand HandLandmarks::find(const cv::Mat& image, const Region& region) {
     hand.points[i] =
         region.middle + region.side * cv::Point2f(cos * from_middle.x - sin * from_middle.y,
                                                   sin * from_middle.x + cos * from_middle.y);
-    hand.depths[i] = p[2] / kImage / kDepthScale * region.side;
     hand.world[i] = {cos * w[0] - sin * w[1], sin * w[0] + cos * w[1], w[2]};
   }
   hand.presence = outputs[1].at<float>(0);

@@ -7,20 +7,14 @@
 
 #include <Eigen/LU>
 
+#include <hc/base/median.h>
+
 namespace hc::people {
 namespace {
 
 /// What moves least while fingers bend.
 constexpr std::array<std::size_t, 5> kPalm = {Hand::Wrist, Hand::Index, Hand::Middle, Hand::Ring,
                                               Hand::Little};
-
-/// @param numbers  at least one.
-template <typename Number>
-Number median(std::vector<Number> numbers) {
-  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-  std::nth_element(numbers.begin(), middle, numbers.end());
-  return *middle;
-}
 
 /// The point of a pixel, at a depth.
 Eigen::Vector3d at(const cv::Point2f& pixel, double z, const vision::Pinhole& camera) {

@@ -18,8 +18,7 @@ namespace hc::people {
 inline bool is_person_name(std::string_view text) {
   constexpr std::size_t kMost = 64;
   if (text.empty() || text.size() > kMost || text[0] == '.') return false;
-  if (std::ranges::any_of(text,
-                          [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '/'; }))
+  if (std::ranges::any_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '/'; }))
     return false;
   while (!text.empty()) {
     const auto length = utf8_length(text);

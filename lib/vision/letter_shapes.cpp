@@ -6,8 +6,11 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include <opencv2/imgproc.hpp>
+
+#include <hc/base/median.h>
 
 namespace hc::vision {
 
@@ -84,9 +87,7 @@ double left_side(const cv::Mat& glyph, double from, double to) {
     const double before = x == 0 ? 255 : row[x - 1];
     sides.push_back(x == glyph.cols ? x : x - (128 - row[x]) / std::max(1.0, before - row[x]));
   }
-  const auto middle = sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2);
-  std::nth_element(sides.begin(), middle, sides.end());
-  return *middle;
+  return median(std::move(sides));
 }
 
 /// Bulge of an S or 5 to the left, between the top and the middle / width.
@@ -213,9 +214,7 @@ double usual_width(const Match& match) {
     if (match.sharing(k) == 1 && match.boxes[k].width > kBar * match.boxes[k].height)
       widths.push_back(match.boxes[k].width);
   if (widths.empty()) return kWidth * height_of(match.boxes);
-  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-  std::nth_element(widths.begin(), middle, widths.end());
-  return *middle;
+  return median(std::move(widths));
 }
 
 /// Whether the letters [first, end) can be one glyph because they touch.
@@ -287,16 +286,15 @@ void set_spaces(Match& match) {
   for (std::size_t i = 1; i < letters.size(); ++i)
     if (!letters[i].begins_word) within.push_back(gap(i));
   if (within.size() < 3) return;
-  const auto middle = within.begin() + static_cast<std::ptrdiff_t>(within.size() / 2);
-  std::nth_element(within.begin(), middle, within.end());
-  const double least = std::max(kGap * *middle, kLeastSpace * height_of(boxes));
+  const int usual = median(std::move(within));
+  const double least = std::max(kGap * usual, kLeastSpace * height_of(boxes));
   for (std::size_t i = 1; i < letters.size(); ++i) {
     if (gap(i) < least) letters[i].begins_word = false;
     if (letters[i].begins_word) space = std::min<double>(space, gap(i));
   }
   // Without any space read, a gap must be wider.
   const double least_new =
-      space < 1e9 ? kSpace * space : std::max(kWideGap * *middle, kWideSpace * height_of(boxes));
+      space < 1e9 ? kSpace * space : std::max(kWideGap * usual, kWideSpace * height_of(boxes));
   for (std::size_t i = 1; i < letters.size(); ++i)
     if (gap(i) > least_new) letters[i].begins_word = true;
 }

@@ -12,6 +12,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include <hc/base/median.h>
+
 namespace hc::vision {
 namespace {
 
@@ -45,12 +47,6 @@ struct Slant {
   double slope = 0, offset = 0;
   [[nodiscard]] double at(double x) const { return slope * x + offset; }
 };
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Measures a piece inside and around its box; nothing if it is too faint for a letter.
 std::optional<Piece> look_at(const cv::Mat& grey, const cv::Mat& labels, const cv::Mat& dark,

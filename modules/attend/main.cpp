@@ -38,13 +38,10 @@ class Attend {
  private:
   using Table = hc::MessageOf<hc::TableKind<double>>;
 
-  [[nodiscard]] hc::Time time_of(const hc::Header& header) const {
-    return header.time != hc::Time() ? header.time : module_.now();
-  }
   static double pan_of(const Eigen::Vector3d& p) { return std::atan2(p.y(), p.x()); }
 
   void see(const Table& message) {
-    const auto time = time_of(message.header);
+    const auto time = module_.time_of(message.header);
     frames_.when_known("robot", "head", time, [this, time, faces = message](const auto&) {
       attention_.set_options({.hold = hc::duration(*keep_)});
       const auto T_robot_head = frames_.nearest("robot", "head", time);
@@ -67,7 +64,7 @@ class Attend {
 
   void hear(const hc::MessageOf<hc::RotationKind<double>>& message) {
     const double pan = message.numbers()[2];
-    const auto time = time_of(message.header);
+    const auto time = module_.time_of(message.header);
     frames_.when_known("robot", "head", time, [this, time, pan](const auto&) {
       const auto T_robot_head = frames_.nearest("robot", "head", time);
       const Eigen::Vector3d to(std::cos(pan), std::sin(pan), 0);

@@ -16,7 +16,7 @@ using hc::gaze::Angles, hc::gaze::HeadCalibration;
 Calibrator::Calibrator(hc::Module& module) : module_(module) {
   module.on_start([this] { start(); });
   module.on(hc::together(left_, right_), [this](const auto& one, const auto& other) {
-    const hc::Time time = one.header.time != hc::Time() ? one.header.time : module_.now();
+    const hc::Time time = module_.time_of(one.header);
     frames_.when_known("robot", "head", time, [this, time, one, other](const auto& T_robot_head) {
       if (!T_robot_head)
         return module_.log_once("without a pose of the head",

@@ -27,7 +27,8 @@ Faces::Faces(hc::Module& module) : module_(module) {
   module.on_start([this] { start(); });
   module.on(left_, [this](const hc::Image& image) {
     intrinsics_.when_known([this, kept = image.keep()] {
-      frames_.when_known("robot", "head", time_of(kept), [this, kept](const auto&) { look(kept); });
+      frames_.when_known("robot", "head", module_.time_of(kept.header),
+                         [this, kept](const auto&) { look(kept); });
     });
   });
   module.on(right_, [this](const hc::Image& image) {
@@ -78,7 +79,7 @@ void Faces::forget() {
 void Faces::look(const hc::Message& message) {
   is_idle_ = false;
   const cv::Mat image = hc::value_or_drop(hc::as_mat(message));
-  const auto time = time_of(message);
+  const auto time = module_.time_of(message.header);
   const auto turn = turn_to(message.header);
   last_ = time;
   seen_ = networks_->search.look(time, image, static_cast<float>(*score_), turn);
@@ -110,7 +111,7 @@ void Faces::describe(hc::Time time, const cv::Mat& image, const std::vector<Trac
 }
 
 void Faces::look_right(const hc::Message& message) {
-  if (message.header.empty() || time_of(message) != last_) return;
+  if (message.header.empty() || module_.time_of(message.header) != last_) return;
   const cv::Mat image = hc::value_or_drop(hc::as_mat(message));
   const auto pair = pair_of(intrinsics_.of(image.cols, image.rows));
   for (const Track& track : seen_) {

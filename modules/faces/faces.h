@@ -49,9 +49,6 @@ class Faces {
   [[nodiscard]] static hc::people::FacePair pair_of(const hc::vision::PairIntrinsics& cameras) {
     return {static_cast<float>(cameras.fx), static_cast<float>(cameras.baseline)};
   }
-  [[nodiscard]] hc::Time time_of(const hc::Message& image) const {
-    return image.header.time != hc::Time() ? image.header.time : module_.now();
-  }
 
   hc::Module& module_;
   hc::Input<hc::ImageKind> left_ = module_.input(

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <iterator>
+#include <utility>
 #include <vector>
+
+#include <hc/base/median.h>
 
 void Aims::add(const Aim& aim) {
   // Where time goes back, its source has started again.
@@ -46,10 +48,9 @@ std::optional<Aim> SteadyAim::find() const {
     for (const Aim& other : aims)
       angles.push_back(
           std::acos(std::clamp(aim.ray.direction.dot(other.ray.direction), -1.0, 1.0)));
-    const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
-    std::nth_element(angles.begin(), middle, angles.end());
-    if (*middle >= least) continue;
-    least = *middle;
+    const double apart = hc::median(std::move(angles));
+    if (apart >= least) continue;
+    least = apart;
     best = aim;
   }
   if (best) best->time = last_.back().time;

@@ -38,7 +38,7 @@ hc::vision::Pinhole lens_of(const hc::vision::PairIntrinsics& pair) {
 Hands::Hands(hc::Module& module) : module_(module) {
   module.on_start([this] { start(); });
   module.on(left_, [this](const hc::Image& image) {
-    frames_.when_known("robot", "head", time_of(image),
+    frames_.when_known("robot", "head", module_.time_of(image.header),
                        [this, kept = image.keep()](const auto&) { see_left(kept); });
   });
   module.on_end([this] { frames_.answer_all(); });
@@ -48,8 +48,8 @@ Hands::Hands(hc::Module& module) : module_(module) {
     mount_.take(hc::value_or_drop(hc::pose_of(message)));
   });
   module.on(faces_, [this](const hc::MessageOf<hc::TableKind<double>>& faces) {
-    if (faces.matrix().height() > 0) last_face_ = time_of(faces);
-    seen_faces_.take(time_of(faces), faces.matrix());
+    if (faces.matrix().height() > 0) last_face_ = module_.time_of(faces.header);
+    seen_faces_.take(module_.time_of(faces.header), faces.matrix());
   });
 }
 
@@ -61,19 +61,19 @@ void Hands::start() {
 
 void Hands::see_left(const hc::Message& message) {
   const auto tracks = look(message);
-  last_ = time_of(message);
+  last_ = module_.time_of(message.header);
   pointing_.reset();
   for (const auto& track : tracks)
     if (update_hold(track) && !pointing_) pointing_ = track;
   if (!right_.linked()) return aim(nullptr);
   const auto right = std::exchange(right_ahead_, std::nullopt);
-  if (right && time_of(*right) == last_) aim(&*right);
+  if (right && module_.time_of(right->header) == last_) aim(&*right);
 }
 
 void Hands::see_right(const hc::Message& message) {
   if (!left_.linked()) {
     for (const auto& track : look(message)) update_hold(track);
-  } else if (time_of(message) == last_) {
+  } else if (module_.time_of(message.header) == last_) {
     aim(&message);
   } else {
     right_ahead_ = message.keep();
@@ -84,7 +84,7 @@ std::vector<hc::people::HandTrack> Hands::look(const hc::Message& message) {
   search_->set_most(static_cast<std::size_t>(*most_));
   size_ = {message.header.width, message.header.height};
   const cv::Mat image = hc::value_or_drop(hc::as_mat(message));
-  const auto time = time_of(message);
+  const auto time = module_.time_of(message.header);
   const bool is_anybody = !faces_.linked() || std::chrono::abs(time - last_face_) < kInView;
   auto tracks = search_->look(time, image, is_anybody);
   send(message.header, tracks);
@@ -156,7 +156,8 @@ std::optional<hc::people::Joints> Hands::joints_of(const HandTrack& track,
   const auto by_size = hc::people::joints_of(track.hand, lens_of(cameras));
   if (!by_size) return std::nullopt;
   std::optional<double> depth;
-  if (last_depth_ && std::chrono::abs(time_of(*last_depth_) - track.seen) < kDepthLives)
+  if (last_depth_ &&
+      std::chrono::abs(module_.time_of(last_depth_->header) - track.seen) < kDepthLives)
     depth = hc::people::depth_in(*hc::as_mat(*last_depth_), track.hand);
   if (right) {
     const double disparity =
@@ -174,7 +175,7 @@ std::optional<hc::people::Joints> Hands::joints_of(const HandTrack& track,
 void Hands::see_depth(const hc::Message& message) {
   const cv::Mat metres = hc::value_or_drop(hc::as_mat(message));
   last_depth_ = message.keep();
-  const auto time = time_of(message);
+  const auto time = module_.time_of(message.header);
   if (const auto aim = aims_.take(time)) {
     const auto T = mount_.pose_in("robot", aim->time, frames_);
     steady_.add(

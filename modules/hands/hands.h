@@ -61,9 +61,6 @@ class Hands {
   [[nodiscard]] Eigen::Isometry3d T_head_camera(hc::Time time) {
     return mount_.pose_in("head", time, frames_);
   }
-  [[nodiscard]] hc::Time time_of(const hc::Message& message) const {
-    return message.header.time != hc::Time() ? message.header.time : module_.now();
-  }
 
   hc::Module& module_;
   hc::Input<hc::ImageKind> left_ = module_.input(

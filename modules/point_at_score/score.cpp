@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <hc/base/format.h>
+#include <hc/base/median.h>
 
 namespace {
 
@@ -14,11 +16,8 @@ using hc::people::Hand;
 /// A wrist that is farther from a true one belongs to no hand. [px]
 constexpr double kSameHand = 60;
 
-double median(std::vector<double> numbers) {
-  if (numbers.empty()) return -1;
-  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-  std::nth_element(numbers.begin(), middle, numbers.end());
-  return *middle;
+double median_of(const std::vector<double>& numbers) {
+  return numbers.empty() ? -1 : hc::median(numbers);
 }
 
 }  // namespace
@@ -48,11 +47,12 @@ void Score::add_hand(const TrueScene& scene, const std::array<Eigen::Vector2d, k
   if (nearest == nullptr) return;
   std::vector<double> apart;
   for (std::size_t i = 0; i < kJoints; ++i) apart.push_back((nearest->pixels[i] - found[i]).norm());
-  distances_.push_back(median(apart));
+  distances_.push_back(hc::median(std::move(apart)));
 }
 
 std::array<double, 4> Score::numbers() const {
-  return {median(angles_), median(distances_), double(angles_.size()), double(distances_.size())};
+  return {median_of(angles_), median_of(distances_), double(angles_.size()),
+          double(distances_.size())};
 }
 
 std::string Score::text() const {

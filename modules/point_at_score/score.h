@@ -30,7 +30,6 @@ class Score {
   /// Takes the joints that were found in an image. Those of no true hand do not count. [px]
   void add_hand(const TrueScene& scene, const std::array<Eigen::Vector2d, kJoints>& found);
 
-  [[nodiscard]] std::size_t places() const { return angles_.size(); }
   /// Medians: angle between the true and the found place, seen from the finger tip [rad], distance
   /// of the joints of a hand [px]; places, hands. -1 where there was none.
   [[nodiscard]] std::array<double, 4> numbers() const;

@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
     const auto box = hc::vision::box_of(block);
     target.send({box.x + box.width / 2, box.y + box.height / 2, box.width}, {},
                 message.header.coord);
-    const hc::Time time = message.header.time != hc::Time() ? message.header.time : module.now();
+    const hc::Time time = module.time_of(message.header);
     const auto reading = reader->read_when_due(pixels, block, time, *rate);
     if (!reading) return;
     confidence.send(reading->confidence);

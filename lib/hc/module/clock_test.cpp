@@ -154,6 +154,16 @@ TEST_F(ByMessages, AGeneratorsEndIsTheModules) {
   EXPECT_EQ(run(), Log({"a 1 at 1", "a 2 at 2"}));
 }
 
+TEST_F(ByMessages, WhatHasNoTimeIsOfNow) {
+  feed("a", {at(3)});
+  module.generate([&] {
+    log.push_back("look");
+    EXPECT_EQ(module.time_of({}), module.now());
+    EXPECT_EQ(module.time_of(at(2).header), at(2).header.time);
+  });
+  EXPECT_EQ(run(), Log({"a 3 at 3", "look"}));
+}
+
 TEST_F(ByMessages, TheFocusIsHeardInItsTime) {
   feed("a", {at(1, 4), at(5, 4), at(9, 4)});
   feed("focus", {focus(3, 4), focus(7, 2), focus(20, 4)});

@@ -284,6 +284,10 @@ class Module {
   /// Wall clock, for messages that begin here: the machine's, or with `--clock messages` that of
   /// the messages which come. Like all functions, only for the module's thread.
   [[nodiscard]] Time now() const;
+  /// When the data of a message was measured; now(), if its header does not say it.
+  [[nodiscard]] Time time_of(const Header& header) const {
+    return header.time != Time() ? header.time : now();
+  }
   /// The same clock for periods and time-outs, which never goes back. What is done in the time of
   /// messages goes by this; what talks to a device at the machine's pace has a clock of its own.
   [[nodiscard]] MonotonicTime monotonic() const;
