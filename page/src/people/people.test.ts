@@ -20,7 +20,7 @@ const counted = (count: number): number[] => Array.from({ length: count }, (_, i
 const face = [10, 20, 30, 40, 0.9, 7, 3, ...counted(12), 0, 0, 1, 0, 0];
 
 const output = (port: string, type: string, columns: string[]): Output =>
-  ({ port, kind: { type }, columns }) as unknown as Output;
+  ({ port, type, kind: { type }, columns }) as unknown as Output;
 const link = (from: string, to: string): GraphLink => ({ from, to }) as GraphLink;
 
 const outputs = [
@@ -109,6 +109,32 @@ test("what is said of an image is that of the nearest time, for a second", () =>
   assert.equal(recent.at(2_100_000_001n), undefined);
 });
 
+test("outputs that are not known yet are asked for again, but not at once", async (t) => {
+  let now = 10_000;
+  t.mock.method(performance, "now", () => now);
+  const unknown = { port: "finder.faces", type: "", doc: "", columns: [] };
+  const answers = [Promise.reject(new Error("busy")), Promise.resolve([unknown])];
+  let asked = 0;
+  const host = {
+    state: { modules: [], links },
+    outputs: () => answers[asked++] ?? Promise.resolve(outputs),
+    open: () => ({ on: () => undefined, close: () => undefined }),
+  };
+  const people = new People(host as unknown as PeopleHost);
+  const follow = async (): Promise<void> => {
+    people.follow("rectify.left");
+    await new Promise(setImmediate);
+  };
+  for (let times = 1; times <= 3; ++times) {
+    await follow();
+    await follow();
+    assert.deepEqual([asked, people.findsFaces], [times, times === 3]);
+    now += 2000;
+  }
+  await follow();
+  assert.equal(asked, 3, "all are known");
+});
+
 test("who is seen in an image: in its coordinates, until the rows end", async () => {
   const senders = new Map<string, (message: Message) => void>();
   const host = {
@@ -123,7 +149,7 @@ test("who is seen in an image: in its coordinates, until the rows end", async ()
   };
   const people = new People(host as unknown as PeopleHost);
   people.follow("rectify.left");
-  await host.outputs();
+  await new Promise(setImmediate);
   const send = (port: string, message: Message): void => senders.get(port)!(message);
   const time = 5_000_000_000n;
   send("finder.faces", table([face], 9, time));

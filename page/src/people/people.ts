@@ -43,7 +43,8 @@ interface Rows<T> {
   readonly rows: readonly T[];
 }
 
-/** Without a table of faces for so long, nobody is seen any more [ms]. */
+/** Without a table of faces for so long, nobody is seen any more; outputs that are unknown are asked
+ *  for again [ms]. */
 const patience = 2000;
 
 /** Whether rows in one coordinate system are drawn over an image in another: a rectified image
@@ -56,6 +57,8 @@ export class People {
   private ports: PeoplePorts = {};
   private streams: Pick<Emitter, "close">[] = [];
   private key = "";
+  /** When to ask again for the outputs [ms]. */
+  private again = Infinity;
   private readonly faces = new Recent<Rows<Face>>();
   private readonly hands = new Recent<Rows<Hand>>();
   private readonly attended = new Recent<Attended & { readonly time: bigint }>();
@@ -74,11 +77,10 @@ export class People {
     const modules = state?.modules.map(({ name, program }) => `${name} ${program}`) ?? [];
     const links = state?.links.map(({ from, to }) => `${from} ${to}`) ?? [];
     const key = [image, ...modules, ...links].join("\n");
-    if (key === this.key) return;
+    if (key === this.key && performance.now() < this.again) return;
     this.key = key;
-    void this.host.outputs().then((outputs) => {
-      if (this.key === key && !this.isClosed) this.open(peoplePorts(outputs, state?.links, image));
-    });
+    this.again = Infinity;
+    void this.ask(image, key);
   }
 
   /** Whether the graph finds faces. */
@@ -119,6 +121,15 @@ export class People {
       const name = this.names.get(face.person) ?? unnamed;
       return { ...face, name, reason: attended?.track === face.track ? attended.reason : "" };
     });
+  }
+
+  private async ask(image: string, key: string): Promise<void> {
+    const outputs = await this.host.outputs().catch(() => undefined);
+    if (this.key !== key || this.isClosed) return;
+    // A module that starts, or hangs, does not describe itself yet.
+    const isWhole = outputs?.every(({ type }) => type !== "") ?? false;
+    if (!isWhole) this.again = performance.now() + patience;
+    if (outputs) this.open(peoplePorts(outputs, this.host.state?.links, image));
   }
 
   private shut(): void {
