@@ -56,7 +56,8 @@ class Constants {
         }
         at += size;
         std::string name = tensor.name;
-        constants.tensors_.emplace(std::move(name), std::move(tensor));
+        if (!constants.tensors_.try_emplace(name, std::move(tensor)).second)
+          return malformed(hc::format("it has {} twice", name));
       }
     } catch (const Json::exception& failed) {
       return malformed(hc::format("its manifest: {}", failed.what()));
@@ -121,18 +122,18 @@ class Recogniser {
   }
   int axes() { return add({"axes", {2}, {}, {1, 2}}); }
 
-  static int steps(int side, int window, int step) { return (side - window) / step + 1; }
+  static int steps(int side, int window, int stride) { return (side - window) / stride + 1; }
 
-  int pool(int from, Kind kind, int window, int step) {
+  int pool(int from, Kind kind, int window, int stride) {
     Layer layer{kind, {from}};
     layer.window_height = layer.window_width = window;
-    layer.step_down = layer.step_right = step;
+    layer.stride_down = layer.stride_right = stride;
     const Shape of = shape(from);
-    return put(layer, {1, steps(of[1], window, step), steps(of[2], window, step), of[3]});
+    return put(layer, {1, steps(of[1], window, stride), steps(of[2], window, stride), of[3]});
   }
 
   /// A convolution whose results are scaled, which is done to its weights.
-  Result<int> convolution(int from, const std::string& name, int window, int out, int step,
+  Result<int> convolution(int from, const std::string& name, int window, int out, int stride,
                           bool is_positive) {
     const Shape of = shape(from);
     const int in = of[3];
@@ -149,10 +150,10 @@ class Recogniser {
     }
     Layer layer{Kind::Convolution, {from, add(std::move(weights)), add(std::move(biases))}};
     if (is_positive) layer.activation = Kind::Relu;
-    layer.step_down = layer.step_right = step;
-    layer.is_padded = step == 1;
-    if (step == 1) return put(layer, {1, of[1], of[2], out});
-    return put(layer, {1, steps(of[1], window, step), steps(of[2], window, step), out});
+    layer.stride_down = layer.stride_right = stride;
+    layer.is_padded = stride == 1;
+    if (stride == 1) return put(layer, {1, of[1], of[2], out});
+    return put(layer, {1, steps(of[1], window, stride), steps(of[2], window, stride), out});
   }
 
   int pad(int from, int rows, int columns, int channels) {
@@ -162,12 +163,12 @@ class Recogniser {
     return put({Kind::Pad, {from, by}}, {1, of[1] + rows, of[2] + columns, of[3] + channels});
   }
 
-  /// Two convolutions, to which their input is added; with a step of 2, its averages, and zeros
+  /// Two convolutions, to which their input is added; with a stride of 2, its averages, and zeros
   /// where one is smaller than the other.
-  Result<int> block(int from, const std::string& name, int out, int step) {
-    int made = HC_TRY(convolution(from, name + "/conv1", 3, out, step, true));
+  Result<int> block(int from, const std::string& name, int out, int stride) {
+    int made = HC_TRY(convolution(from, name + "/conv1", 3, out, stride, true));
     made = HC_TRY(convolution(made, name + "/conv2", 3, out, 1, false));
-    if (step > 1) {
+    if (stride > 1) {
       from = pool(from, Kind::AveragePool, 2, 2);
       made = pad(made, shape(from)[1] - shape(made)[1], shape(from)[2] - shape(made)[2], 0);
       from = pad(from, 0, 0, out - shape(from)[3]);

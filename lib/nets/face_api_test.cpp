@@ -48,6 +48,9 @@ TEST(FaceApi, files_that_do_not_fit_are_refused) {
                 .error()
                 .text(),
             "Unsupported: a has numbers of type int32");
+  const std::string one = R"({"name": "a", "dtype": "float32", "shape": [1]})";
+  EXPECT_EQ(read("[{\"weights\": [" + one + ", " + one + "]}]", "8 bytes.").error().text(),
+            "Malformed: it has a twice");
   EXPECT_FALSE(read(manifest, weights.substr(0, 1000)));
   EXPECT_FALSE(read(manifest, weights + "x"));
   EXPECT_EQ(read("[{\"weights\": []}]", "").error().text(),

@@ -2,6 +2,7 @@
 #pragma once
 // The layers of a neural network, as read from a file of weights. Pure.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,9 +43,9 @@ struct Layer {
   Kind kind = Kind::Add;
   std::vector<int> inputs;  ///< with weights and bias, in TensorFlow Lite's order
   int output = 0;
-  Kind activation = Kind::Add;  ///< Relu, Relu6, or Add: none
-  bool is_padded = false;       ///< SAME: as many windows as steps; otherwise VALID
-  int window_height = 1, window_width = 1, step_down = 1, step_right = 1;
+  std::optional<Kind> activation = std::nullopt;  ///< Relu or Relu6
+  bool is_padded = false;  ///< SAME: a window at each stride; otherwise VALID
+  int window_height = 1, window_width = 1, stride_down = 1, stride_right = 1;
   int axis = 0;                                            ///< of a concatenation
   bool align_corners = false, half_pixel_centers = false;  ///< of a resize
 };

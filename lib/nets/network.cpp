@@ -97,8 +97,8 @@ class Builder {
   int place_window(const Layer& layer, const Window& window, Params& params, int from) {
     params.set("kernel_h", window.height);
     params.set("kernel_w", window.width);
-    params.set("stride_h", layer.step_down);
-    params.set("stride_w", layer.step_right);
+    params.set("stride_h", layer.stride_down);
+    params.set("stride_w", layer.stride_right);
     const bool is_even = window.top == window.bottom && window.left == window.right;
     if (!is_even && (layer.kind == Kind::Convolution || layer.kind == Kind::DepthwiseConvolution))
       return pad({0, 0, 0, 0, window.top, window.bottom, window.left, window.right}, from);

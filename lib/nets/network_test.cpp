@@ -71,16 +71,16 @@ class OneLayer : public ::testing::Test {
   std::vector<float> image;
 };
 
-/// A side of the image, of the window, its step, and whether zeros surround the image.
+/// A side of the image, of the window, its stride, and whether zeros surround the image.
 struct WindowCase {
-  int side, window, step;
+  int side, window, stride;
   bool is_padded;
   [[nodiscard]] int steps() const {
-    return is_padded ? (side + step - 1) / step : (side - window) / step + 1;
+    return is_padded ? (side + stride - 1) / stride : (side - window) / stride + 1;
   }
   /// Where the first window begins. Source: TensorFlow, SAME.
   [[nodiscard]] int begin() const {
-    return is_padded ? -(std::max(0, (steps() - 1) * step + window - side) / 2) : 0;
+    return is_padded ? -(std::max(0, (steps() - 1) * stride + window - side) / 2) : 0;
   }
 };
 class Windows : public OneLayer, public ::testing::WithParamInterface<WindowCase> {
@@ -90,7 +90,7 @@ class Windows : public OneLayer, public ::testing::WithParamInterface<WindowCase
     Layer made{kind, {}};
     made.is_padded = one.is_padded;
     made.window_height = made.window_width = one.window;
-    made.step_down = made.step_right = one.step;
+    made.stride_down = made.stride_right = one.stride;
     return made;
   }
 };
@@ -110,8 +110,9 @@ TEST_P(Windows, a_convolution_is_a_sum_of_products) {
         for (int v = 0, w = out * one.window * one.window * 3; v < one.window; ++v)
           for (int u = 0; u < one.window; ++u)
             for (int c = 0; c < 3; ++c, ++w)
-              sum += numbers(weights)[static_cast<std::size_t>(w)] *
-                     at(input, one.begin() + y * one.step + v, one.begin() + x * one.step + u, c);
+              sum +=
+                  numbers(weights)[static_cast<std::size_t>(w)] *
+                  at(input, one.begin() + y * one.stride + v, one.begin() + x * one.stride + u, c);
         ASSERT_NEAR((*result)[static_cast<std::size_t>(i)], sum, 1e-4)
             << y << ' ' << x << ' ' << out;
       }
@@ -132,7 +133,7 @@ TEST_P(Windows, a_depthwise_convolution_is_one_of_each_channel) {
         for (int v = 0; v < one.window; ++v)
           for (int u = 0; u < one.window; ++u)
             sum += numbers(weights)[static_cast<std::size_t>((v * one.window + u) * 3 + c)] *
-                   at(input, one.begin() + y * one.step + v, one.begin() + x * one.step + u, c);
+                   at(input, one.begin() + y * one.stride + v, one.begin() + x * one.stride + u, c);
         ASSERT_NEAR((*result)[static_cast<std::size_t>(i)], sum, 1e-4) << y << ' ' << x << ' ' << c;
       }
 }
@@ -145,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(Network, Windows,
 
 TEST_F(OneLayer, a_pool_takes_the_largest) {
   Layer pool{Kind::MaxPool, {}};
-  pool.window_height = pool.window_width = pool.step_down = pool.step_right = 2;
+  pool.window_height = pool.window_width = pool.stride_down = pool.stride_right = 2;
   const Shape input{1, 4, 6, 2};
   const auto result = run(input, pool, {1, 2, 3, 2});
   ASSERT_TRUE(result) << result.error().text();

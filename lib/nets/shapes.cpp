@@ -12,12 +12,12 @@
 namespace hc::nets {
 namespace {
 
-constexpr int kMostStep = 64;  // of a window, and its sides [px]
+constexpr int kMostStride = 64;  // of a window, and its sides [px]
 
 /// The zeros before and after a side, of TensorFlow's SAME: an odd one comes after.
-void surround(int side, int window, int step, int& before, int& after) {
-  const int steps = (side + step - 1) / step;
-  const int all = std::max(0, (steps - 1) * step + window - side);
+void surround(int side, int window, int stride, int& before, int& after) {
+  const int steps = (side + stride - 1) / stride;
+  const int all = std::max(0, (steps - 1) * stride + window - side);
   before = all / 2;
   after = all - before;
 }
@@ -200,15 +200,15 @@ class Check {
   /// (height, width) of what a window goes over.
   [[nodiscard]] Result<Shape> windows(std::array<int, 2> sides, const Shape& weights) const {
     HC_TRY(is_image(shape(0)));
-    for (const int each : {sides[0], sides[1], layer_->step_down, layer_->step_right})
-      if (each < 1 || each > kMostStep)
-        return malformed(hc::format("a window or step of {}", each));
+    for (const int each : {sides[0], sides[1], layer_->stride_down, layer_->stride_right})
+      if (each < 1 || each > kMostStride)
+        return malformed(hc::format("a window or stride of {}", each));
     const Shape& from = shape(0);
     const Window window = window_of(*layer_, from, weights);
     const int down = from[1] + window.top + window.bottom - window.height;
     const int right = from[2] + window.left + window.right - window.width;
     if (down < 0 || right < 0) return malformed("a window larger than the image");
-    return Shape{down / layer_->step_down + 1, right / layer_->step_right + 1};
+    return Shape{down / layer_->stride_down + 1, right / layer_->stride_right + 1};
   }
 
   Status check_convolution() {
@@ -291,8 +291,8 @@ Window window_of(const Layer& layer, const Shape& image, const Shape& weights) {
   Window window{layer.window_height, layer.window_width};
   if (!weights.empty()) window = {weights[1], weights[2]};
   if (!layer.is_padded) return window;
-  surround(image[1], window.height, layer.step_down, window.top, window.bottom);
-  surround(image[2], window.width, layer.step_right, window.left, window.right);
+  surround(image[1], window.height, layer.stride_down, window.top, window.bottom);
+  surround(image[2], window.width, layer.stride_right, window.left, window.right);
   return window;
 }
 

@@ -225,7 +225,7 @@ class Reader {
 
   Status read_options(Layer& layer, const Table& options) {
     // The fields' numbers differ from operator to operator.
-    std::optional<std::size_t> activation, padding, steps, window;
+    std::optional<std::size_t> activation, padding, strides, window;
     switch (layer.kind) {
       case Kind::Add:
       case Kind::FullyConnected:
@@ -236,14 +236,14 @@ class Reader {
         activation = 1;
         break;
       case Kind::Convolution:
-        padding = 0, steps = 1, activation = 3;
+        padding = 0, strides = 1, activation = 3;
         break;
       case Kind::DepthwiseConvolution:
-        padding = 0, steps = 1, activation = 4;
+        padding = 0, strides = 1, activation = 4;
         break;
       case Kind::AveragePool:
       case Kind::MaxPool:
-        padding = 0, steps = 1, window = 3, activation = 5;
+        padding = 0, strides = 1, window = 3, activation = 5;
         break;
       case Kind::ResizeBilinear:
         layer.align_corners = options.number<std::uint8_t>(2) != 0;
@@ -253,9 +253,9 @@ class Reader {
         break;
     }
     if (padding) layer.is_padded = options.number<std::uint8_t>(*padding) == 0;
-    if (steps) {
-      layer.step_right = options.number<std::int32_t>(*steps);
-      layer.step_down = options.number<std::int32_t>(*steps + 1);
+    if (strides) {
+      layer.stride_right = options.number<std::int32_t>(*strides);
+      layer.stride_down = options.number<std::int32_t>(*strides + 1);
     }
     if (window) {
       layer.window_width = options.number<std::int32_t>(*window);

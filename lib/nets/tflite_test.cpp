@@ -31,7 +31,7 @@ TEST(Tflite, has_layers_with_weights_of_32_bits) {
   const auto& first = layers->layers.front();
   EXPECT_EQ(first.kind, hc::nets::Kind::Convolution);
   EXPECT_TRUE(first.is_padded);
-  EXPECT_EQ(first.step_down, 2);
+  EXPECT_EQ(first.stride_down, 2);
   const auto& weights = layers->tensors[static_cast<std::size_t>(first.inputs[1])];
   EXPECT_EQ(weights.shape, (hc::nets::Shape{24, 5, 5, 3}));
   EXPECT_EQ(weights.numbers.size(), 24U * 5 * 5 * 3);
