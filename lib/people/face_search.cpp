@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <people/box.h>
+
 namespace hc::people {
 namespace {
 
@@ -15,21 +17,6 @@ bool overlaps_any(const Face& face, const std::vector<Face>& others) {
 }
 
 }  // namespace
-
-std::vector<cv::Rect> parts_of(const cv::Size& image) {
-  const int length = std::max(image.width, image.height);
-  constexpr int kMostSides = 8;  // in a length: an image may be a strip
-  const int side = std::max({std::min(image.width, image.height), length / kMostSides, 1});
-  constexpr double kStep = 0.75;  // of a side
-  const int count = 1 + static_cast<int>(std::ceil((length - side) / (kStep * side)));
-  std::vector<cv::Rect> parts;
-  for (int i = 0; i < count; ++i) {
-    const int at = count == 1 ? 0 : (length - side) * i / (count - 1);
-    parts.push_back(image.width >= image.height ? cv::Rect(at, 0, side, side)
-                                                : cv::Rect(0, at, side, side));
-  }
-  return parts;
-}
 
 std::vector<Face> FaceSearch::look_around(const cv::Mat& image, const cv::Rect2f& box,
                                           float least) {

@@ -44,8 +44,4 @@ class FaceSearch {
   Time swept_{};
 };
 
-/// Squares that cover an image, each as high or as wide as it, and overlapping by a quarter or
-/// more.
-std::vector<cv::Rect> parts_of(const cv::Size& image);
-
 }  // namespace hc::people

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include <people/face_search.h>
+#include <people/box.h>
 #include <people/sign.h>
 
 namespace hc::people {
