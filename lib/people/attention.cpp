@@ -58,6 +58,10 @@ int Attention::nearest() const {
       ->first;
 }
 
+bool Attention::is_clearly_nearer(int track, int than) const {
+  return people_.at(track).place.distance + options_.nearer < people_.at(than).place.distance;
+}
+
 void Attention::look_at(int track, Reason reason, Time time) {
   if (!choice_ || choice_->track != track) since_ = time;
   choice_ = Choice{track, reason};
@@ -75,10 +79,8 @@ std::optional<Attention::Choice> Attention::choose(Time time) {
   } else if (speaks) {
     if (!choice_ || *speaks == choice_->track || kept >= options_.hold_from_speaker)
       look_at(*speaks, Reason::Speaks, time);
-  } else if (const int other = nearest(); !choice_) {
-    look_at(other, Reason::Nearest, time);
-  } else if (kept >= options_.hold && people_.at(other).place.distance + options_.nearer <
-                                          people_.at(choice_->track).place.distance) {
+  } else if (const int other = nearest();
+             !choice_ || (kept >= options_.hold && is_clearly_nearer(other, choice_->track))) {
     look_at(other, Reason::Nearest, time);
   } else {
     choice_->reason = Reason::Nearest;  // by less than the margin, or it is kept
@@ -89,11 +91,11 @@ std::optional<Attention::Choice> Attention::choose(Time time) {
 std::string_view text(Attention::Reason reason) {
   switch (reason) {
     case Attention::Reason::Nearest:
-      return "nearest";
+      return "is nearest";
     case Attention::Reason::Speaks:
       return "speaks";
     case Attention::Reason::Held:
-      return "held";
+      return "is held";
   }
   return "";
 }

@@ -7,8 +7,7 @@
 // - Then the speaker: the person from whose direction most sound has come.
 // - Without a speaker, the nearest person.
 // - The choice is kept for a minimum time, a shorter one before a speaker, and another person must
-// be
-//   nearer by a margin.
+//   be nearer by a margin.
 // - After kLife out of view a person has left.
 
 #include <chrono>
@@ -68,6 +67,7 @@ class Attention {
   [[nodiscard]] static double speech(const Person& person, Time time);
   [[nodiscard]] std::optional<int> speaker(Time time) const;
   [[nodiscard]] int nearest() const;
+  [[nodiscard]] bool is_clearly_nearer(int track, int than) const;
   void look_at(int track, Reason reason, Time time);
 
   Options options_;
@@ -77,7 +77,7 @@ class Attention {
   Time since_;  // choice_
 };
 
-/// "nearest", "speaks", "held".
+/// What the person does: "is nearest", "speaks", "is held".
 std::string_view text(Attention::Reason reason);
 
 }  // namespace hc::people

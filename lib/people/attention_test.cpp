@@ -103,4 +103,10 @@ TEST_F(AttentionTest, begins_again_when_the_clock_is_set) {
   EXPECT_TRUE(look_for(100ms));
 }
 
+TEST(Attention, says_its_reason_in_a_sentence) {
+  EXPECT_EQ(text(Attention::Reason::Nearest), "is nearest");
+  EXPECT_EQ(text(Attention::Reason::Speaks), "speaks");
+  EXPECT_EQ(text(Attention::Reason::Held), "is held");
+}
+
 }  // namespace
