@@ -155,7 +155,7 @@ TEST(FaceFinder, refuses_other_networks) {
   EXPECT_EQ(made.error().code, hc::Code::Malformed);
 }
 
-TEST(Identity, is_near_for_one_person_and_far_for_others) {
+TEST(Embedding, is_near_for_one_person_and_far_for_others) {
   auto network =
       hc::nets::Network::read(HC_BINARY_DIR "/share/hypercolumn/nets/face_recognition.json");
   ASSERT_TRUE(network);
@@ -163,7 +163,7 @@ TEST(Identity, is_near_for_one_person_and_far_for_others) {
   auto near = *finder("short");
   for (int i = 1; i <= 6; ++i) {
     const cv::Mat image = photograph(i);
-    std::vector<hc::people::Identity> people;
+    std::vector<hc::people::Embedding> people;
     for (const auto& track : search().look(kStart, image)) {
       people.push_back(identifier.describe(image, track.face).value());
       // The same person a little turned, darker and smaller.

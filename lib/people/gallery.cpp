@@ -3,25 +3,25 @@
 
 namespace hc::people {
 
-Identity mean(const std::vector<Identity>& views) {
-  Identity sum = {};
+Embedding mean(const std::vector<Embedding>& views) {
+  Embedding sum = {};
   for (const auto& view : views)
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += view[i];
   for (float& number : sum) number /= static_cast<float>(views.size());
   return sum;
 }
 
-int Gallery::add(const std::string& name, const Identity& identity) {
+int Gallery::add(const std::string& name, const Embedding& embedding) {
   const int next = static_cast<int>(numbers_.size()) + 1;
   const int number = numbers_.try_emplace(name, next).first->second;
-  people_[name] = {number, identity};
+  people_[name] = {number, embedding};
   return number;
 }
 
-std::optional<Gallery::Match> Gallery::find(const Identity& identity, float most) const {
+std::optional<Gallery::Match> Gallery::find(const Embedding& embedding, float most) const {
   std::optional<Match> best;
   for (const auto& [name, person] : people_) {
-    const float apart = distance(identity, person.identity);
+    const float apart = distance(embedding, person.embedding);
     if (apart < most && (!best || apart < best->distance)) best = {person.number, apart};
   }
   return best;

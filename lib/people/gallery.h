@@ -7,35 +7,35 @@
 #include <string>
 #include <vector>
 
-#include <people/identity.h>
+#include <people/embedding.h>
 
 namespace hc::people {
 
-/// The mean of several identities, which is nearer to each view of a person than these are to one
+/// The mean of several embeddings, which is nearer to each view of a person than these are to one
 /// another.
-Identity mean(const std::vector<Identity>& views);
+Embedding mean(const std::vector<Embedding>& views);
 
-/// Known people, each with a number and the mean identity of some views of the face.
+/// Known people, each with a number and the mean embedding of some views of the face.
 class Gallery {
  public:
   /// @returns  the person's number: from 1 in the order in which names came, never used again for
   ///     another name.
-  int add(const std::string& name, const Identity& identity);
+  int add(const std::string& name, const Embedding& embedding);
   void forget(const std::string& name) { people_.erase(name); }
 
   struct Match {
     int number = 0;
     float distance = 0;
   };
-  /// The person who is nearest to an identity, if nearer than `most`.
-  [[nodiscard]] std::optional<Match> find(const Identity& identity, float most) const;
+  /// The person who is nearest to an embedding, if nearer than `most`.
+  [[nodiscard]] std::optional<Match> find(const Embedding& embedding, float most) const;
   /// Name and number of all.
   [[nodiscard]] std::map<std::string, int> names() const;
 
  private:
   struct Person {
     int number = 0;
-    Identity identity = {};
+    Embedding embedding = {};
   };
   std::map<std::string, Person> people_;
   std::map<std::string, int> numbers_;  // also of the forgotten

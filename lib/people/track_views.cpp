@@ -49,7 +49,7 @@ std::optional<std::size_t> TrackViews::due(Time time, const std::vector<Track>& 
   return next;
 }
 
-void TrackViews::add(int track, Time time, const Identity& view) {
+void TrackViews::add(int track, Time time, const Embedding& view) {
   Views& views = tracks_[track];
   if (!views.last.empty() && distance(view, mean(views.last)) > kApart) views.last.clear();
   views.last.push_back(view);
@@ -58,13 +58,13 @@ void TrackViews::add(int track, Time time, const Identity& view) {
   views.described = views.seen = time;
 }
 
-const std::vector<Identity>& TrackViews::views(int track) const {
-  static const std::vector<Identity> none;
+const std::vector<Embedding>& TrackViews::views(int track) const {
+  static const std::vector<Embedding> none;
   const auto found = tracks_.find(track);
   return found == tracks_.end() ? none : found->second.last;
 }
 
-std::optional<Identity> TrackViews::identity(int track) const {
+std::optional<Embedding> TrackViews::embedding(int track) const {
   const auto found = tracks_.find(track);
   if (found == tracks_.end() || !found->second.is_sure) return std::nullopt;
   return mean(found->second.last);

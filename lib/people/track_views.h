@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The identities that the views of tracked faces have given. Pure: times come from the caller.
+// The embeddings that the views of tracked faces have given. Pure: times come from the caller.
 
 #include <chrono>
 #include <map>
 #include <optional>
 #include <vector>
 
+#include <people/embedding.h>
 #include <people/face_tracks.h>
-#include <people/identity.h>
 
 namespace hc::people {
 
@@ -32,16 +32,16 @@ class TrackViews {
   /// Forgets tracks that have ended.
   [[nodiscard]] std::optional<std::size_t> due(Time time, const std::vector<Track>& seen);
   /// Takes a description. A view that is far from the others replaces them all.
-  void add(int track, Time time, const Identity& view);
+  void add(int track, Time time, const Embedding& view);
 
   /// The last views of a track, at most kViews.
-  [[nodiscard]] const std::vector<Identity>& views(int track) const;
+  [[nodiscard]] const std::vector<Embedding>& views(int track) const;
   /// Their mean; nothing while it is not sure whose they are.
-  [[nodiscard]] std::optional<Identity> identity(int track) const;
+  [[nodiscard]] std::optional<Embedding> embedding(int track) const;
 
  private:
   struct Views {
-    std::vector<Identity> last;
+    std::vector<Embedding> last;
     Time seen, described;
     bool is_close = false, is_sure = false;
   };

@@ -6,12 +6,12 @@
 namespace {
 
 using namespace std::chrono_literals;
-using hc::people::Identity;
+using hc::people::Embedding;
 using hc::people::Track;
 using hc::people::TrackViews;
 
-Identity view(float first) {
-  Identity made = {};
+Embedding view(float first) {
+  Embedding made = {};
   made[0] = first;
   return made;
 }
@@ -25,7 +25,7 @@ class TrackViewsTest : public testing::Test {
     made.seen = now_;
     return made;
   }
-  /// Looks at tracks 1 and 2, whose faces have these identities, for some images.
+  /// Looks at tracks 1 and 2, whose faces have these embeddings, for some images.
   void look(int images, float x, float first, float second) {
     for (int i = 0; i < images; ++i) {
       now_ += 50ms;
@@ -47,26 +47,26 @@ TEST_F(TrackViewsTest, are_taken_in_turn_until_there_are_enough_then_once_a_seco
   EXPECT_EQ(views_.views(2).size(), TrackViews::kViews);
   look(100, 400, 0, 1);  // 5 s
   EXPECT_NEAR(described_, 10 + 10, 2);
-  EXPECT_FLOAT_EQ((*views_.identity(2))[0], 1);
+  EXPECT_FLOAT_EQ((*views_.embedding(2))[0], 1);
 }
 
 TEST_F(TrackViewsTest, few_are_not_sure) {
   look(4, 400, 0, 1);
-  EXPECT_FALSE(views_.identity(1));
+  EXPECT_FALSE(views_.embedding(1));
   look(2, 400, 0, 1);
-  EXPECT_TRUE(views_.identity(1));
-  EXPECT_FALSE(views_.identity(7));
+  EXPECT_TRUE(views_.embedding(1));
+  EXPECT_FALSE(views_.embedding(7));
   EXPECT_TRUE(views_.views(7).empty());
 }
 
 TEST_F(TrackViewsTest, faces_that_were_close_are_looked_at_again) {
   look(20, 400, 0, 1);
   look(5, 120, 0, 1);
-  EXPECT_FALSE(views_.identity(1) || views_.identity(2)) << "they may change places now";
+  EXPECT_FALSE(views_.embedding(1) || views_.embedding(2)) << "they may change places now";
   look(1, 400, 0, 1);
-  EXPECT_FALSE(views_.identity(1) && views_.identity(2)) << "one has been described since";
+  EXPECT_FALSE(views_.embedding(1) && views_.embedding(2)) << "one has been described since";
   look(1, 400, 0, 1);
-  EXPECT_TRUE(views_.identity(1) && views_.identity(2));
+  EXPECT_TRUE(views_.embedding(1) && views_.embedding(2));
 }
 
 TEST_F(TrackViewsTest, tracks_that_changed_places_are_nobodys_until_they_are_sure) {
@@ -75,11 +75,11 @@ TEST_F(TrackViewsTest, tracks_that_changed_places_are_nobodys_until_they_are_sur
   for (int i = 0; i < 20; ++i) {
     look(1, 400, 1, 0);
     for (const int number : {1, 2}) {
-      const auto identity = views_.identity(number);
-      EXPECT_FLOAT_EQ(identity ? (*identity)[0] : 0, identity && number == 1 ? 1 : 0) << i;
+      const auto embedding = views_.embedding(number);
+      EXPECT_FLOAT_EQ(embedding ? (*embedding)[0] : 0, embedding && number == 1 ? 1 : 0) << i;
     }
   }
-  EXPECT_TRUE(views_.identity(1) && views_.identity(2));
+  EXPECT_TRUE(views_.embedding(1) && views_.embedding(2));
 }
 
 TEST_F(TrackViewsTest, end_with_their_track) {

@@ -149,9 +149,9 @@ void Faces::send(const hc::Header& image, const std::vector<Track>& seen) {
 }
 
 int Faces::person(int track) const {
-  const auto identity = views_.identity(track);
-  if (!identity) return 0;
-  const auto found = folder_->gallery().find(*identity, static_cast<float>(*same_));
+  const auto embedding = views_.embedding(track);
+  if (!embedding) return 0;
+  const auto found = folder_->gallery().find(*embedding, static_cast<float>(*same_));
   return found ? found->number : 0;
 }
 
@@ -162,7 +162,7 @@ void Faces::learn(std::string_view text) {
   const std::string name(named->name);
   const auto& views = views_.views(track);
   if (views.empty()) throw hc::BadMessage(hc::format("no face has track {} now", track));
-  if (!views_.identity(track))
+  if (!views_.embedding(track))
     throw hc::BadMessage(hc::format(
         "it is not certain yet whose face track {} is: try again, away from other faces", track));
   if (const auto learned = folder_->learn(name, views); !learned)

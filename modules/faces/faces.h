@@ -7,10 +7,10 @@
 
 #include <frames/module_frames.h>
 #include <hc/module/module.h>
+#include <people/embedding.h>
 #include <people/face_distances.h>
 #include <people/face_search.h>
 #include <people/face_table.h>
-#include <people/identity.h>
 #include <people/track_views.h>
 #include <vision/module_cameras.h>
 

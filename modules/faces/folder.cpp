@@ -19,13 +19,13 @@
 
 namespace fs = std::filesystem;
 
-using hc::people::Identity;
+using hc::people::Embedding;
 
 namespace {
 
 constexpr std::size_t kMostBytes = 1 << 20;  // of a file
 
-hc::Result<std::vector<Identity>> views_in(const std::string& path) {
+hc::Result<std::vector<Embedding>> views_in(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   hc::StreamReader reader({.element_bytes = kMostBytes});
   hc::Message message;
@@ -37,16 +37,16 @@ hc::Result<std::vector<Identity>> views_in(const std::string& path) {
     reader.commit(static_cast<std::size_t>(file.gcount()));
   }
   const auto& header = message.header;
-  constexpr auto kNumbers = std::tuple_size_v<Identity>;
+  constexpr auto kNumbers = std::tuple_size_v<Embedding>;
   const bool is_table = header.info.type == hc::MatrixType::Table &&
                         header.width == static_cast<std::int32_t>(kNumbers) && header.height > 0 &&
                         header.info.components == 1;
   if (!is_table) return hc::Error{hc::Code::Malformed, "it is no table with 128 columns"};
   const auto table = HC_TRY(hc::view<float>(message));
-  std::vector<Identity> views;
+  std::vector<Embedding> views;
   for (std::size_t i = 0; i < table.height(); ++i) {
     std::ranges::copy(table.row(i), views.emplace_back().begin());
-    if (!hc::people::is_identity(views.back()))
+    if (!hc::people::is_embedding(views.back()))
       return hc::Error{hc::Code::Malformed, "it has numbers that no face has"};
   }
   return views;
@@ -86,7 +86,7 @@ bool Folder::read() {
   return true;
 }
 
-hc::Status Folder::learn(const std::string& name, const std::vector<Identity>& views) {
+hc::Status Folder::learn(const std::string& name, const std::vector<Embedding>& views) {
   const auto refused = [](std::string why) { return hc::Error{hc::Code::Invalid, std::move(why)}; };
   if (!is_file_name(name))
     return refused("not a name: up to 64 bytes of UTF-8, without \"/\" and a dot at the beginning");
@@ -94,7 +94,7 @@ hc::Status Folder::learn(const std::string& name, const std::vector<Identity>& v
     return refused("nobody can be learned without a folder: set the parameter people");
   if (::mkdir(path_.c_str(), S_IRWXU) != 0 && errno != EEXIST)
     return hc::Error{hc::Code::System, path_ + ": " + std::generic_category().message(errno)};
-  std::vector<Identity> all;
+  std::vector<Embedding> all;
   std::error_code unknown;
   if (fs::exists(file_of(name), unknown)) {
     auto before = views_in(file_of(name));

@@ -31,7 +31,7 @@ class Folder {
   /// alone, where there is none.
   ///
   /// Errors: Invalid (not a name; no folder is set), System.
-  hc::Status learn(const std::string& name, const std::vector<hc::people::Identity>& views);
+  hc::Status learn(const std::string& name, const std::vector<hc::people::Embedding>& views);
 
   [[nodiscard]] const hc::people::Gallery& gallery() const { return gallery_; }
 

@@ -9,10 +9,10 @@
 namespace {
 
 namespace fs = std::filesystem;
-using hc::people::Identity;
+using hc::people::Embedding;
 
-Identity identity(float first) {
-  Identity made = {};
+Embedding embedding(float first) {
+  Embedding made = {};
   made[0] = first;
   return made;
 }
@@ -39,15 +39,15 @@ TEST_F(FolderTest, keeps_people_for_the_next_start) {
   {
     Folder folder = open();
     EXPECT_FALSE(folder.read()) << "there is none yet";
-    ASSERT_TRUE(folder.learn("Anna", {identity(0.2F), identity(0.4F)}));
-    ASSERT_TRUE(folder.learn("Zoë de la Cruz", {identity(-0.5F)}));
+    ASSERT_TRUE(folder.learn("Anna", {embedding(0.2F), embedding(0.4F)}));
+    ASSERT_TRUE(folder.learn("Zoë de la Cruz", {embedding(-0.5F)}));
   }
   Folder folder = open();
   EXPECT_TRUE(folder.read());
   EXPECT_FALSE(folder.read()) << "nothing has changed";
   const auto names = folder.gallery().names();
   EXPECT_EQ(names.size(), 2U);
-  const auto found = folder.gallery().find(identity(0.3F), 0.01F);
+  const auto found = folder.gallery().find(embedding(0.3F), 0.01F);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->number, names.at("Anna"));
   EXPECT_EQ(fs::status(path_).permissions() & fs::perms::others_all, fs::perms::none);
@@ -56,24 +56,24 @@ TEST_F(FolderTest, keeps_people_for_the_next_start) {
 
 TEST_F(FolderTest, a_person_whose_file_is_deleted_is_forgotten) {
   Folder folder = open();
-  ASSERT_TRUE(folder.learn("Anna", {identity(0.2F)}));
-  ASSERT_TRUE(folder.learn("Ben", {identity(0.9F)}));
+  ASSERT_TRUE(folder.learn("Anna", {embedding(0.2F)}));
+  ASSERT_TRUE(folder.learn("Ben", {embedding(0.9F)}));
   const int anna = folder.gallery().names().at("Anna");
   fs::remove(path_ + "/Anna");
   EXPECT_TRUE(folder.read());
   EXPECT_FALSE(folder.gallery().names().contains("Anna"));
-  ASSERT_TRUE(folder.learn("Cleo", {identity(0.2F)}));
+  ASSERT_TRUE(folder.learn("Cleo", {embedding(0.2F)}));
   EXPECT_NE(folder.gallery().names().at("Cleo"), anna) << "her number is not another's";
 }
 
 TEST_F(FolderTest, adds_views_and_drops_the_oldest) {
   Folder folder = open();
-  ASSERT_TRUE(folder.learn("Anna", {identity(0.2F)}));
-  ASSERT_TRUE(folder.learn("Anna", {identity(0.4F)}));
-  EXPECT_TRUE(folder.gallery().find(identity(0.3F), 0.01F));
+  ASSERT_TRUE(folder.learn("Anna", {embedding(0.2F)}));
+  ASSERT_TRUE(folder.learn("Anna", {embedding(0.4F)}));
+  EXPECT_TRUE(folder.gallery().find(embedding(0.3F), 0.01F));
   for (std::size_t i = 0; i < Folder::kMostViews; ++i)
-    ASSERT_TRUE(folder.learn("Anna", {identity(0.8F)}));
-  EXPECT_TRUE(folder.gallery().find(identity(0.8F), 0.01F));
+    ASSERT_TRUE(folder.learn("Anna", {embedding(0.8F)}));
+  EXPECT_TRUE(folder.gallery().find(embedding(0.8F), 0.01F));
 }
 
 TEST_F(FolderTest, files_that_are_no_people_are_named_and_ignored) {
@@ -83,7 +83,7 @@ TEST_F(FolderTest, files_that_are_no_people_are_named_and_ignored) {
   write(".hidden", "x");
   fs::create_directories(path_ + "/folder");
   Folder folder = open();
-  ASSERT_TRUE(folder.learn("Anna", {identity(0.2F)}));
+  ASSERT_TRUE(folder.learn("Anna", {embedding(0.2F)}));
   EXPECT_EQ(folder.gallery().names().size(), 1U);
   ASSERT_EQ(said_.size(), 3U);
   for (const auto& line : said_) {
@@ -94,7 +94,7 @@ TEST_F(FolderTest, files_that_are_no_people_are_named_and_ignored) {
 }
 
 TEST_F(FolderTest, numbers_that_no_face_has_are_refused) {
-  Identity wild = identity(0);
+  Embedding wild = embedding(0);
   wild[5] = 1e30F;
   {
     Folder folder = open();
@@ -107,7 +107,7 @@ TEST_F(FolderTest, numbers_that_no_face_has_are_refused) {
 TEST_F(FolderTest, a_file_that_is_no_persons_is_never_overwritten) {
   write("head.toml", "version = 1\n");
   Folder folder = open();
-  const auto learned = folder.learn("head.toml", {identity(0.2F)});
+  const auto learned = folder.learn("head.toml", {embedding(0.2F)});
   ASSERT_FALSE(learned);
   EXPECT_NE(learned.error().detail.find("head.toml is not a person's"), std::string::npos);
   std::ifstream file(path_ + "/head.toml");
@@ -119,7 +119,7 @@ TEST_F(FolderTest, files_are_for_their_owner_alone) {
   fs::create_directories(path_);
   fs::permissions(path_, fs::perms::all);
   Folder folder = open();
-  ASSERT_TRUE(folder.learn("Anna", {identity(0.2F)}));
+  ASSERT_TRUE(folder.learn("Anna", {embedding(0.2F)}));
   const auto others = fs::perms::group_all | fs::perms::others_all;
   EXPECT_EQ(fs::status(path_ + "/Anna").permissions() & others, fs::perms::none);
 }
@@ -128,18 +128,18 @@ TEST_F(FolderTest, names_cannot_lead_out_of_it) {
   Folder folder = open();
   for (const char* name :
        {"", "../Anna", "a/b", ".", "..", ".bashrc", "a\nb", "Anna.unfinished", "Zo\xeb"}) {
-    const auto learned = folder.learn(name, {identity(0)});
+    const auto learned = folder.learn(name, {embedding(0)});
     ASSERT_FALSE(learned) << name;
     EXPECT_EQ(learned.error().code, hc::Code::Invalid);
   }
-  EXPECT_FALSE(folder.learn(std::string(65, 'a'), {identity(0)}));
+  EXPECT_FALSE(folder.learn(std::string(65, 'a'), {embedding(0)}));
   EXPECT_FALSE(fs::exists(path_));
 }
 
 TEST_F(FolderTest, nobody_is_learned_without_a_folder) {
   Folder folder("", [](std::string_view) {});
   EXPECT_FALSE(folder.read());
-  const auto learned = folder.learn("Anna", {identity(0)});
+  const auto learned = folder.learn("Anna", {embedding(0)});
   ASSERT_FALSE(learned);
   EXPECT_NE(learned.error().detail.find("parameter people"), std::string::npos);
 }

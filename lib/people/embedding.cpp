@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <people/identity.h>
+#include <people/embedding.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,12 +18,12 @@ constexpr Face::Point kPoints[] = {Face::RightEye, Face::LeftEye, Face::Nose, Fa
 
 }  // namespace
 
-bool is_identity(const Identity& numbers) {
+bool is_embedding(const Embedding& numbers) {
   constexpr float kMost = 10;
   return std::ranges::all_of(numbers, [](float each) { return std::abs(each) < kMost; });
 }
 
-float distance(const Identity& a, const Identity& b) {
+float distance(const Embedding& a, const Embedding& b) {
   float sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
   return std::sqrt(sum);
@@ -59,21 +59,21 @@ Result<Identifier> Identifier::make(std::unique_ptr<nets::Network> network) {
     return Error{Code::Malformed, "not a network that identifies faces: its input is " +
                                       nets::text(network->input())};
   const auto outputs = network->run(cv::Mat(kSide, kSide, CV_32FC3, cv::Scalar::all(0)));
-  if (outputs.size() != 1 || outputs[0].total() != std::tuple_size_v<Identity>)
+  if (outputs.size() != 1 || outputs[0].total() != std::tuple_size_v<Embedding>)
     return Error{Code::Malformed,
                  "not a network that identifies faces: it does not give 128 numbers"};
   return Identifier(std::move(network));
 }
 
-std::optional<Identity> Identifier::describe(const cv::Mat& image, const Face& face) {
+std::optional<Embedding> Identifier::describe(const cv::Mat& image, const Face& face) {
   cv::Mat input;
   face_chip(image, face).convertTo(input, CV_32F, 1 / 256.0);
   input -= cv::Scalar(122.782, 117.001, 104.298) / 256;  // Source: dlib, input_rgb_image_sized
   const auto outputs = network_->run(input);
-  Identity identity;
-  std::copy_n(outputs[0].begin<float>(), identity.size(), identity.begin());
-  if (!is_identity(identity)) return std::nullopt;
-  return identity;
+  Embedding embedding;
+  std::copy_n(outputs[0].begin<float>(), embedding.size(), embedding.begin());
+  if (!is_embedding(embedding)) return std::nullopt;
+  return embedding;
 }
 
 }  // namespace hc::people

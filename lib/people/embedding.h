@@ -15,13 +15,13 @@
 namespace hc::people {
 
 /// What identifies a person's face: this is biometric data.
-using Identity = std::array<float, 128>;
+using Embedding = std::array<float, 128>;
 
 /// Whether numbers can be those of a face: none is NaN, or far from those of dlib's network.
-bool is_identity(const Identity& numbers);
+bool is_embedding(const Embedding& numbers);
 
 /// Euclidean distance. Views of one person are about 0.3 apart, and those of two more than 0.6.
-float distance(const Identity& a, const Identity& b);
+float distance(const Embedding& a, const Embedding& b);
 
 /// Describes faces.
 class Identifier {
@@ -29,9 +29,9 @@ class Identifier {
   /// Errors: Malformed (not such a network).
   static Result<Identifier> make(std::unique_ptr<nets::Network> network);
 
-  /// The identity of a face in an image (height, width) of u8, RGB or grey; nothing where the
+  /// The embedding of a face in an image (height, width) of u8, RGB or grey; nothing where the
   /// network's numbers are none.
-  std::optional<Identity> describe(const cv::Mat& image, const Face& face);
+  std::optional<Embedding> describe(const cv::Mat& image, const Face& face);
 
  private:
   explicit Identifier(std::unique_ptr<nets::Network> network) : network_(std::move(network)) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <people/identity.h>
+#include <people/embedding.h>
 
 #include <gtest/gtest.h>
 
