@@ -57,9 +57,8 @@ cv::Mat input_of(const cv::Mat& image, const cv::Rect2f& square, int side, Ssd::
 
 cv::Rect2f square_around(const cv::Rect& part) {
   const int side = std::max(part.width, part.height);
-  return {static_cast<float>(part.x - (side - part.width) / 2),
-          static_cast<float>(part.y - (side - part.height) / 2), static_cast<float>(side),
-          static_cast<float>(side)};
+  const cv::Size beyond = (cv::Size(side, side) - part.size()) / 2;
+  return cv::Rect(part.x - beyond.width, part.y - beyond.height, side, side);
 }
 
 }  // namespace

@@ -59,9 +59,9 @@ void TrackViews::add(int track, Time time, const Embedding& view) {
 }
 
 const std::vector<Embedding>& TrackViews::views(int track) const {
-  static const std::vector<Embedding> none;
+  static const std::vector<Embedding> kNone;
   const auto found = tracks_.find(track);
-  return found == tracks_.end() ? none : found->second.last;
+  return found == tracks_.end() ? kNone : found->second.last;
 }
 
 std::optional<Embedding> TrackViews::embedding(int track) const {

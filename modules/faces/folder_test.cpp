@@ -23,7 +23,7 @@ class FolderTest : public testing::Test {
   ~FolderTest() override { fs::remove_all(path_); }
 
   Folder open() {
-    return Folder(path_, [this](std::string_view line) { said_.emplace_back(line); });
+    return {path_, [this](std::string_view line) { said_.emplace_back(line); }};
   }
   void write(const std::string& name, const std::string& text) const {
     fs::create_directories(path_);

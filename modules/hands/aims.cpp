@@ -45,6 +45,7 @@ std::optional<Aim> SteadyAim::find() const {
   double least = kSpread;
   for (const Aim& aim : aims) {
     std::vector<double> angles;
+    angles.reserve(aims.size());
     for (const Aim& other : aims)
       angles.push_back(
           std::acos(std::clamp(aim.ray.direction.dot(other.ray.direction), -1.0, 1.0)));
