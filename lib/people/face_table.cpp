@@ -47,6 +47,11 @@ void write(const FaceRow& from, std::span<double> row) {
   for (const double each : place) *to++ = short_number(each);
 }
 
+bool can_be_face(const Eigen::Vector3d& p_head) {
+  constexpr double kNearest = 0.1, kFarthest = 100;
+  return p_head.norm() >= kNearest && p_head.norm() <= kFarthest;
+}
+
 std::optional<FaceRow> face_in(std::span<const double> row) {
   if (!is_row(row, kFaceColumns) || !is_count(row[FaceAt::kTrack], 1) ||
       !is_count(row[FaceAt::kPerson], 0))

@@ -28,6 +28,8 @@ std::vector<std::string> face_columns();
 
 /// @param[out] row  of kFaceColumns numbers.
 void write(const FaceRow& face, std::span<double> row);
+/// Whether a head can be in a place: 0.1 … 100 m from the robot's.
+bool can_be_face(const Eigen::Vector3d& p_head);
 /// The face of a row; nothing if it has too few numbers, or some that no face has: NaN, a track
 /// that is no whole number.
 std::optional<FaceRow> face_in(std::span<const double> row);

@@ -49,6 +49,13 @@ TEST(FaceTable, is_read_as_it_was_written) {
   EXPECT_EQ(written(*face), row);
 }
 
+TEST(FaceTable, heads_are_neither_in_the_camera_nor_out_of_sight) {
+  EXPECT_TRUE(can_be_face({1, 0, 0}));
+  EXPECT_TRUE(can_be_face({-60, 60, 0}));
+  EXPECT_FALSE(can_be_face({0, 0, 0}));
+  EXPECT_FALSE(can_be_face({0, 100.5, 0}));
+}
+
 TEST(FaceTable, rows_that_are_no_faces_are_none) {
   auto row = written(some_face());
   EXPECT_FALSE(face_in(std::span(row).first(row.size() - 1)));

@@ -21,12 +21,6 @@ bool is_track(double number) {
   return number >= 0 && number <= kMost;
 }
 
-/// Whether a head can be there. [m]
-bool is_place(const Eigen::Vector3d& p) {
-  constexpr double kNearest = 0.1, kFarthest = 100;
-  return p.norm() >= kNearest && p.norm() <= kFarthest;
-}
-
 class Attend {
  public:
   explicit Attend(hc::Module& module) : module_(module) {
@@ -48,7 +42,8 @@ class Attend {
       const auto rows = faces.matrix();
       std::vector<hc::people::FaceRow> seen;
       for (std::size_t i = 0; i < rows.height(); ++i)
-        if (const auto face = hc::people::face_in(rows.row(i)); face && is_place(face->place))
+        if (const auto face = hc::people::face_in(rows.row(i));
+            face && hc::people::can_be_face(face->place))
           seen.push_back(*face);
       for (const auto& [face, track, person, p] : seen)
         attention_.see(track, time, {pan_of(T_robot_head.linear() * p), p.norm()});

@@ -9,6 +9,7 @@
 #include <frames/module_frames.h>
 #include <hc/contract/mode_names.h>
 #include <hc/module/module.h>
+#include <people/face_table.h>
 #include <vision/module_cameras.h>
 
 #include "instruments.h"
@@ -45,7 +46,7 @@ struct AugmentInputs {
       module.input("confidence", hc::intensity_image(),
                    "confidence of the depth, for the instrument confidence");
   hc::Input<hc::TableKind<double>> faces = module.input(
-      "faces", hc::table().of(0, static_cast<int>(NamedFaces::kColumns)).finite(),
+      "faces", hc::table().of(0, hc::people::kFaceColumns).finite(),
       "faces in the left image, from faces: a tag with the name is over each whose person has one",
       {.keep = 1});
   hc::Input<hc::StringKind> names =

@@ -9,16 +9,9 @@
 #include <hc/base/json_string.h>
 #include <hc/base/text.h>
 #include <hc/base/visible.h>
+#include <people/face_table.h>
 
 namespace {
-
-constexpr int kMostPerson = 1'000'000'000;  // largest number
-
-/// Whether a head can be there.
-bool is_place_of_head(const Eigen::Vector3d& p_head) {
-  constexpr double kNearest = 0.1, kFarthest = 100;  // [m]
-  return p_head.norm() >= kNearest && p_head.norm() <= kFarthest;
-}
 
 /// A name that can be drawn, and is not too long.
 std::string shown(std::string_view name) {
@@ -35,22 +28,18 @@ std::string shown(std::string_view name) {
 std::optional<std::pair<int, std::string>> read_name(std::string_view line) {
   int person = 0;
   const auto number = hc::take_until(line, ' ');
-  if (!hc::read_number(number, person) || person < 1 || person > kMostPerson || line.empty())
-    return std::nullopt;
+  if (!hc::read_number(number, person) || person < 1 || line.empty()) return std::nullopt;
   return std::pair(person, shown(line));
 }
 
 }  // namespace
 
 std::vector<NamedFaces::Face> NamedFaces::read(const hc::MatrixView<const double>& table) {
-  constexpr std::size_t kPerson = 6, kPlace = 21;  // columns
   std::vector<Face> faces;
   for (std::size_t y = 0; y < table.height(); ++y) {
-    const auto row = table.row(y);
-    const double person = row[kPerson];
-    const Eigen::Vector3d p_head(row[kPlace], row[kPlace + 1], row[kPlace + 2]);
-    if (!(person >= 1 && person <= kMostPerson) || !is_place_of_head(p_head)) continue;
-    faces.push_back({static_cast<int>(person), p_head});
+    const auto face = hc::people::face_in(table.row(y));
+    if (face && face->person >= 1 && hc::people::can_be_face(face->place))
+      faces.push_back({face->person, face->place});
   }
   std::ranges::stable_sort(faces, {}, [](const Face& face) { return face.p_head.norm(); });
   if (faces.size() > kMostFaces) faces.resize(kMostFaces);

@@ -30,7 +30,6 @@ class NamedFaces {
     Eigen::Vector3d p_head;  ///< the middle between the eyes, in the head's frame [m]
   };
 
-  static constexpr std::size_t kColumns = 24;    ///< of the table
   static constexpr std::size_t kMostFaces = 16;  ///< the nearest count
   static constexpr std::size_t kMostNames = 1000;
   static constexpr std::size_t kMostLetters = 24;         ///< of a name; the others become "..."

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <people/face_table.h>
+
 namespace {
 
 using namespace std::chrono_literals;
@@ -15,7 +17,8 @@ constexpr hc::Time kLooked{100s};
 
 /// A row of the table of faces.
 std::vector<double> face_row(double person, const Vector3d& p_head) {
-  std::vector<double> row(NamedFaces::kColumns);
+  std::vector<double> row(hc::people::kFaceColumns);
+  hc::people::write({.track = 1}, row);
   row[6] = person;
   for (int axis = 0; axis < 3; ++axis) row[21 + static_cast<std::size_t>(axis)] = p_head[axis];
   return row;
@@ -24,7 +27,7 @@ std::vector<double> face_row(double person, const Vector3d& p_head) {
 std::vector<NamedFaces::Face> faces_in(const std::vector<std::vector<double>>& rows) {
   std::vector<double> numbers;
   for (const auto& each : rows) numbers.insert(numbers.end(), each.begin(), each.end());
-  return NamedFaces::read({numbers.data(), rows.size(), NamedFaces::kColumns, 1});
+  return NamedFaces::read({numbers.data(), rows.size(), hc::people::kFaceColumns, 1});
 }
 
 /// The name that is shown of a person.
