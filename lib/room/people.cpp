@@ -148,9 +148,12 @@ void People::act(Person& person, double t) {
   }
   if (sign_ == Sign::Relaxed) return;
   const double share = ease((t - turn->begin) / kRise) * ease((turn->end - t) / kRise);
-  if (sign_ != Sign::Point)
-    return raise(person, kRight, sign_,
-                 person.T_world_body * shown(look_of(person.number), kRight, sign_), share);
+  if (sign_ != Sign::Point) {
+    // With both hands of each of two persons, who take turns.
+    const int side = turn->number / 2 % 2 == 0 ? kRight : kLeft;
+    return raise(person, side, sign_,
+                 person.T_world_body * shown(look_of(person.number), side, sign_), share);
+  }
   const auto seed = motion_.seed * 1000 + static_cast<std::uint64_t>(turn->number);
   const Vector3d thing = thing_to_point_at(person, Chance(seed).next());
   const int side = pointing_side(person, thing);

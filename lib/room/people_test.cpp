@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include <room/hand_model.h>
 #include <room/pointing.h>
@@ -166,6 +167,17 @@ TEST(Pointing, aims_eye_fingertip_and_finger_at_a_thing_1_to_3_m_away) {
   }
   EXPECT_GT(held, 1000);
   EXPECT_GE(places.size(), 4U);
+}
+
+TEST(Signs, are_shown_by_each_hand_of_everybody) {
+  People people({2, "palm", 3});
+  std::set<std::pair<int, int>> hands;
+  for (double t = 0; t < 60; t += 0.1)
+    for (const auto& person : people.at(t))
+      for (const int side : {kLeft, kRight})
+        if (person.hands[static_cast<std::size_t>(side)].sign == Sign::Open)
+          hands.emplace(person.number, side);
+  EXPECT_EQ(hands.size(), 4U);
 }
 
 TEST(Signs, are_held_still_but_a_wave_never_is) {
