@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Compares the stops of a robot with the palms that persons hold up before it. Pure: times come
+// from the caller.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+inline constexpr std::size_t kHandJoints = 21;  ///< of a hand, in MediaPipe's order
+
+/// A hand in an image, as a simulation knows it.
+struct TrueHand {
+  std::pair<int, int> whose;                        ///< person, and side
+  std::array<Eigen::Vector3d, kHandJoints> joints;  ///< in the world, z up [m]
+  bool is_in_image = false;                         ///< all of it
+};
+
+/// Whether a hand is open, with its fingers up.
+bool is_palm_up(const TrueHand& hand);
+
+/// Collects a run. A palm counts from the first image in which it is in sight, open, up, and where
+/// it then stays; one that stays for less than kHeld is no command.
+class StopScore {
+ public:
+  /// How far a palm that is held still moves at most [m].
+  static constexpr double kStill = 0.02;
+  /// How long it is held at least [s], less than `hands` asks for, which sees it a little earlier.
+  static constexpr double kHeld = 0.3;
+  /// How long after its end a stop still belongs to a palm [s].
+  static constexpr double kLate = 1;
+
+  /// Takes the hands of an image.
+  void see(double time, const std::vector<TrueHand>& hands);
+  /// Takes the time at which the robot was stopped, or is still.
+  void stop(double time);
+  /// Takes that nothing stops the robot any more.
+  void go() { is_stopped_ = false; }
+  /// Whether the stop can be cleared: no palm has been up for half a second.
+  [[nodiscard]] bool wants_to_go(double now) const;
+
+  /// From the first image to the last [s].
+  [[nodiscard]] double duration() const { return begin_ ? last_ - *begin_ : 0; }
+
+  /// Median and maximum time from a palm to its stop [s], -1 without; palms that stopped the robot,
+  /// palms held, stops without a palm, and duration [s].
+  [[nodiscard]] std::array<double, 6> numbers() const;
+  /// "12 of 12 palms stopped the robot, after 0.58 s median, 0.63 s at most; 0 stops without a palm
+  /// in 60 s"
+  [[nodiscard]] std::string text() const;
+
+ private:
+  struct Palm {
+    std::pair<int, int> whose;
+    double begin = 0, seen = 0;  // [s]
+    Eigen::Vector3d at;          // its wrist [m]
+    bool is_up = true;           // in the last image
+    bool has_stopped = false;
+    [[nodiscard]] bool is_held() const { return seen - begin >= kHeld; }
+  };
+  void see_palm(double time, const TrueHand& hand);
+  void drop_ended(double time);
+
+  std::vector<Palm> palms_;  // those up, and those whose stop may still come
+  std::optional<double> begin_;
+  double last_ = 0;     // image
+  double palm_ = -1e9;  // last image with a palm up
+  bool is_stopped_ = false;
+  std::vector<double> delays_;
+  int missed_ = 0, false_ = 0;
+};
