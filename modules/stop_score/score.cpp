@@ -96,8 +96,7 @@ std::string StopScore::text() const {
   const auto [median, most, stopped, palms, wrong, lasted] = numbers();
   const auto others = hc::format("{} stops without a palm in {:.0f} s", wrong, lasted);
   if (palms == 0) return others;
-  if (stopped == 0) return hc::format("0 of {} palms stopped the robot; ", palms) + others;
-  return hc::format("{} of {} palms stopped the robot, after {:.3f} s median, {:.3f} s at most; ",
-                    stopped, palms, median, most) +
+  return hc::format("missed {} of {} palms, stopped after {:.3f} s median, {:.3f} s at most; ",
+                    palms - stopped, palms, median, most) +
          others;
 }

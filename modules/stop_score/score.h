@@ -49,8 +49,8 @@ class StopScore {
   /// Median and maximum time from a palm to its stop [s], -1 without; palms that stopped the robot,
   /// palms held, stops without a palm, and duration [s].
   [[nodiscard]] std::array<double, 6> numbers() const;
-  /// "12 of 12 palms stopped the robot, after 0.58 s median, 0.63 s at most; 0 stops without a palm
-  /// in 60 s"
+  /// "missed 0 of 12 palms, stopped after 0.580 s median, 0.630 s at most; 0 stops without a palm
+  /// in 60 s"; without a palm only its end.
   [[nodiscard]] std::string text() const;
 
  private:

@@ -60,10 +60,9 @@ TEST(StopScore, is_the_time_from_the_first_image_of_a_palm_that_is_held) {
   EXPECT_EQ(numbers[3], 3);
   EXPECT_EQ(numbers[4], 0);
   EXPECT_NEAR(numbers[5], 23.45, 1e-9);
-  EXPECT_EQ(
-      score.text(),
-      "3 of 3 palms stopped the robot, after 0.650 s median, 0.700 s at most; 0 stops without "
-      "a palm in 23 s");
+  EXPECT_EQ(score.text(),
+            "missed 0 of 3 palms, stopped after 0.650 s median, 0.700 s at most; 0 stops without a "
+            "palm in 23 s");
 }
 
 TEST(StopScore, a_stop_may_come_a_little_after_the_palm) {
@@ -72,10 +71,9 @@ TEST(StopScore, a_stop_may_come_a_little_after_the_palm) {
   for (int i = 20; i < 30; ++i)  // still open, it sinks
     score.see(i * kFrame, {straight_hand(0.05 * (i - 20))});
   score.stop(1.4);
-  EXPECT_EQ(
-      score.text(),
-      "1 of 1 palms stopped the robot, after 1.400 s median, 1.400 s at most; 0 stops without "
-      "a palm in 1 s");
+  EXPECT_EQ(score.text(),
+            "missed 0 of 1 palms, stopped after 1.400 s median, 1.400 s at most; 0 stops without a "
+            "palm in 1 s");
   for (int i = 30; i < 60; ++i) score.see(i * kFrame, {hanging()});
   score.go();
   score.stop(2.9);
@@ -86,7 +84,10 @@ TEST(StopScore, a_stop_may_come_a_little_after_the_palm) {
 TEST(StopScore, counts_palms_that_did_not_stop_it) {
   StopScore score;
   hold_up(score, 10, 99);
-  EXPECT_EQ(score.text(), "0 of 1 palms stopped the robot; 0 stops without a palm in 3 s");
+  EXPECT_EQ(
+      score.text(),
+      "missed 1 of 1 palms, stopped after -1.000 s median, -1.000 s at most; 0 stops without a "
+      "palm in 3 s");
   EXPECT_EQ(score.numbers()[0], -1);
 }
 
