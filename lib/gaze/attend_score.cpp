@@ -31,15 +31,6 @@ void Attending::see(double time, const std::vector<TruePerson>& people) {
     samples_.push_back({time, person->number, person->speaks, person->error});
 }
 
-void Attending::name(const std::vector<TruePerson>& people, const std::vector<NamedFace>& faces) {
-  for (const auto& face : faces) {
-    if (face.person == 0) continue;
-    for (const auto& person : people)
-      if ((face.pixel - person.pixel).norm() < person.width / 2)
-        ++named_[person.number][face.person];
-  }
-}
-
 double Attending::duration() const {
   return samples_.empty() ? 0 : samples_.back().time - samples_.front().time;
 }
@@ -89,21 +80,12 @@ AttendScore Attending::score() const {
   if (count > 0) score.rms = std::sqrt(sum / count);
   score.settled = settled();
   score_turns(score);
-  for (const auto& [person, taken] : named_) {
-    int all = 0, most = 0;
-    for (const auto& [known, times] : taken) {
-      all += times;
-      most = std::max(most, times);
-    }
-    score.named += all;
-    score.swapped += all - most;
-  }
   return score;
 }
 
-std::array<double, 8> AttendScore::numbers() const {
-  return {rms,           on_target.value_or(-1), overshoot,     settled.value_or(-1),
-          double(turns), double(right_turns),    double(named), double(swapped)};
+std::array<double, 6> AttendScore::numbers() const {
+  return {rms,           on_target.value_or(-1), overshoot, settled.value_or(-1),
+          double(turns), double(right_turns)};
 }
 
 std::string AttendScore::text() const {
@@ -112,9 +94,8 @@ std::string AttendScore::text() const {
       settled ? hc::format("settled after {:.2f} s", *settled) : std::string("never settled");
   return hc::format(
       "RMS error {:.2f}°, on target after {:.2f} s, overshoot {:.2f}°, {}, wrong in {} of {} turns "
-      "of those who spoke, {} of {} names swapped",
-      rms * kDegrees, *on_target, overshoot * kDegrees, stays, turns - right_turns, turns, swapped,
-      named);
+      "of those who spoke",
+      rms * kDegrees, *on_target, overshoot * kDegrees, stays, turns - right_turns, turns);
 }
 
 }  // namespace hc::gaze

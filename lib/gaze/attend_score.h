@@ -3,7 +3,6 @@
 // Scores how well a head looks at people, given their true places. Pure.
 
 #include <array>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,15 +17,7 @@ struct TruePerson {
   Eigen::Vector2d error;  ///< from the gaze to the middle between the eyes: right, down [rad]
   double distance = 0;    ///< [m]
   bool speaks = false;
-  double visible = 0;     ///< share, 0 … 1
-  Eigen::Vector2d pixel;  ///< [px]
-  double width = 0;       ///< of the face [px]
-};
-
-/// A face that was found in an image, and the person it was taken for.
-struct NamedFace {
-  Eigen::Vector2d pixel;  ///< the middle between the eyes [px]
-  int person = 0;         ///< 0: unknown
+  double visible = 0;  ///< share, 0 … 1
 };
 
 struct AttendScore {
@@ -36,10 +27,8 @@ struct AttendScore {
   std::optional<double> settled;    ///< until the error stays within the limit [s]
   int turns = 0;                    ///< times that a person began to speak
   int right_turns = 0;              ///< of these, how often the head looked at them in time
-  int named = 0;                    ///< faces that were taken for somebody
-  int swapped = 0;                  ///< of these, how many were somebody else's
 
-  [[nodiscard]] std::array<double, 8> numbers() const;
+  [[nodiscard]] std::array<double, 6> numbers() const;
   /// "RMS error 0.50°, on target after 0.45 s, …"
   [[nodiscard]] std::string text() const;
 };
@@ -52,8 +41,6 @@ class Attending {
 
   /// Takes the people of an image. The head is to look at the one who speaks, else at the nearest.
   void see(double time, const std::vector<TruePerson>& people);
-  /// Takes the faces that were found in an image.
-  void name(const std::vector<TruePerson>& people, const std::vector<NamedFace>& faces);
 
   /// From the first image with a visible person to the last [s].
   [[nodiscard]] double duration() const;
@@ -71,8 +58,6 @@ class Attending {
 
   double within_;
   std::vector<Sample> samples_;
-  // How often each true person was taken for each known one.
-  std::map<int, std::map<int, int>> named_;
 };
 
 }  // namespace hc::gaze

@@ -13,7 +13,7 @@ using hc::gaze::TruePerson;
 constexpr double kWithin = 0.05;  // [rad]
 
 TruePerson person_at(double error, int number = 1, bool speaks = false, double distance = 2) {
-  return {number, {error, 0}, distance, speaks, 1, {100.0 * number, 300}, 60};
+  return {number, {error, 0}, distance, speaks, 1};
 }
 
 TEST(AttendScore, of_a_still_face_has_its_overshoot_and_the_time_to_settle) {
@@ -48,16 +48,6 @@ TEST(AttendScore, wants_the_one_who_speaks_else_the_nearest) {
   const auto score = run.score();
   EXPECT_EQ(score.turns, 2);
   EXPECT_EQ(score.right_turns, 1);
-}
-
-TEST(AttendScore, counts_names_that_are_another_persons) {
-  Attending run(kWithin);
-  const std::vector<TruePerson> people = {person_at(0, 1), person_at(0.3, 2)};
-  for (int i = 0; i < 10; ++i)
-    run.name(people, {{{105, 300}, 7}, {{195, 310}, i == 4 ? 7 : 8}, {{600, 20}, 9}});
-  run.name(people, {{{105, 300}, 0}});
-  EXPECT_EQ(run.score().named, 20);
-  EXPECT_EQ(run.score().swapped, 1);
 }
 
 }  // namespace

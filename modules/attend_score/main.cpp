@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scores how well a head looks at people, against the ground truth of a simulation.
 #include <cmath>
-#include <deque>
 #include <vector>
 
 #include <frames/messages.h>
 #include <frames/module_frames.h>
 #include <gaze/attend_score.h>
 #include <hc/module/module.h>
-#include <people/face_table.h>
 #include <transports/all.h>
 
 namespace {
@@ -29,24 +27,9 @@ std::vector<hc::gaze::TruePerson> people_of(const Rows& rows,
                       {std::atan2(p.x(), p.z()), std::atan2(p.y(), p.z())},
                       p.norm(),
                       row[kSpeaks] != 0,
-                      row[kVisible],
-                      {row[kU], row[kV]},
-                      row[kWidth]});
+                      row[kVisible]});
   }
   return people;
-}
-
-std::vector<hc::gaze::NamedFace> faces_of(const Rows& rows) {
-  std::vector<hc::gaze::NamedFace> faces;
-  for (std::size_t i = 0; i < rows.height(); ++i) {
-    const auto face = hc::people::face_in(rows.row(i));
-    if (!face) continue;
-    using hc::people::Face;
-    const auto& points = face->face.points;
-    const cv::Point2d eyes = (points[Face::RightEye] + points[Face::LeftEye]) / 2;
-    faces.push_back({{eyes.x, eyes.y}, face->person});
-  }
-  return faces;
 }
 
 }  // namespace
@@ -55,18 +38,14 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   constexpr auto kWorldLeftEye = hc::transform_coord(hc::Coord::kWorld, hc::Coord::kLeftEye);
   hc::Module module{"attend_score",
-                    "Compares the direction of a head's eyes, and the names of faces, with the "
-                    "people in a simulated room."};
+                    "Compares the direction of a head's eyes with the people in a simulated room."};
   auto eye = module.input("left_pose", hc::transformation().in(kWorldLeftEye),
                           "truth: T_world_left_eye", {.keep = 64});
   auto truth = module.input("people", hc::table().of(0, kPersonColumns), "truth: of the simulator",
                             {.keep = 64});
-  auto faces = module.input("faces", hc::table().of(0, hc::people::kFaceColumns),
-                            "faces of module faces", {.keep = 64});
-  auto result =
-      module.output("score", hc::table().of(1, 8), "at the end",
-                    {.columns = {"RMS error [rad]", "on target [s]", "overshoot [rad]",
-                                 "settled [s]", "turns", "right turns", "names", "swapped names"}});
+  auto result = module.output("score", hc::table().of(1, 6), "at the end",
+                              {.columns = {"RMS error [rad]", "on target [s]", "overshoot [rad]",
+                                           "settled [s]", "turns", "right turns"}});
   auto duration =
       module.parameter("duration", 20.0, "s", "how long it is scored", {.min = 0.1, .max = 1e6});
   auto within = module.parameter("within", 0.0524, "rad", "maximum error of a person looked at",
@@ -76,9 +55,6 @@ int main(int argc, char** argv) {
   hc::ModuleFrames frames{module, {.input = false}};
 
   std::optional<hc::gaze::Attending> run;
-  // The people of recent images, since faces are found later.
-  std::deque<std::pair<hc::Time, std::vector<hc::gaze::TruePerson>>> recent;
-  constexpr std::size_t kRecent = 64;
   auto silence = module.after(std::chrono::seconds(60),
                               [] { throw hc::ModuleError("no image within timeout"); });
   module.on_start([&] {
@@ -91,17 +67,11 @@ int main(int argc, char** argv) {
     const Eigen::Translation3d middle(frames.fixed("left_eye", "right_eye").translation() / 2);
     const auto people = people_of(rows.matrix(), (T_world_eye * middle).inverse());
     run->see(hc::seconds(pose.header.time.time_since_epoch()), people);
-    recent.emplace_back(pose.header.time, people);
-    if (recent.size() > kRecent) recent.pop_front();
     if (run->duration() < *duration) return;
     const auto score = run->score();
     result.send(score.numbers());
     module.log(score.text(), hc::Level::Result);
     module.stop();
-  });
-  module.on(faces, [&](const auto& message) {
-    for (const auto& [time, people] : recent)
-      if (time == message.header.time) run->name(people, faces_of(message.matrix()));
   });
   return module.run(argc, argv);
 }
