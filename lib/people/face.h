@@ -22,6 +22,9 @@ struct Face {
   /// Angle of the line through the eyes, > 0 clockwise in the image, 0 for an upright face.
   /// [rad, -π … π]
   [[nodiscard]] float roll() const;
+  [[nodiscard]] cv::Point2f between_eyes() const {
+    return (points[RightEye] + points[LeftEye]) / 2;
+  }
   /// Estimated from where the nose is between the ears: > 0 when the face looks to the image's
   /// right. Within about 15° up to 60°. [rad]
   [[nodiscard]] float yaw() const;

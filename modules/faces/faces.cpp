@@ -12,7 +12,6 @@
 #include <people/person_name.h>
 #include <vision/messages.h>
 
-using hc::people::Face;
 using hc::people::Track;
 
 namespace {
@@ -126,8 +125,7 @@ Eigen::Vector3d Faces::place(const hc::Header& image, const Track& track) {
   const auto cameras = intrinsics_.of(image.width, image.height);
   const double z = distances_.find(track.number, last_)
                        .value_or(hc::people::distance_by_size(track.face, pair_of(cameras)));
-  const cv::Point2f eyes =
-      (track.face.points[Face::RightEye] + track.face.points[Face::LeftEye]) / 2;
+  const cv::Point2f eyes = track.face.between_eyes();
   const Eigen::Vector3d p((eyes.x - cameras.cx) / cameras.fx * z,
                           (eyes.y - cameras.cy) / cameras.fy * z, z);
   return mount_.pose_in("head", image.time, frames_) * p;

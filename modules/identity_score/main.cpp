@@ -10,6 +10,7 @@
 
 #include <hc/base/format.h>
 #include <hc/module/module.h>
+#include <people/face_table.h>
 #include <transports/all.h>
 
 #include "score.h"
@@ -18,9 +19,8 @@ namespace {
 
 using Rows = hc::MatrixView<const double>;
 
-// Columns of the simulator's people, and of faces.
+// Columns of the simulator's people.
 enum PersonColumn { kNumber, kU = 6, kV, kWidth, kVisible, kPersonColumns };
-enum FaceColumn { kTrack = 5, kKnown, kRightEye, kLeftEye = 9, kFaceColumns = 24 };
 
 std::vector<TruePerson> people_of(const Rows& rows) {
   std::vector<TruePerson> people;
@@ -35,10 +35,10 @@ std::vector<TruePerson> people_of(const Rows& rows) {
 std::vector<SeenFace> faces_of(const Rows& rows) {
   std::vector<SeenFace> faces;
   for (std::size_t i = 0; i < rows.height(); ++i) {
-    const auto row = rows.row(i);
-    faces.push_back({(row[kRightEye] + row[kLeftEye]) / 2,
-                     (row[kRightEye + 1] + row[kLeftEye + 1]) / 2, static_cast<int>(row[kTrack]),
-                     static_cast<int>(row[kKnown])});
+    const auto face = hc::people::face_in(rows.row(i));
+    if (!face) continue;
+    const cv::Point2f eyes = face->face.between_eyes();
+    faces.push_back({eyes.x, eyes.y, face->track, face->person});
   }
   return faces;
 }
@@ -104,8 +104,8 @@ class Program {
   hc::Module& module_;
   hc::Input<hc::TableKind<double>> truth_ = module_.input(
       "people", hc::table().of(0, kPersonColumns), "truth: of the simulator", {.keep = 64});
-  hc::Input<hc::TableKind<double>> faces_ = module_.input("faces", hc::table().of(0, kFaceColumns),
-                                                          "faces of module faces", {.keep = 64});
+  hc::Input<hc::TableKind<double>> faces_ = module_.input(
+      "faces", hc::table().of(0, hc::people::kFaceColumns), "faces of module faces", {.keep = 64});
   hc::Input<hc::StringKind> names_ = module_.input(
       "names", hc::string(), "names of module faces: that of a person is the simulator's number");
   hc::Output<hc::StringKind> name_ =
