@@ -19,7 +19,7 @@
 #include <nets/weights.h>
 #include <people/face_search.h>
 #include <people/gallery.h>
-#include <people/identity.h>
+#include <people/embedding.h>
 #include <room/people.h>
 #include <room/scenery.h>
 #include <opencv2/imgcodecs.hpp>
@@ -32,7 +32,7 @@ namespace {
 using namespace std::chrono_literals;
 using bench::must;
 using hc::people::Face, hc::people::FaceFinder, hc::people::FaceSearch;
-using hc::people::Identifier, hc::people::Identity;
+using hc::people::Embedding, hc::people::Identifier;
 
 constexpr float kLeastWidth = 40;  // of a face that is to be found [px]
 constexpr float kSame = 0.5F;      // the parameter `same` of faces
@@ -108,8 +108,8 @@ class Sight {
     for (const auto& track : search_.look(now_, image)) faces.push_back(track.face);
     return faces;
   }
-  Identity describe(const cv::Mat& image, const Face& face) {
-    return identifier_.describe(image, face);
+  Embedding describe(const cv::Mat& image, const Face& face) {
+    return identifier_.describe(image, face).value();
   }
 
  private:
@@ -130,11 +130,11 @@ const Face* face_at(const std::vector<Face>& faces, const cv::Point2f& middle, f
   return found == faces.end() ? nullptr : &*found;
 }
 
-/// The identity of a face in an image.
+/// A face in an image, described.
 struct View {
   std::string person;
   std::string image;  // faces of one image are different persons'
-  Identity identity = {};
+  Embedding embedding = {};
 };
 
 /// Of the faces at least kLeastWidth wide, and of the others.
@@ -219,7 +219,7 @@ Pairs pairs_of(const std::vector<View>& views) {
   Pairs pairs;
   for (std::size_t a = 0; a < views.size(); ++a)
     for (std::size_t b = 0; b < a; ++b) {
-      const float apart = hc::people::distance(views[a].identity, views[b].identity);
+      const float apart = hc::people::distance(views[a].embedding, views[b].embedding);
       if (views[a].person != views[b].person)
         pairs.other.push_back(apart);
       else if (views[a].image != views[b].image)
@@ -235,12 +235,12 @@ Pairs pairs_with_known(const std::vector<View>& views) {
   Pairs pairs;
   for (std::size_t i = 0; i < views.size(); ++i)
     for (const auto& [person, all] : of_person) {
-      std::vector<Identity> others;
+      std::vector<Embedding> others;
       for (const std::size_t k : all)
         if (person != views[i].person || views[k].image != views[i].image)
-          others.push_back(views[k].identity);
+          others.push_back(views[k].embedding);
       if (others.empty()) continue;
-      const float apart = hc::people::distance(views[i].identity, hc::people::mean(others));
+      const float apart = hc::people::distance(views[i].embedding, hc::people::mean(others));
       (person == views[i].person ? pairs.same : pairs.other).push_back(apart);
     }
   return pairs;
