@@ -55,12 +55,14 @@ function read(folder: string, file: string): Read {
 }
 
 function linksInto(name: string, inputs: Table): GraphLink[] {
-  return Object.entries(inputs).flatMap(([input, source]) => {
-    const isTable = typeof source === "object" && !Array.isArray(source);
-    return [isTable ? (source as Table).from! : source]
-      .flat()
-      .map((from) => linkOf(expand(from as string), `${name}.${input}`));
-  });
+  /** The outputs in a value: "a.b", { from = …, rate = 20 }, or an array of these. */
+  const sources = (value: unknown): string[] => {
+    if (typeof value === "string") return [value];
+    return Array.isArray(value) ? value.flatMap(sources) : sources((value as Table).from);
+  };
+  return Object.entries(inputs).flatMap(([input, value]) =>
+    sources(value).map((from) => linkOf(expand(from), `${name}.${input}`)),
+  );
 }
 
 /** The state of a graph of graphs/ before anything has happened. */
