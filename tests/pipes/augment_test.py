@@ -260,7 +260,7 @@ class Augment(Sight):
         """Columns and rows of the left image that tags cover, the first and the last [px], and what
         is said. @param faces  rows of a table: person, x, y, z in the head's frame."""
         width = 21 + max(map(len, faces), default=4) - 1
-        rows = [" ".join(map(str, [0] * 6 + [face[0]] + [0] * 14 + face[1:])) for face in faces]
+        rows = [" ".join(map(str, [0] * 5 + [1, face[0]] + [0] * 14 + face[1:])) for face in faces]
         header = "1 1 0 0 8 950000000 120190 0 9 %d %d" % (width, len(faces))
         self.write("faces.mtp", "\n".join([header, *rows]) + ("\n" if rows else "\n\n"))
         names = names if isinstance(names, bytes) else names.encode()
