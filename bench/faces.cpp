@@ -17,9 +17,9 @@
 #include <vector>
 
 #include <nets/weights.h>
+#include <people/embedding.h>
 #include <people/face_search.h>
 #include <people/gallery.h>
-#include <people/embedding.h>
 #include <room/people.h>
 #include <room/scenery.h>
 #include <opencv2/imgcodecs.hpp>
@@ -31,8 +31,8 @@ namespace {
 
 using namespace std::chrono_literals;
 using bench::must;
-using hc::people::Face, hc::people::FaceFinder, hc::people::FaceSearch;
 using hc::people::Embedding, hc::people::Identifier;
+using hc::people::Face, hc::people::FaceFinder, hc::people::FaceSearch;
 
 constexpr float kLeastWidth = 40;  // of a face that is to be found [px]
 constexpr float kSame = 0.5F;      // the parameter `same` of faces

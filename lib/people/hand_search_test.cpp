@@ -144,8 +144,7 @@ TEST_F(HandsInAPhotograph, are_found_and_followed) {
 }
 
 TEST_F(HandsInAPhotograph, are_followed_beside_enough_others_while_they_are_up) {
-  constexpr int kTile = 240;
-  constexpr float kScale = 3, kAside = 1.5F;
+  constexpr float kTile = 240, kScale = 3, kAside = 1.5F;
   /// The hand with its fingers up, or turned from there.
   const auto tile = [&](float turn) {
     const float by = turn - kAside;
@@ -154,7 +153,7 @@ TEST_F(HandsInAPhotograph, are_followed_beside_enough_others_while_they_are_up) 
     const cv::Matx23f turned(cos, -sin, kTile / 2 - cos * from.x + sin * from.y, sin, cos,
                              kTile / 2 - sin * from.x - cos * from.y);
     cv::Mat made;
-    cv::warpAffine(image_, made, turned, {kTile, kTile});
+    cv::warpAffine(image_, made, turned, {static_cast<int>(kTile), static_cast<int>(kTile)});
     return made;
   };
   HandSearch search(made_palms(), made_landmarks(), 1);

@@ -14,7 +14,8 @@ namespace {
 using Rows = hc::MatrixView<const double>;
 
 // Columns of the simulator's people.
-enum PersonColumn { kNumber, kX, kY, kZ, kYaw, kSpeaks, kU, kV, kWidth, kVisible, kPersonColumns };
+enum PersonColumn { Number, X, Y, Z, Yaw, Speaks, U, V, Width, Visible };
+constexpr int kPersonColumns = Visible + 1;
 
 /// @param T_eye_world  of an optical frame midway between the eyes.
 std::vector<hc::gaze::TruePerson> people_of(const Rows& rows,
@@ -22,12 +23,12 @@ std::vector<hc::gaze::TruePerson> people_of(const Rows& rows,
   std::vector<hc::gaze::TruePerson> people;
   for (std::size_t i = 0; i < rows.height(); ++i) {
     const auto row = rows.row(i);
-    const Eigen::Vector3d p = T_eye_world * Eigen::Vector3d(row[kX], row[kY], row[kZ]);
-    people.push_back({static_cast<int>(row[kNumber]),
+    const Eigen::Vector3d p = T_eye_world * Eigen::Vector3d(row[X], row[Y], row[Z]);
+    people.push_back({static_cast<int>(row[Number]),
                       {std::atan2(p.x(), p.z()), std::atan2(p.y(), p.z())},
                       p.norm(),
-                      row[kSpeaks] != 0,
-                      row[kVisible]});
+                      row[Speaks] != 0,
+                      row[Visible]});
   }
   return people;
 }

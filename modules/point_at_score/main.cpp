@@ -18,20 +18,21 @@ namespace {
 using Rows = hc::MatrixView<const double>;
 
 // Columns of the simulator's hand_joints and pointed.
-enum JointColumn { kPerson, kHand, kJoint, kX, kY, kZ, kU, kV, kJointColumns };
-constexpr int kPointedColumns = 4;
+enum JointColumn { Person, Hand, Joint, X, Y, Z, U, V };
+constexpr int kJointColumns = V + 1, kPointedColumns = 4;
 
 std::vector<TrueScene::TrueHand> hands_of(const Rows& rows) {
   std::map<std::pair<int, int>, TrueScene::TrueHand> hands;
   for (std::size_t i = 0; i < rows.height(); ++i) {
     const auto row = rows.row(i);
-    if (!(row[kJoint] >= 0 && row[kJoint] < kJoints)) continue;
-    const auto joint = static_cast<std::size_t>(row[kJoint]);
-    auto& hand = hands[{static_cast<int>(row[kPerson]), static_cast<int>(row[kHand])}];
-    hand.places[joint] = {row[kX], row[kY], row[kZ]};
-    hand.pixels[joint] = {row[kU], row[kV]};
+    if (!(row[Joint] >= 0 && row[Joint] < kJoints)) continue;
+    const auto joint = static_cast<std::size_t>(row[Joint]);
+    auto& hand = hands[{static_cast<int>(row[Person]), static_cast<int>(row[Hand])}];
+    hand.places[joint] = {row[X], row[Y], row[Z]};
+    hand.pixels[joint] = {row[U], row[V]};
   }
   std::vector<TrueScene::TrueHand> all;
+  all.reserve(hands.size());
   for (const auto& [whose, hand] : hands) all.push_back(hand);
   return all;
 }
