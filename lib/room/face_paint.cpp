@@ -64,12 +64,12 @@ cv::Point2f pixel_of(const Vector2d& place) {
 Vector2d unwarped(const Look& look, Vector2d place) {
   const double side = place.x() < 0 ? -1 : 1;
   place.x() *= side;
-  for (auto warp = look.warps.rbegin(); warp != look.warps.rend(); ++warp) {
-    const Vector2d from_there = place - warp->middle - warp->move;
-    const double weight = std::exp(-from_there.squaredNorm() / (2 * warp->radius * warp->radius));
-    const Vector2d was = warp->middle + from_there.cwiseQuotient(warp->enlarge);
+  std::for_each(look.warps.rbegin(), look.warps.rend(), [&](const auto& warp) {
+    const Vector2d from_there = place - warp.middle - warp.move;
+    const double weight = std::exp(-from_there.squaredNorm() / (2 * warp.radius * warp.radius));
+    const Vector2d was = warp.middle + from_there.cwiseQuotient(warp.enlarge);
     place += weight * (was - place);
-  }
+  });
   place.x() *= side;
   return place;
 }
@@ -127,7 +127,7 @@ cv::Scalar skin_of(const Look& look) {
 }
 
 cv::Mat paint_head(const Look& look) {
-  static const Photograph photograph = read_photograph();
+  static const Photograph kPhotograph = read_photograph();
   cv::Mat map(kRows, kColumns, CV_32FC2), places(kRows, kColumns, CV_64FC2);
   for (int row = 0; row < kRows; ++row)
     for (int column = 0; column < kColumns; ++column) {
@@ -140,8 +140,8 @@ cv::Mat paint_head(const Look& look) {
       places.at<cv::Vec2d>(row, column) = {place.x(), place.y()};
     }
   cv::Mat rgb, skin, head(kRows, kColumns, CV_8UC3);
-  cv::remap(photograph.rgb, rgb, map, {}, cv::INTER_CUBIC, cv::BORDER_REPLICATE);
-  cv::remap(photograph.skin, skin, map, {}, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  cv::remap(kPhotograph.rgb, rgb, map, {}, cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+  cv::remap(kPhotograph.skin, skin, map, {}, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
   const cv::Mat back = paint_back(look);
   const cv::Scalar neck = skin_of(look);
   cv::RNG random(3);

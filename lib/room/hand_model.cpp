@@ -63,8 +63,8 @@ Posture posture_of(Sign sign) {
 std::vector<std::string> names_of(int finger) {
   if (finger == 0)
     return {"thumb-metacarpal", "thumb-phalanx-proximal", "thumb-phalanx-distal", "thumb-tip"};
-  static const std::array<std::string, kFingers> fingers = {"", "index", "middle", "ring", "pinky"};
-  const std::string name = fingers[static_cast<std::size_t>(finger)] + "-finger-";
+  static const std::array<std::string, kFingers> kNames = {"", "index", "middle", "ring", "pinky"};
+  const std::string name = kNames[static_cast<std::size_t>(finger)] + "-finger-";
   return {name + "metacarpal", name + "phalanx-proximal", name + "phalanx-intermediate",
           name + "phalanx-distal", name + "tip"};
 }
@@ -114,15 +114,16 @@ class Rig {
  private:
   /// Towards the palm, since a joint's fingers are along −z and its back along y.
   static AngleAxisf bent(float angle) { return {-angle * kDegree, Vector3f::UnitX()}; }
+  [[nodiscard]] float outwards() const { return side_ == kRight ? 1 : -1; }
   [[nodiscard]] AngleAxisf sideways(float angle) const {
-    return {(side_ == kRight ? 1 : -1) * angle * kDegree, Vector3f::UnitY()};
+    return {outwards() * angle * kDegree, Vector3f::UnitY()};
   }
   [[nodiscard]] std::vector<Isometry3f> turns_of(const Bend& bend) const {
     return {Isometry3f::Identity(), Isometry3f(sideways(bend.spread) * bent(bend.root)),
             Isometry3f(bent(bend.middle)), Isometry3f(bent(bend.end)), Isometry3f::Identity()};
   }
   [[nodiscard]] std::vector<Isometry3f> turns_of(const ThumbBend& bend) const {
-    const AngleAxisf rolled((side_ == kRight ? 1 : -1) * bend.roll * kDegree, Vector3f::UnitZ());
+    const AngleAxisf rolled(outwards() * bend.roll * kDegree, Vector3f::UnitZ());
     return {Isometry3f(sideways(-bend.across) * bent(bend.root) * rolled),
             Isometry3f(bent(bend.middle)), Isometry3f(bent(bend.end)), Isometry3f::Identity()};
   }
@@ -132,8 +133,8 @@ class Rig {
 };
 
 const Rig& rig_of(int side) {
-  static const Rig left(kLeft), right(kRight);
-  return side == kLeft ? left : right;
+  static const Rig kLeftRig(kLeft), kRightRig(kRight);
+  return side == kLeft ? kLeftRig : kRightRig;
 }
 
 }  // namespace
@@ -141,19 +142,20 @@ const Rig& rig_of(int side) {
 const std::array<Eigen::Vector3d, kHandJoints>& hand_joints(int side, Sign sign) {
   static std::map<std::pair<int, Sign>, std::array<Eigen::Vector3d, kHandJoints>> known;
   const auto [made, is_new] = known.try_emplace({side, sign});
-  if (!is_new) return made->second;
+  auto& joints = made->second;
+  if (!is_new) return joints;
   const Rig& rig = rig_of(side);
   const auto poses = rig.poses(sign);
   std::size_t next = 0;
   auto add = [&](const std::string& name) {
-    made->second[next++] = poses[rig.index(name)].translation().cast<double>();
+    joints[next++] = poses[rig.index(name)].translation().cast<double>();
   };
   add("wrist");
   for (int finger = 0; finger < kFingers; ++finger) {
     const auto names = names_of(finger);
     for (std::size_t i = names.size() - 4; i < names.size(); ++i) add(names[i]);
   }
-  return made->second;
+  return joints;
 }
 
 const graphics::Mesh& hand_mesh(int side, Sign sign) {

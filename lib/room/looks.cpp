@@ -56,9 +56,9 @@ std::vector<Look> make_looks() {
 }  // namespace
 
 const Look& look_of(int person) {
-  static const std::vector<Look> looks = make_looks();
+  static const std::vector<Look> kLooks = make_looks();
   HC_CHECK(person >= 0 && person < kMostPeople, person);
-  return looks[static_cast<std::size_t>(person)];
+  return kLooks[static_cast<std::size_t>(person)];
 }
 
 }  // namespace hc::room

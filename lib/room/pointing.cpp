@@ -36,9 +36,9 @@ Vector3d shoulder_in_world(const Person& person, int side) {
 }  // namespace
 
 std::span<const Vector3d> things() {
-  static const std::vector<Vector3d> all = {
+  static const std::vector<Vector3d> kAll = {
       {1.35, 0.8, 0.55}, {1.25, -0.85, 0.8}, {2.1, 2.1, 1.05}, {2.0, -2.15, 0.6}, {1.3, 0, 0.12}};
-  return all;
+  return kAll;
 }
 
 int pointing_side(const Person& person, const Vector3d& place) {

@@ -2,6 +2,8 @@
 #include <room/sensor.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 
 #include <opencv2/imgproc.hpp>
 
@@ -29,7 +31,7 @@ void Sensor::apply(cv::Mat& rgb, double blur, double noise, std::uint64_t number
   const int count = 3 * rgb.cols;  // a local variable, so that the loop is vectorised
   for (int row = 0; row < rgb.rows; ++row) {
     auto* to = rgb.ptr<std::uint8_t>(row);
-    const auto* from = field_.ptr<std::int8_t>(row + y) + 3 * x;
+    const auto* from = field_.ptr<std::int8_t>(row + y) + std::ptrdiff_t{3} * x;
     for (int i = 0; i < count; ++i)
       to[i] = static_cast<std::uint8_t>(std::clamp(to[i] + from[i], 0, 255));
   }
