@@ -35,7 +35,7 @@ using hc::people::Embedding, hc::people::Identifier;
 using hc::people::Face, hc::people::FaceFinder, hc::people::FaceSearch;
 
 constexpr float kLeastWidth = 40;  // of a face that is to be found [px]
-constexpr float kSame = 0.5F;      // the parameter `same` of faces
+constexpr auto kSame = static_cast<float>(hc::people::kSamePerson);
 
 /// A face that somebody has seen in a photograph.
 struct Label {

@@ -11,6 +11,10 @@
 
 namespace hc::people {
 
+/// Largest distance of a face from the person it is taken for. Of two persons in photographs, none
+/// are nearer (doc/figures.md).
+inline constexpr double kSamePerson = 0.4;
+
 /// The mean of several embeddings, which is nearer to each view of a person than these are to one
 /// another.
 Embedding mean(const std::vector<Embedding>& views);

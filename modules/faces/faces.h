@@ -76,8 +76,8 @@ class Faces {
                         "made when the first is learned",
                         {.fixed = true});
   hc::Parameter<double> same_ = module_.parameter(
-      "same", 0.5, "", "maximum distance of a face from the person it is taken for",
-      {.min = 0, .max = 2});
+      "same", hc::people::kSamePerson, "",
+      "maximum distance of a face from the person it is taken for", {.min = 0, .max = 2});
   hc::Parameter<double> score_ =
       module_.parameter("score", 0.5, "", "minimum score of a face", {.min = 0, .max = 1});
   hc::ModuleFrames frames_{module_};
