@@ -34,7 +34,7 @@ std::vector<Face> FaceSearch::look_around(const cv::Mat& image, const cv::Rect2f
 void FaceSearch::follow(Time time, const cv::Mat& image, float least, std::vector<Face>& faces) {
   auto boxes = tracks_.expected(time);
   if (boxes.size() > kMostFollowed) boxes.resize(kMostFollowed);
-  for (const cv::Rect2f& box : boxes) {
+  for (const auto& [number, box] : boxes) {
     const auto found = look_around(image, box, least);
     faces.insert(faces.end(), found.begin(), found.end());
   }

@@ -2,6 +2,7 @@
 #include <people/face_tracks.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <people/box.h>
 
@@ -30,13 +31,25 @@ cv::Rect2f FaceTracks::Following::box(Time time) const {
   return {now.x - width / 2, now.y - height / 2, width, height};
 }
 
-void FaceTracks::Following::correct(Time time, const Face& face) {
+std::array<float, 3> FaceTracks::Following::predicted_covariance(Time time) const {
   const auto dt = std::max(static_cast<float>(seconds(time - track.seen)), 0.F);
-  const cv::Point3f before = predicted(time), seen = place_of(face);
   const float q = kAcceleration * kAcceleration;
-  p[0] += 2 * dt * p[1] + dt * dt * p[2] + q * dt * dt * dt * dt / 4;
-  p[1] += dt * p[2] + q * dt * dt * dt / 2;
-  p[2] += q * dt * dt;
+  return {p[0] + 2 * dt * p[1] + dt * dt * p[2] + q * dt * dt * dt * dt / 4,
+          p[1] + dt * p[2] + q * dt * dt * dt / 2, p[2] + q * dt * dt};
+}
+
+std::optional<float> FaceTracks::Following::surprise(Time time, const Face& face) const {
+  const cv::Point3f off = (place_of(face) - predicted(time)) / std::max(at.z, 1.F);
+  const float variance = predicted_covariance(time)[0] + kNoise * kNoise;
+  const float far = off.dot(off) / variance;
+  if (far > kFarthest * kFarthest && overlap(face.box, box(time)) < kLeastOverlap)
+    return std::nullopt;
+  return far + 3 * std::log(variance);
+}
+
+void FaceTracks::Following::correct(Time time, const Face& face) {
+  const cv::Point3f before = predicted(time), seen = place_of(face);
+  p = predicted_covariance(time);
   const float all = p[0] + kNoise * kNoise, gain = p[0] / all, gain_of_speed = p[1] / all;
   p[2] -= gain_of_speed * p[1];
   p[1] *= 1 - gain;
@@ -51,16 +64,16 @@ std::vector<Track> FaceTracks::update(Time time, const std::vector<Face>& faces)
   std::erase_if(
       all_, [&](const Following& one) { return std::chrono::abs(time - one.track.seen) > kLife; });
   struct Pair {
-    float overlap;
+    float surprise;
     std::size_t face, track;
   };
   std::vector<Pair> pairs;
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (std::size_t t = 0; t < all_.size(); ++t)
-      if (const float both = overlap(faces[f].box, all_[t].box(time)); both >= kLeastOverlap)
-        pairs.push_back({both, f, t});
+      if (const auto surprise = all_[t].surprise(time, faces[f]))
+        pairs.push_back({*surprise, f, t});
   std::sort(pairs.begin(), pairs.end(),
-            [](const Pair& a, const Pair& b) { return a.overlap > b.overlap; });
+            [](const Pair& a, const Pair& b) { return a.surprise < b.surprise; });
   std::vector<int> of_face(faces.size(), -1);
   std::vector<bool> is_taken(all_.size());
   for (const Pair& pair : pairs) {
@@ -91,11 +104,12 @@ void FaceTracks::turn(const cv::Matx33f& H) {
   }
 }
 
-std::vector<cv::Rect2f> FaceTracks::expected(Time time) const {
-  std::vector<cv::Rect2f> boxes;
+std::vector<FaceTracks::Expected> FaceTracks::expected(Time time) const {
+  std::vector<Expected> all;
   for (const Following& one : all_)
-    if (std::chrono::abs(time - one.track.seen) <= kLife) boxes.push_back(one.box(time));
-  return boxes;
+    if (std::chrono::abs(time - one.track.seen) <= kLife)
+      all.push_back({one.track.number, one.box(time)});
+  return all;
 }
 
 }  // namespace hc::people

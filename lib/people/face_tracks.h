@@ -3,7 +3,9 @@
 // Follows faces from image to image. Pure: times come from the caller; where they go back by more
 // than a track's life, all tracks are new.
 
+#include <array>
 #include <chrono>
+#include <optional>
 #include <vector>
 
 #include <opencv2/core/matx.hpp>
@@ -20,12 +22,20 @@ struct Track {
   Time seen{};
 };
 
-/// Assigns the faces of each image to tracks: each to the one whose predicted box it overlaps most.
-/// A track moves at a constant velocity between images, and ends when it was not seen for kLife.
+/// Assigns the faces of each image to tracks: each to the one of which it is the most likely, by
+/// place and width. So a face that comes out from behind another one keeps its track. A track moves
+/// at a constant velocity between images, and ends when it was not seen for kLife.
 class FaceTracks {
  public:
+  /// Where a track is expected.
+  struct Expected {
+    int number = 0;
+    cv::Rect2f box;
+  };
+
   static constexpr std::chrono::milliseconds kLife{1000};
-  static constexpr float kLeastOverlap = 0.3F;
+  /// A face that is farther from a track's predicted place, and overlaps its box less, is not its.
+  static constexpr float kFarthest = 3, kLeastOverlap = 0.3F;  // [σ], share
 
   /// @returns the tracks that are seen in this image, in the order of `faces`.
   std::vector<Track> update(Time time, const std::vector<Face>& faces);
@@ -35,7 +45,7 @@ class FaceTracks {
   void turn(const cv::Matx33f& H);
 
   /// Where the tracks are expected at a time, also those that were not seen in the last image.
-  [[nodiscard]] std::vector<cv::Rect2f> expected(Time time) const;
+  [[nodiscard]] std::vector<Expected> expected(Time time) const;
 
  private:
   /// A constant velocity, by a Kalman filter for each of the box's centre and width, all with the
@@ -45,7 +55,10 @@ class FaceTracks {
     cv::Point3f at, speed;        // centre and width [px], [px/s]
     std::array<float, 3> p = {};  // covariance of a place and its speed: (p0 p1; p1 p2)
     [[nodiscard]] cv::Point3f predicted(Time time) const;
+    [[nodiscard]] std::array<float, 3> predicted_covariance(Time time) const;
     [[nodiscard]] cv::Rect2f box(Time time) const;
+    /// -2 times the logarithm of the likelihood of a face at a time; nothing if it is too far away.
+    [[nodiscard]] std::optional<float> surprise(Time time, const Face& face) const;
     void correct(Time time, const Face& face);
   };
   std::vector<Following> all_;
