@@ -30,6 +30,10 @@ class FaceSearch {
   /// @param turn  of the camera since the last image. @see FaceTracks::turn()
   std::vector<Track> look(Time time, const cv::Mat& image, float least = 0.5F,
                           const cv::Matx33f& turn = cv::Matx33f::eye());
+  /// Where the tracks are expected at a time, also those of faces that are hidden.
+  [[nodiscard]] std::vector<FaceTracks::Expected> expected(Time time) const {
+    return tracks_.expected(time);
+  }
   /// The faces around a place, such as that of a known face in the image of the other eye.
   std::vector<Face> look_around(const cv::Mat& image, const cv::Rect2f& box, float least = 0.5F);
 

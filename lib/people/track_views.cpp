@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include <people/gallery.h>
-
 namespace hc::people {
 namespace {
 
@@ -18,22 +16,25 @@ bool are_close(const cv::Rect2f& a, const cv::Rect2f& b) {
 
 }  // namespace
 
-void TrackViews::doubt_close(const std::vector<Track>& seen) {
-  for (const Track& one : seen) {
-    Views& views = tracks_.at(one.number);
-    views.is_close = std::any_of(seen.begin(), seen.end(), [&](const Track& other) {
-      return one.number != other.number && are_close(one.face.box, other.face.box);
+void TrackViews::doubt_close(const std::vector<FaceTracks::Expected>& all) {
+  for (const auto& [number, box] : all) {
+    const auto found = tracks_.find(number);
+    if (found == tracks_.end()) continue;
+    Views& views = found->second;
+    views.is_close = std::any_of(all.begin(), all.end(), [&](const FaceTracks::Expected& other) {
+      return number != other.number && are_close(box, other.box);
     });
     if (views.is_close) views.is_sure = false;
   }
 }
 
-std::optional<std::size_t> TrackViews::due(Time time, const std::vector<Track>& seen) {
+std::optional<std::size_t> TrackViews::due(Time time, const std::vector<Track>& seen,
+                                           const std::vector<FaceTracks::Expected>& all) {
   for (const Track& track : seen) tracks_[track.number].seen = time;
   std::erase_if(tracks_, [&](const auto& each) {
     return std::chrono::abs(time - each.second.seen) > FaceTracks::kLife;
   });
-  doubt_close(seen);
+  doubt_close(all);
   // Few views first, then long ago.
   const auto order = [&](std::size_t place) {
     const Views& views = tracks_.at(seen[place].number);

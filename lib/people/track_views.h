@@ -9,13 +9,14 @@
 
 #include <people/embedding.h>
 #include <people/face_tracks.h>
+#include <people/gallery.h>
 
 namespace hc::people {
 
 /// Says which face to describe next, since a description costs more than a search, and keeps the
-/// last few of each track. After two faces were close, their tracks may have changed places: they
-/// are unsure until a view has shown that they have not, and begin again where it is another
-/// person's.
+/// last few of each track. After two faces were close, or one was hidden by the other, their tracks
+/// may have changed places: they are unsure until a view has shown that they have not, and begin
+/// again where it may be another person's.
 class TrackViews {
  public:
   /// Views that are averaged; a track of fewer, or an unsure one, is described in each image, if it
@@ -26,11 +27,13 @@ class TrackViews {
   /// Time between the views of a track that has kViews.
   static constexpr std::chrono::milliseconds kPause{1000};
   /// Maximum distance of a view from the mean of the others of its track.
-  static constexpr float kApart = 0.65F;
+  static constexpr auto kApart = static_cast<float>(kSamePerson);
 
   /// The track to describe now, by its place in `seen`; nothing if all are known well enough.
   /// Forgets tracks that have ended.
-  [[nodiscard]] std::optional<std::size_t> due(Time time, const std::vector<Track>& seen);
+  /// @param all  where the tracks are expected now, also the hidden ones.
+  [[nodiscard]] std::optional<std::size_t> due(Time time, const std::vector<Track>& seen,
+                                               const std::vector<FaceTracks::Expected>& all);
   /// Takes a description. A view that is far from the others replaces them all.
   void add(int track, Time time, const Embedding& view);
 
@@ -45,7 +48,7 @@ class TrackViews {
     Time seen, described;
     bool is_close = false, is_sure = false;
   };
-  void doubt_close(const std::vector<Track>& seen);
+  void doubt_close(const std::vector<FaceTracks::Expected>& all);
 
   std::map<int, Views> tracks_;
 };

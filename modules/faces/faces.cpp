@@ -102,7 +102,7 @@ cv::Matx33f Faces::turn_to(const hc::Header& image) {
 }
 
 void Faces::describe(hc::Time time, const cv::Mat& image, const std::vector<Track>& seen) {
-  const auto due = views_.due(time, seen);
+  const auto due = views_.due(time, seen, networks_->search.expected(time));
   if (!due) return;
   const Track& track = seen[*due];
   if (const auto view = networks_->identifier.describe(image, track.face))
