@@ -20,7 +20,8 @@ namespace {
 using Rows = hc::MatrixView<const double>;
 
 // Columns of the simulator's people.
-enum PersonColumn { kNumber, kU = 6, kV, kWidth, kVisible, kPersonColumns };
+constexpr std::size_t kNumber = 0, kU = 6, kV = 7, kWidth = 8, kVisible = 9;
+constexpr int kPersonColumns = 10;
 
 std::vector<TruePerson> people_of(const Rows& rows) {
   std::vector<TruePerson> people;

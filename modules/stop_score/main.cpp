@@ -14,7 +14,8 @@
 namespace {
 
 // Columns of the simulator's hand_joints.
-enum JointColumn { kPerson, kHand, kJoint, kX, kY, kZ, kU, kV, kJointColumns };
+constexpr std::size_t kPerson = 0, kHand = 1, kJoint = 2, kX = 3, kY = 4, kZ = 5, kU = 6, kV = 7;
+constexpr int kJointColumns = 8;
 constexpr std::uint8_t kClearAll = 2;  // for the workspace
 
 double seconds_of(hc::Time time) {

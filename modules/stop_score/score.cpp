@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <hc/base/format.h>
+#include <hc/base/median.h>
 
 namespace {
 
@@ -81,22 +82,20 @@ bool StopScore::wants_to_go(double now) const {
 }
 
 std::array<double, 6> StopScore::numbers() const {
-  double median = -1, most = -1;
+  double middle = -1, most = -1;
   if (!delays_.empty()) {
-    auto sorted = delays_;
-    std::ranges::sort(sorted);
-    median = sorted[sorted.size() / 2];
-    most = sorted.back();
+    middle = hc::median(delays_);
+    most = *std::ranges::max_element(delays_);
   }
   const auto stopped = static_cast<double>(delays_.size());
-  return {median, most, stopped, stopped + missed_, double(false_), duration()};
+  return {middle, most, stopped, stopped + missed_, double(false_), duration()};
 }
 
 std::string StopScore::text() const {
-  const auto [median, most, stopped, palms, wrong, lasted] = numbers();
+  const auto [middle, most, stopped, palms, wrong, lasted] = numbers();
   const auto others = hc::format("{} stops without a palm in {:.0f} s", wrong, lasted);
   if (palms == 0) return others;
   return hc::format("missed {} of {} palms, stopped after {:.3f} s median, {:.3f} s at most; ",
-                    palms - stopped, palms, median, most) +
+                    palms - stopped, palms, middle, most) +
          others;
 }
