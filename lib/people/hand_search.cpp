@@ -21,12 +21,28 @@ void HandSearch::add(const HandTracks::Sighting& found,
   if (hands.size() < most_ || sign_of(found.hand) == Sign::Open) hands.push_back(found);
 }
 
-void HandSearch::search(const cv::Mat& image, std::vector<HandTracks::Sighting>& hands) {
+cv::Rect HandSearch::next_place(const cv::Size& image, const std::vector<cv::Rect2f>& faces) {
+  constexpr std::size_t kTimes = 2;  // around each face
+  const std::size_t around = kTimes * faces.size(), turn = turn_++ % (around + 1);
+  if (turn < around) {
+    // From above the head to the elbows, an arm's length to each side.
+    const cv::Rect2f& face = faces[turn % faces.size()];
+    const float side = 8 * face.width;
+    return cv::Rect2f(face.x + (face.width - side) / 2, face.y + 1.5F * face.height - side / 2,
+                      side, side);
+  }
   // A hand near by is seen as a whole in the whole image alone, and one far away in a part.
-  std::vector<cv::Rect> parts{{{}, image.size()}};
-  for (const cv::Rect& part : parts_of(image.size()))
-    if (part.size() != image.size()) parts.push_back(part);
-  for (const Palm& palm : palms_.find(image, parts[next_part_++ % parts.size()])) {
+  std::vector<cv::Rect> parts{{{}, image}};
+  for (const cv::Rect& part : parts_of(image))
+    if (part.size() != image) parts.push_back(part);
+  return parts[next_part_++ % parts.size()];
+}
+
+void HandSearch::search(const cv::Mat& image, const std::vector<cv::Rect2f>& faces,
+                        std::vector<HandTracks::Sighting>& hands) {
+  const cv::Rect place = next_place(image.size(), faces);
+  if ((place & cv::Rect({}, image.size())).empty()) return;
+  for (const Palm& palm : palms_.find(image, place)) {
     if (hands.size() > most_) return;
     const cv::Point2f middle = region_of(palm).middle;
     const bool is_known = std::any_of(hands.begin(), hands.end(), [&](const auto& one) {
@@ -37,14 +53,17 @@ void HandSearch::search(const cv::Mat& image, std::vector<HandTracks::Sighting>&
   }
 }
 
-std::vector<HandTrack> HandSearch::look(Time time, const cv::Mat& image, bool is_anybody) {
+std::vector<HandTrack> HandSearch::look(Time time, const cv::Mat& image,
+                                        const std::optional<std::vector<cv::Rect2f>>& faces) {
   if (image.empty()) return {};
   std::vector<HandTracks::Sighting> hands;
   for (const auto& [number, region] : tracks_.expected(time)) {
     if (hands.size() > most_) break;
     add({number, landmarks_.find(image, region)}, hands);
   }
-  if (hands.size() <= most_ && times_.is_due(time, hands.size(), is_anybody)) search(image, hands);
+  const bool is_anybody = !faces || !faces->empty();
+  if (hands.size() <= most_ && times_.is_due(time, hands.size(), is_anybody))
+    search(image, faces.value_or(std::vector<cv::Rect2f>()), hands);
   return tracks_.update(time, hands);
 }
 

@@ -186,16 +186,35 @@ TEST(HandSearch, finds_nothing_in_a_wall) {
 TEST(HandSearch, searches_at_times) {
   SearchTimes times;
   EXPECT_TRUE(times.is_due(kFirstImage, 0));
-  EXPECT_FALSE(times.is_due(kFirstImage + 199ms, 0));
-  EXPECT_TRUE(times.is_due(kFirstImage + 200ms, 0));
-  EXPECT_FALSE(times.is_due(kFirstImage + 600ms, 1));
-  EXPECT_TRUE(times.is_due(kFirstImage + 700ms, 1));
-  EXPECT_FALSE(times.is_due(kFirstImage + 1199ms, 2));
-  EXPECT_TRUE(times.is_due(kFirstImage + 1200ms, 2)) << "somebody else may hold up a palm";
+  EXPECT_FALSE(times.is_due(kFirstImage + 99ms, 0));
+  EXPECT_TRUE(times.is_due(kFirstImage + 100ms, 0));
+  EXPECT_FALSE(times.is_due(kFirstImage + 300ms, 1));
+  EXPECT_TRUE(times.is_due(kFirstImage + 350ms, 1));
+  EXPECT_FALSE(times.is_due(kFirstImage + 599ms, 2));
+  EXPECT_TRUE(times.is_due(kFirstImage + 600ms, 2)) << "somebody else may hold up a palm";
   EXPECT_TRUE(times.is_due(kFirstImage + 8s, 1));
   EXPECT_FALSE(times.is_due(kFirstImage + 8900ms, 0, false)) << "nobody is in view";
   EXPECT_TRUE(times.is_due(kFirstImage + 9s, 0, false));
   EXPECT_TRUE(times.is_due(kFirstImage, 0)) << "time went back";
+}
+
+TEST_F(HandsInAPhotograph, far_from_the_camera_are_found_beside_a_face) {
+  // As far away as a person at 3 m: neither the whole image nor a part shows the hand large enough.
+  cv::Mat far, image(600, 800, CV_8UC3, cv::Scalar(120, 110, 100));
+  cv::resize(image_, far, {}, 0.35, 0.35, cv::INTER_AREA);
+  far.copyTo(image(cv::Rect({20, 200}, far.size())));
+  HandSearch blind(made_palms(), made_landmarks()), search(made_palms(), made_landmarks());
+  const cv::Rect2f face(20 + 0.35F * 224, 200 + 0.35F * 84, 0.35F * 60, 0.35F * 60);
+  Time time = kFirstImage;
+  std::size_t without = 0, with = 0;
+  for (int i = 0; i < 12; ++i) {
+    time += 100ms;
+    without += blind.look(time, image).size();
+    with += search.look(time, image, std::vector{face}).size();
+  }
+  EXPECT_EQ(without, 0U);
+  EXPECT_GT(with, 0U);
+  EXPECT_NO_THROW(search.look(time += 1s, image, std::vector{cv::Rect2f(-900, -900, 20, 20)}));
 }
 
 TEST(Networks, that_do_not_fit_are_refused) {

@@ -48,7 +48,6 @@ Hands::Hands(hc::Module& module) : module_(module) {
     mount_.take(hc::value_or_drop(hc::pose_of(message)));
   });
   module.on(faces_, [this](const hc::MessageOf<hc::TableKind<double>>& faces) {
-    if (faces.matrix().height() > 0) last_face_ = module_.time_of(faces.header);
     seen_faces_.take(module_.time_of(faces.header), faces.matrix());
   });
 }
@@ -85,8 +84,9 @@ std::vector<hc::people::HandTrack> Hands::look(const hc::Message& message) {
   size_ = {message.header.width, message.header.height};
   const cv::Mat image = hc::value_or_drop(hc::as_mat(message));
   const auto time = module_.time_of(message.header);
-  const bool is_anybody = !faces_.linked() || std::chrono::abs(time - last_face_) < kInView;
-  auto tracks = search_->look(time, image, is_anybody);
+  std::optional<std::vector<cv::Rect2f>> faces;
+  if (faces_.linked()) faces = seen_faces_.boxes(time);
+  auto tracks = search_->look(time, image, faces);
   send(message.header, tracks);
   return tracks;
 }

@@ -29,8 +29,6 @@ class Hands {
 
  private:
   using HandTrack = hc::people::HandTrack;
-  /// How long somebody is taken to be in view after a face was; then hands are sought less often.
-  static constexpr std::chrono::milliseconds kInView{3000};
   /// How long a place is looked for that was pointed at, while the head turns there.
   static constexpr std::chrono::milliseconds kAimLives{2000};
   /// Where to look for it along the ray as long as it is not in the image. [m]
@@ -119,7 +117,6 @@ class Hands {
   std::map<int, Holding> holdings_;  // by track
   PalmStop stop_words_;
   SeenFaces seen_faces_;
-  hc::Time last_face_;
   Aims aims_;
   SteadyAim steady_;
   std::optional<Aim> aim_;                  // the last one, in the robot's frame

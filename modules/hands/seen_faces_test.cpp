@@ -37,6 +37,18 @@ TEST(SeenFaces, say_where_the_eyes_are_in_the_cameras_frame) {
   EXPECT_TRUE(eyes->isApprox(Vector3d(0.2, 0.1, 1.5)));
 }
 
+TEST(SeenFaces, are_in_view_for_a_while_after_they_were_seen) {
+  std::vector<double> table(hc::people::kFaceColumns);
+  write(hc::people::FaceRow{{{10, 20, 30, 40}, 1, {}}, 1, 0, {2, 0, 0}}, table);
+  SeenFaces faces;
+  EXPECT_TRUE(faces.boxes(kSeen).empty());
+  faces.take(kSeen, {table.data(), 1, table.size(), 1});
+  faces.take(kSeen + 100ms, {table.data(), 0, table.size(), 1});
+  ASSERT_EQ(faces.boxes(kSeen + 2900ms).size(), 1U);
+  EXPECT_EQ(faces.boxes(kSeen)[0], cv::Rect2f(10, 20, 30, 40));
+  EXPECT_TRUE(faces.boxes(kSeen + 3s).empty());
+}
+
 TEST(SeenFaces, are_of_the_nearest_person) {
   const std::vector<Vector3d> places = {{0.06, 0.05, 1.55}, {0.76, 0.05, 1.4}};
   EXPECT_NEAR(eyes_of(places, {0.1, 0, 1})->x(), 0, 1e-9);
