@@ -292,7 +292,7 @@ int main(int argc, char** argv) {
   std::printf("%zu views of the simulated persons, and %d in which none was found.\n\n",
               simulated.size(), missed);
   std::printf(
-      "| pairs | of one person | of two | equal error | false accepts at %.1f | false "
+      "| pairs | of one person | of two | equal error | false accepts at %.2f | false "
       "rejects |\n|---|---:|---:|---:|---:|---:|\n",
       double(kSame));
   print_errors("photographs, view and view", pairs_of(photographed));

@@ -226,6 +226,7 @@ SurfaceId Renderer::add(const Mesh& mesh, const cv::Mat& texture) {
 
 void Renderer::remove(SurfaceId surface) {
   Surface& freed = state_->surfaces.at(surface);
+  HC_CHECK(freed.vertices != 0, surface);
   glDeleteVertexArrays(1, &freed.vertices);
   glDeleteBuffers(1, &freed.corners);
   glDeleteBuffers(1, &freed.indices);

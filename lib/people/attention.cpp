@@ -91,11 +91,11 @@ std::optional<Attention::Choice> Attention::choose(Time time) {
 std::string_view text(Attention::Reason reason) {
   switch (reason) {
     case Attention::Reason::Nearest:
-      return "is nearest";
+      return "the nearest";
     case Attention::Reason::Speaks:
-      return "speaks";
+      return "the speaker";
     case Attention::Reason::Held:
-      return "is held";
+      return "held";
   }
   return "";
 }

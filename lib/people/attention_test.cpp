@@ -104,9 +104,9 @@ TEST_F(AttentionTest, begins_again_when_the_clock_is_set) {
 }
 
 TEST(Attention, says_its_reason_in_a_sentence) {
-  EXPECT_EQ(text(Attention::Reason::Nearest), "is nearest");
-  EXPECT_EQ(text(Attention::Reason::Speaks), "speaks");
-  EXPECT_EQ(text(Attention::Reason::Held), "is held");
+  EXPECT_EQ(text(Attention::Reason::Nearest), "the nearest");
+  EXPECT_EQ(text(Attention::Reason::Speaks), "the speaker");
+  EXPECT_EQ(text(Attention::Reason::Held), "held");
 }
 
 }  // namespace

@@ -38,13 +38,14 @@ std::array<float, 3> FaceTracks::Following::predicted_covariance(Time time) cons
           p[1] + dt * p[2] + q * dt * dt * dt / 2, p[2] + q * dt * dt};
 }
 
-std::optional<float> FaceTracks::Following::surprise(Time time, const Face& face) const {
-  const cv::Point3f off = (place_of(face) - predicted(time)) / std::max(at.z, 1.F);
+std::optional<float> FaceTracks::Following::cost(Time time, const Face& face) const {
+  const float width = std::max(at.z, 1.F);
+  const cv::Point3f off = (place_of(face) - predicted(time)) / width;
   const float variance = predicted_covariance(time)[0] + kNoise * kNoise;
-  const float far = off.dot(off) / variance;
-  if (far > kFarthest * kFarthest && overlap(face.box, box(time)) < kLeastOverlap)
+  const float gate = std::min(kGate * std::sqrt(variance), kWidestGate);
+  if (off.dot(off) > gate * gate && overlap(face.box, box(time)) < kLeastOverlap)
     return std::nullopt;
-  return far + 3 * std::log(variance);
+  return off.dot(off) / variance + 3 * std::log(variance * width * width);
 }
 
 void FaceTracks::Following::correct(Time time, const Face& face) {
@@ -64,16 +65,15 @@ std::vector<Track> FaceTracks::update(Time time, const std::vector<Face>& faces)
   std::erase_if(
       all_, [&](const Following& one) { return std::chrono::abs(time - one.track.seen) > kLife; });
   struct Pair {
-    float surprise;
+    float cost;
     std::size_t face, track;
   };
   std::vector<Pair> pairs;
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (std::size_t t = 0; t < all_.size(); ++t)
-      if (const auto surprise = all_[t].surprise(time, faces[f]))
-        pairs.push_back({*surprise, f, t});
+      if (const auto cost = all_[t].cost(time, faces[f])) pairs.push_back({*cost, f, t});
   std::sort(pairs.begin(), pairs.end(),
-            [](const Pair& a, const Pair& b) { return a.surprise < b.surprise; });
+            [](const Pair& a, const Pair& b) { return a.cost < b.cost; });
   std::vector<int> of_face(faces.size(), -1);
   std::vector<bool> is_taken(all_.size());
   for (const Pair& pair : pairs) {

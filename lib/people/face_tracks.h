@@ -23,8 +23,8 @@ struct Track {
 };
 
 /// Assigns the faces of each image to tracks: each to the one of which it is the most likely, by
-/// place and width. So a face that comes out from behind another one keeps its track. A track moves
-/// at a constant velocity between images, and ends when it was not seen for kLife.
+/// place and width. So a face that comes out from behind another one within kLife keeps its track.
+/// A track moves at a constant velocity between images, and ends when it was not seen for kLife.
 class FaceTracks {
  public:
   /// Where a track is expected.
@@ -34,8 +34,9 @@ class FaceTracks {
   };
 
   static constexpr std::chrono::milliseconds kLife{1000};
-  /// A face that is farther from a track's predicted place, and overlaps its box less, is not its.
-  static constexpr float kFarthest = 3, kLeastOverlap = 0.3F;  // [σ], share
+  /// Gate: a face farther from a track's predicted place [σ of the prediction; widths], and with
+  /// less overlap with its box, is another one.
+  static constexpr float kGate = 3, kWidestGate = 2, kLeastOverlap = 0.3F;
 
   /// @returns the tracks that are seen in this image, in the order of `faces`.
   std::vector<Track> update(Time time, const std::vector<Face>& faces);
@@ -57,8 +58,8 @@ class FaceTracks {
     [[nodiscard]] cv::Point3f predicted(Time time) const;
     [[nodiscard]] std::array<float, 3> predicted_covariance(Time time) const;
     [[nodiscard]] cv::Rect2f box(Time time) const;
-    /// -2 times the logarithm of the likelihood of a face at a time; nothing if it is too far away.
-    [[nodiscard]] std::optional<float> surprise(Time time, const Face& face) const;
+    /// -2 times the logarithm of the likelihood of a face; nothing outside the gate.
+    [[nodiscard]] std::optional<float> cost(Time time, const Face& face) const;
     void correct(Time time, const Face& face);
   };
   std::vector<Following> all_;

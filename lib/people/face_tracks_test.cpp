@@ -93,6 +93,20 @@ TEST_F(FaceTracksTest, follow_a_face_that_sets_off_between_rare_images) {
   EXPECT_EQ(look({face_at(600)}), std::vector<int>{2}) << "nobody is so fast";
 }
 
+TEST_F(FaceTracksTest, a_stranger_far_from_a_lost_face_is_new) {
+  for (int i = 0; i < 20; ++i) look({face_at(100)});
+  now_ += 850ms;
+  EXPECT_EQ(look({face_at(500)}), std::vector<int>{2});
+}
+
+TEST_F(FaceTracksTest, of_two_at_one_place_the_one_of_its_width_takes_a_face) {
+  for (int i = 0; i < 5; ++i) look({face_at(100, 100), face_at(400, 50)});
+  for (int i = 0; i < 25; ++i)
+    look({face_at(100 + 10 * static_cast<float>(i), 100), face_at(400, 50)});
+  now_ += 250ms;
+  EXPECT_EQ(look({face_at(400, 50)}), std::vector<int>{2});
+}
+
 TEST_F(FaceTracksTest, are_new_when_the_clock_is_set) {
   look({face_at(100)});
   now_ -= 1h;

@@ -11,8 +11,8 @@
 
 namespace hc::people {
 
-/// Largest distance of a face from the person it is taken for. Of two persons in photographs, none
-/// are nearer (doc/figures.md).
+/// Largest distance of a face from the person it is taken for. No two persons in the photographs of
+/// doc/figures.md are nearer.
 inline constexpr double kSamePerson = 0.4;
 
 /// The mean of several embeddings, which is nearer to each view of a person than these are to one

@@ -47,6 +47,9 @@ std::optional<HandRow> hand_in(std::span<const double> row) {
   if (!is_row(row, kHandColumns) || !is_count(row[HandAt::kTrack], 1) ||
       !is_count(row[HandAt::kSign], 0) || row[HandAt::kSign] > static_cast<double>(Sign::ThumbUp))
     return std::nullopt;
+  if ((row[HandAt::kSide] != 0 && row[HandAt::kSide] != 1) ||
+      !(row[HandAt::kPresence] >= 0 && row[HandAt::kPresence] <= 1))
+    return std::nullopt;
   HandRow hand;
   hand.track = static_cast<int>(row[HandAt::kTrack]);
   hand.side = row[HandAt::kSide] == 1 ? Hand::Side::Right : Hand::Side::Left;

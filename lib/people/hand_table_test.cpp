@@ -56,7 +56,15 @@ TEST(HandTable, rows_that_are_no_hands_are_none) {
       EXPECT_FALSE(hand_in(row)) << wrong << " in column " << &number - row.data();
       number = right;
     }
-  for (const auto& [column, wrong] : {std::pair(0, 0.0), {0, 1.5}, {3, 6.0}, {3, -1.0}, {3, 0.5}}) {
+  for (const auto& [column, wrong] : {std::pair(0, 0.0),
+                                      {0, 1.5},
+                                      {1, 2.0},
+                                      {1, 0.5},
+                                      {2, 1.5},
+                                      {2, -0.5},
+                                      {3, 6.0},
+                                      {3, -1.0},
+                                      {3, 0.5}}) {
     auto other = row;
     other[static_cast<std::size_t>(column)] = wrong;
     EXPECT_FALSE(hand_in(other)) << wrong << " in column " << column;

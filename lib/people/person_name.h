@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Names of people, and by which a person asks to learn one. Pure, header only: the page's server
-// needs no networks.
+// Names of people, and the request "TRACK NAME" that gives one to a track. Pure, header only: the
+// page's server needs no networks.
 
 #include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string_view>
 
-#include <hc/base/json_string.h>
 #include <hc/base/text.h>
+#include <hc/base/visible.h>
 
 namespace hc::people {
 
@@ -18,14 +18,9 @@ namespace hc::people {
 inline bool is_person_name(std::string_view text) {
   constexpr std::size_t kMost = 64;
   if (text.empty() || text.size() > kMost || text[0] == '.') return false;
-  if (std::ranges::any_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '/'; }))
-    return false;
-  while (!text.empty()) {
-    const auto length = utf8_length(text);
-    if (length == 0) return false;
-    text.remove_prefix(length);
-  }
-  return true;
+  // Control characters, marks of writing direction and bytes that are not UTF-8 are not.
+  if (visible(text) != text) return false;
+  return std::ranges::none_of(text, [](char c) { return c == '\t' || c == '/'; });
 }
 
 /// A name for the person of a track.

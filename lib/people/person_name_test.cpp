@@ -12,7 +12,10 @@ TEST(PersonName, can_be_that_of_a_file) {
   for (const std::string name : {"Anna", "Zoë de la Cruz", "王小明", "a", "x.y"})
     EXPECT_TRUE(is_person_name(name)) << name;
   EXPECT_TRUE(is_person_name(std::string(64, 'a')));
-  for (const std::string name : {"", ".", "..", ".hidden", "a/b", "a\nb", "a\x7f"})
+  for (const std::string name : {"", ".", "..", ".hidden", "a/b", "a\nb", "a\tb", "a\x7f",
+                                 "a\xc2\x9b"
+                                 "2J",
+                                 "a\u202e"})
     EXPECT_FALSE(is_person_name(name)) << name;
   EXPECT_FALSE(is_person_name(std::string(65, 'a')));
   EXPECT_FALSE(is_person_name(std::string("a\0b", 3)));

@@ -12,7 +12,7 @@
 
 namespace hc::people {
 
-/// The largest number of a row, which an int and a float can be.
+/// Largest magnitude in a row: an int holds it.
 inline constexpr double kMostInRow = 1e9;
 
 /// Whether a row has so many numbers, none of which is NaN, infinite or too large.

@@ -30,7 +30,10 @@ void TrackViews::doubt_close(const std::vector<FaceTracks::Expected>& all) {
 
 std::optional<std::size_t> TrackViews::due(Time time, const std::vector<Track>& seen,
                                            const std::vector<FaceTracks::Expected>& all) {
-  for (const Track& track : seen) tracks_[track.number].seen = time;
+  for (const Track& track : seen) {
+    Views& views = tracks_[track.number];
+    if (std::chrono::abs(time - std::exchange(views.seen, time)) > kGap) views.is_sure = false;
+  }
   std::erase_if(tracks_, [&](const auto& each) {
     return std::chrono::abs(time - each.second.seen) > FaceTracks::kLife;
   });
@@ -52,11 +55,13 @@ std::optional<std::size_t> TrackViews::due(Time time, const std::vector<Track>& 
 
 void TrackViews::add(int track, Time time, const Embedding& view) {
   Views& views = tracks_[track];
-  if (!views.last.empty() && distance(view, mean(views.last)) > kApart) views.last.clear();
+  const bool is_apart = !views.last.empty() && distance(view, mean(views.last)) > kApart;
+  views.described = views.seen = time;
+  if (std::exchange(views.was_apart, is_apart) < is_apart && views.is_sure) return;
+  if (is_apart) views.last.clear();
   views.last.push_back(view);
   if (views.last.size() > kViews) views.last.erase(views.last.begin());
   views.is_sure = !views.is_close && views.last.size() >= kLeast;
-  views.described = views.seen = time;
 }
 
 const std::vector<Embedding>& TrackViews::views(int track) const {

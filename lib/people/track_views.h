@@ -26,15 +26,19 @@ class TrackViews {
   static constexpr std::size_t kLeast = 3;
   /// Time between the views of a track that has kViews.
   static constexpr std::chrono::milliseconds kPause{1000};
-  /// Maximum distance of a view from the mean of the others of its track.
+  /// Maximum distance of a view from the mean of the others of its track. One that is farther, of a
+  /// track that is sure, is left out once.
   static constexpr auto kApart = static_cast<float>(kSamePerson);
+  /// A track that was not seen for longer may go on with another person.
+  static constexpr std::chrono::milliseconds kGap{300};
 
   /// The track to describe now, by its place in `seen`; nothing if all are known well enough.
   /// Forgets tracks that have ended.
   /// @param all  where the tracks are expected now, also the hidden ones.
   [[nodiscard]] std::optional<std::size_t> due(Time time, const std::vector<Track>& seen,
                                                const std::vector<FaceTracks::Expected>& all);
-  /// Takes a description. A view that is far from the others replaces them all.
+  /// Takes a description. A view that is far from the others replaces them all if their track is
+  /// unsure, or is the second such.
   void add(int track, Time time, const Embedding& view);
 
   /// The last views of a track, at most kViews.
@@ -46,7 +50,7 @@ class TrackViews {
   struct Views {
     std::vector<Embedding> last;
     Time seen, described;
-    bool is_close = false, is_sure = false;
+    bool is_close = false, is_sure = false, was_apart = false;
   };
   void doubt_close(const std::vector<FaceTracks::Expected>& all);
 

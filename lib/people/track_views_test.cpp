@@ -99,6 +99,25 @@ TEST_F(TrackViewsTest, a_face_before_a_hidden_one_may_be_either_until_it_is_look
   EXPECT_FALSE(views_.embedding(1)) << "half a person's distance is too much";
 }
 
+TEST_F(TrackViewsTest, one_view_apart_changes_nothing_and_two_begin_again) {
+  look(20, 400, 0, 1);
+  views_.add(1, now_, view(0.9F));
+  EXPECT_FLOAT_EQ(views_.embedding(1).value()[0], 0);
+  views_.add(1, now_, view(0));
+  views_.add(1, now_, view(0.9F));
+  EXPECT_FLOAT_EQ(views_.embedding(1).value()[0], 0);
+  views_.add(1, now_, view(0.9F));
+  EXPECT_FALSE(views_.embedding(1));
+}
+
+TEST_F(TrackViewsTest, a_track_that_was_lost_may_be_another_persons) {
+  look(20, 400, 0, 1);
+  now_ += 400ms;
+  const std::vector<Track> seen{track(1, 100)};
+  EXPECT_TRUE(views_.due(now_, seen, expected(seen)));
+  EXPECT_FALSE(views_.embedding(1));
+}
+
 TEST_F(TrackViewsTest, end_with_their_track) {
   look(20, 400, 0, 1);
   now_ += 2s;

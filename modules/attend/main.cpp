@@ -76,8 +76,7 @@ class Attend {
 
   void tell(hc::Time time, const std::optional<Attention::Choice>& choice) {
     if (choice)
-      reason_.send(hc::format("looks at track {}, who {}", choice->track, text(choice->reason)),
-                   time);
+      reason_.send(hc::format("looks at track {}, {}", choice->track, text(choice->reason)), time);
     else
       reason_.send("sees nobody", time);
   }

@@ -78,11 +78,12 @@ void Augment::see_marker(const hc::Message& message) {
 void Augment::see_target(const hc::MessageOf<hc::PositionKind<double>>& message) {
   const auto p = message.numbers();
   if (p.size() < 3) return;
-  panel_.target = Panel::Target{time_of(message.header), message.header.coord, {p[0], p[1], p[2]}};
+  panel_.target =
+      Panel::Target{module_.time_of(message.header), message.header.coord, {p[0], p[1], p[2]}};
 }
 
 void Augment::see_faces(const hc::MessageOf<hc::TableKind<double>>& message) {
-  const auto time = time_of(message.header);
+  const auto time = module_.time_of(message.header);
   auto faces = NamedFaces::read(message.matrix());
   hc::value_or_drop(frames_.tree().chain("world", "head"));
   frames_.when_known("world", "head", time, [this, time, faces = std::move(faces)](const auto&) {

@@ -117,11 +117,6 @@ class Augment {
   void send(const Sight& sight, std::size_t eye, const hc::Message& image,
             const hc::Message& metres, Colours& output);
 
-  /// Of a message that may have none.
-  [[nodiscard]] hc::Time time_of(const hc::Header& header) const {
-    return header.time != hc::Time() ? header.time : module_.now();
-  }
-
   hc::Module& module_;
   AugmentInputs inputs_{module_};
   AugmentOutputs outputs_{module_};

@@ -17,7 +17,7 @@ namespace {
 std::string shown(std::string_view name) {
   constexpr std::size_t kLongestLetter = 4;  // of UTF-8 [byte]
   const auto most = NamedFaces::kMostLetters;
-  const std::string text = hc::visible(name.substr(0, kLongestLetter * most));
+  const std::string text = hc::visible(name.substr(0, kLongestLetter * (most + 1)));
   std::size_t end = 0;
   for (std::size_t i = 0; i < most && end < text.size(); ++i)
     end += hc::utf8_length(std::string_view(text).substr(end));

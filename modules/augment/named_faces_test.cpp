@@ -101,6 +101,9 @@ TEST(NamedFaces, have_names_that_can_be_shown) {
   for (std::size_t i = 0; i < NamedFaces::kMostLetters; ++i) just += "\u00fc";
   EXPECT_EQ(name_shown("1 " + just), just);
   EXPECT_EQ(name_shown("1 " + just + "x"), just + "...");
+  std::string wide;
+  for (std::size_t i = 0; i <= NamedFaces::kMostLetters; ++i) wide += "\U0001F600";
+  EXPECT_TRUE(name_shown("1 " + wide).ends_with("..."));
   EXPECT_EQ(name_shown("1 " + std::string(1 << 20, 'a')),
             std::string(NamedFaces::kMostLetters, 'a') + "...");
 }

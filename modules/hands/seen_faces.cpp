@@ -11,7 +11,7 @@ void SeenFaces::take(hc::Time time, const hc::MatrixView<const double>& table) {
   std::vector<cv::Rect2f> boxes;
   for (std::size_t i = 0; i < table.height(); ++i)
     if (const auto row = hc::people::face_in(table.row(i))) {
-      eyes_.push_back(row->place);
+      if (hc::people::can_be_face(row->place)) eyes_.push_back(row->place);
       boxes.push_back(row->face.box);
     }
   if (boxes.empty()) return;  // they may only have turned away

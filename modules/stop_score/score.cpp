@@ -39,7 +39,10 @@ void StopScore::see(double time, const std::vector<TrueHand>& hands) {
     up.push_back(hand.whose);
     see_palm(time, hand);
   }
-  for (auto& palm : palms_) palm.is_up &= std::ranges::count(up, palm.whose) > 0;
+  for (auto& palm : palms_) {
+    palm.is_up &= std::ranges::count(up, palm.whose) > 0;
+    palm.has_stopped |= is_stopped_ && palm.is_held();
+  }
   drop_ended(time);
 }
 
@@ -59,7 +62,7 @@ void StopScore::see_palm(double time, const TrueHand& hand) {
 void StopScore::drop_ended(double time) {
   std::erase_if(palms_, [&](const Palm& palm) {
     if (palm.is_up || (palm.is_held() && time - palm.seen <= kLate)) return false;
-    missed_ += palm.is_held() && !palm.has_stopped;
+    missed_ += palm.must_stop() && !palm.has_stopped;
     return true;
   });
 }

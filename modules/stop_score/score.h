@@ -24,21 +24,22 @@ struct TrueHand {
 bool is_palm_up(const TrueHand& hand);
 
 /// Collects a run. A palm counts from the first image in which it is in sight, open, up, and where
-/// it then stays; one that stays for less than kHeld is no command.
+/// it then stays; one that stays for less than kHeld is no command, and one that is held when the
+/// robot is stopped already stops nothing.
 class StopScore {
  public:
   /// How far a palm that is held still moves at most [m].
   static constexpr double kStill = 0.02;
-  /// How long it is held at least [s], less than `hands` asks for, which sees it a little earlier.
-  static constexpr double kHeld = 0.3;
+  /// How long it is held at least until it may stop the robot, and until it has to [s].
+  static constexpr double kHeld = 0.3, kMustStop = 0.8;
   /// How long after its end a stop still belongs to a palm [s].
   static constexpr double kLate = 1;
 
   /// Takes the hands of an image.
   void see(double time, const std::vector<TrueHand>& hands);
-  /// Takes the time at which the robot was stopped, or is still.
+  /// The robot is stopped, since or at a time [s]; repeated calls are ignored.
   void stop(double time);
-  /// Takes that nothing stops the robot any more.
+  /// The robot is free again.
   void go() { is_stopped_ = false; }
   /// Whether the stop can be cleared: no palm has been up for half a second.
   [[nodiscard]] bool wants_to_go(double now) const;
@@ -61,6 +62,7 @@ class StopScore {
     bool is_up = true;           // in the last image
     bool has_stopped = false;
     [[nodiscard]] bool is_held() const { return seen - begin >= kHeld; }
+    [[nodiscard]] bool must_stop() const { return seen - begin >= kMustStop; }
   };
   void see_palm(double time, const TrueHand& hand);
   void drop_ended(double time);

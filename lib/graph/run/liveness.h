@@ -25,7 +25,7 @@ class Liveness {
  public:
   void reported(bool is_blocked, MonotonicTime now) {
     reported_ = now;
-    silence_ = MonotonicTime(0);
+    excuse();
     blocked_ = is_blocked ? blocked_.value_or(now) : std::optional<MonotonicTime>();
   }
 
@@ -39,16 +39,21 @@ class Liveness {
     constexpr MonotonicTime kMostAtOnce = std::chrono::seconds(1), kShort = std::chrono::seconds(1);
     const auto before = std::exchange(checked_, now);
     if (!is_running || !before) return;
-    auto silent = std::min(now - *before, kMostAtOnce);
-    std::optional<MonotonicTime> waited;
-    if (silence_ >= kShort) waited = usage().waited;
-    if (waited && waited_) silent -= std::clamp(*waited - *waited_, MonotonicTime(0), silent);
-    waited_ = waited;
-    silence_ += silent;
+    silence_ += std::min(now - *before, kMostAtOnce);
+    if (silence_ < kShort) return waited_.reset();
+    const auto total = usage().waited;
+    if (waited_ && total == waited_->total) return;  // that of another host comes once a second
+    if (waited_)
+      silence_ -= std::clamp(total - waited_->total, MonotonicTime(0),
+                             std::min(silence_, now - waited_->measured));
+    waited_ = Waited{total, now};
   }
 
   /// Its silence has another cause.
-  void excuse() { silence_ = MonotonicTime(0); }
+  void excuse() {
+    silence_ = MonotonicTime(0);
+    waited_.reset();
+  }
   /// The process has ended.
   void forget() { *this = Liveness(checked_); }
 
@@ -92,7 +97,10 @@ class Liveness {
 
   std::optional<MonotonicTime> reported_, checked_;
   MonotonicTime silence_{0};
-  std::optional<MonotonicTime> waited_;   // for a processor, as last measured
+  struct Waited {
+    MonotonicTime total, measured;
+  };
+  std::optional<Waited> waited_;          // for a processor
   std::optional<MonotonicTime> blocked_;  // since then
 };
 

@@ -95,11 +95,22 @@ TEST(Liveness, IsNotSilentWhileItWaitsForAProcessor) {
   usage.waited = 900ms;
   liveness.check(true, 3s, measure);
   EXPECT_EQ(liveness.silence(), 2100ms);
-  usage.waited = 9s;  // of several processes, or before this one was looked at
+  usage.waited = 9s;  // also before it was looked at
   liveness.check(true, 4s, measure);
   EXPECT_EQ(liveness.silence(), 2100ms);
   liveness.check(true, 5s, measure);
   EXPECT_EQ(liveness.silence(), 3100ms);
+}
+
+TEST(Liveness, IsNotSilentWhileItWaitsOnAnotherHost) {
+  Liveness liveness;
+  Usage usage;
+  const auto measure = [&] { return usage; };
+  for (auto time = 0ms; time <= 20s; time += 250ms) {
+    usage.waited = std::chrono::floor<std::chrono::seconds>(time);  // it says so once a second
+    liveness.check(true, time, measure);
+    EXPECT_LE(liveness.silence(), 3s) << time.count();
+  }
 }
 
 TEST(Liveness, ForgetsHowLongItHasWaitedWhenItReports) {

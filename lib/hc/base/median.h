@@ -8,7 +8,7 @@
 
 namespace hc {
 
-/// The number in the middle of the sorted ones; of an even count, the upper of both.
+/// The middle one of the sorted numbers; of an even count, the upper of the middle two.
 /// @param numbers  at least one; none is NaN.
 template <typename Number>
 Number median(std::vector<Number> numbers) {

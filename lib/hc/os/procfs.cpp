@@ -96,11 +96,12 @@ Usage usage_of(const std::vector<pid_t>& processes, bool with_memory) {
     auto numbers = numbers_in(std::string_view(text).substr(name_end + 4));
     for (std::size_t i = kFirstTime; i < kFirstTime + kTimes && i < numbers.size(); ++i)
       usage.processor += numbers[i] * tick;
+    if (with_memory) usage.memory += memory_of(process);
     // Source: Documentation/scheduler/sched-stats.rst: the times on a processor, and waiting for
     // one.
+    if (process != processes.front()) continue;
     const auto times = numbers_in(text_of("/proc/" + std::to_string(process) + "/schedstat"));
-    if (times.size() > 1) usage.waited += std::chrono::nanoseconds(times[1]);
-    if (with_memory) usage.memory += memory_of(process);
+    if (times.size() > 1) usage.waited = std::chrono::nanoseconds(times[1]);
   }
   return usage;
 }

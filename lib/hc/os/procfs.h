@@ -16,10 +16,11 @@ std::vector<pid_t> descendants(pid_t process);
 /// The resources used by processes, summed.
 struct Usage {
   std::chrono::nanoseconds processor{0};  ///< CPU time, with that of children that have ended
-  std::chrono::nanoseconds waited{0};  ///< their first threads have been runnable, but not running
-  std::uint64_t memory = 0;            ///< proportional set size (PSS) [byte]
-  bool is_stopped = false;             ///< one is stopped by a signal or a debugger
-  bool is_traced = false;              ///< one is stopped in a debugger
+  /// For how long the first one's first thread has been runnable without running.
+  std::chrono::nanoseconds waited{0};
+  std::uint64_t memory = 0;  ///< proportional set size (PSS) [byte]
+  bool is_stopped = false;   ///< one is stopped by a signal or a debugger
+  bool is_traced = false;    ///< one is stopped in a debugger
 };
 
 /// @param with_memory  whether to read `memory`, which costs more than the rest.
