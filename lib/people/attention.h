@@ -77,7 +77,7 @@ class Attention {
   Time since_;  // choice_
 };
 
-/// What the person does: "is nearest", "speaks", "is held".
+/// Why that person: "the nearest", "the speaker", "held".
 std::string_view text(Attention::Reason reason);
 
 }  // namespace hc::people
