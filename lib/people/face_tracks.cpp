@@ -20,6 +20,11 @@ cv::Point3f place_of(const Face& face) {
 
 }  // namespace
 
+bool FaceTracks::Following::is_over(Time time) const {
+  const auto unseen = std::chrono::abs(time - track.seen);
+  return unseen > kLongest || (unseen > kLife && misses >= kMisses);
+}
+
 cv::Point3f FaceTracks::Following::predicted(Time time) const {
   return at + speed * static_cast<float>(seconds(time - track.seen));
 }
@@ -59,11 +64,12 @@ void FaceTracks::Following::correct(Time time, const Face& face) {
   speed += (seen - before) * gain_of_speed;
   track.face = face;
   track.seen = time;
+  misses = 0;
 }
 
 std::vector<Track> FaceTracks::update(Time time, const std::vector<Face>& faces) {
-  std::erase_if(
-      all_, [&](const Following& one) { return std::chrono::abs(time - one.track.seen) > kLife; });
+  std::erase_if(all_, [&](const Following& one) { return one.is_over(time); });
+  for (Following& one : all_) ++one.misses;
   struct Pair {
     float cost;
     std::size_t face, track;
@@ -107,8 +113,7 @@ void FaceTracks::turn(const cv::Matx33f& H) {
 std::vector<FaceTracks::Expected> FaceTracks::expected(Time time) const {
   std::vector<Expected> all;
   for (const Following& one : all_)
-    if (std::chrono::abs(time - one.track.seen) <= kLife)
-      all.push_back({one.track.number, one.box(time)});
+    if (!one.is_over(time)) all.push_back({one.track.number, one.box(time)});
   return all;
 }
 

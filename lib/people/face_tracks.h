@@ -24,7 +24,8 @@ struct Track {
 
 /// Assigns the faces of each image to tracks: each to the one of which it is the most likely, by
 /// place and width. So a face that comes out from behind another one within kLife keeps its track.
-/// A track moves at a constant velocity between images, and ends when it was not seen for kLife.
+/// A track moves at a constant velocity between images. It ends when it was not seen for kLife and
+/// in kMisses images, as there are few on a busy machine, or for kLongest.
 class FaceTracks {
  public:
   /// Where a track is expected.
@@ -33,7 +34,8 @@ class FaceTracks {
     cv::Rect2f box;
   };
 
-  static constexpr std::chrono::milliseconds kLife{1000};
+  static constexpr std::chrono::milliseconds kLife{1000}, kLongest{5000};
+  static constexpr int kMisses = 3;
   /// Gate: a face farther from a track's predicted place [σ of the prediction; widths], and with
   /// less overlap with its box, is another one.
   static constexpr float kGate = 3, kWidestGate = 2, kLeastOverlap = 0.3F;
@@ -55,6 +57,8 @@ class FaceTracks {
     Track track;
     cv::Point3f at, speed;        // centre and width [px], [px/s]
     std::array<float, 3> p = {};  // covariance of a place and its speed: (p0 p1; p1 p2)
+    int misses = 0;               // images since it was seen
+    [[nodiscard]] bool is_over(Time time) const;
     [[nodiscard]] cv::Point3f predicted(Time time) const;
     [[nodiscard]] std::array<float, 3> predicted_covariance(Time time) const;
     [[nodiscard]] cv::Rect2f box(Time time) const;

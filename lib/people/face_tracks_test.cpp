@@ -48,7 +48,17 @@ TEST_F(FaceTracksTest, go_on_behind_what_hides_the_face_for_less_than_a_second) 
   for (int i = 20; i < 35; ++i) look({});
   EXPECT_EQ(look({face_at(100 + 10 * 35)}), std::vector<int>{1}) << "it has moved on";
   now_ += 1s;
+  for (int i = 0; i < FaceTracks::kMisses; ++i) look({});
   EXPECT_EQ(look({face_at(460)}), std::vector<int>{2});
+}
+
+TEST_F(FaceTracksTest, go_on_where_images_are_rare) {
+  for (int i = 0; i < 5; ++i) {
+    now_ += 1500ms;
+    EXPECT_EQ(look({face_at(100)}), std::vector<int>{1}) << i;
+  }
+  now_ += 5s;
+  EXPECT_EQ(look({face_at(100)}), std::vector<int>{2});
 }
 
 TEST_F(FaceTracksTest, are_expected_where_the_face_will_be) {

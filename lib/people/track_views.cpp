@@ -35,7 +35,7 @@ std::optional<std::size_t> TrackViews::due(Time time, const std::vector<Track>& 
     if (std::chrono::abs(time - std::exchange(views.seen, time)) > kGap) views.is_sure = false;
   }
   std::erase_if(tracks_, [&](const auto& each) {
-    return std::chrono::abs(time - each.second.seen) > FaceTracks::kLife;
+    return std::ranges::find(all, each.first, &FaceTracks::Expected::number) == all.end();
   });
   doubt_close(all);
   // Few views first, then long ago.

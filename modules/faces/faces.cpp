@@ -159,12 +159,19 @@ void Faces::learn(std::string_view text) {
   const int track = named->track;
   const std::string name(named->name);
   const auto& views = views_.views(track);
-  if (views.empty()) throw hc::BadMessage(hc::format("no face has track {} now", track));
+  if (!hc::people::is_person_name(name)) throw hc::BadMessage("it has no name of 1 to 64 bytes");
+  // A person asked for it, so each answer is logged.
+  const auto refuse = [&](const std::string& why) {
+    module_.log(hc::format("{} was not learned: {}", name, why), hc::Level::Warning);
+  };
+  if (views.empty()) return refuse(hc::format("no face has track {} now: try again", track));
   if (!views_.embedding(track))
-    throw hc::BadMessage(hc::format(
-        "it is not certain yet whose face track {} is: try again, away from other faces", track));
+    return refuse("it is not certain yet whose face it is: try again, away from other faces");
+  for (const auto& [known, number] : folder_->gallery().names())
+    if (number == person(track) && known != name)
+      return refuse(hc::format("it is {} already; rename the file {}/{}", known, *people_, known));
   if (const auto learned = folder_->learn(name, views); !learned)
-    throw hc::BadMessage(learned.error().detail);
+    return refuse(learned.error().detail);
   module_.log(hc::format("learned {} from {} views", name, views.size()));
   read_folder();
 }

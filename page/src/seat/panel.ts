@@ -227,7 +227,10 @@ class SeatPanel {
     const person = this.view.personAt(event.clientX, event.clientY);
     if (person) return this.persons.click(person);
     if (!this.seat.isHeld) return this.host.say("Take the seat first, then point.");
-    if (!this.has("target")) return this.host.say("No output target of the page is linked.");
+    if (!this.has("target"))
+      return this.host.say(
+        "There is no face here, and no output target of the page is linked, to turn to a pixel.",
+      );
     const pixel = this.view.pixelAt(event.clientX, event.clientY);
     if (!pixel) return this.host.say("Point at an unprocessed camera image.");
     this.seat.lookAt(pixel.x, pixel.y, pixel.coord, pixel.time);

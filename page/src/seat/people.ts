@@ -155,6 +155,7 @@ export class SeatPeople {
   private sendName(): void {
     const name = this.name.value.trim();
     if (!this.seat.isHeld || !this.has("name")) return;
+    if (name === "") return this.say("Type a name.");
     if (!isName(name))
       return this.say("A name has at most 64 bytes, and neither “/” nor a dot at its beginning.");
     if (!this.seat.name(this.track, name)) return;
