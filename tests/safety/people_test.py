@@ -15,6 +15,7 @@ from streams import bid, message, rotation, stick, stop
 SECONDS = 2  # for which sources contradict each other [s]
 SLOW = 0.6  # a push with which the head does not reach its limits for SECONDS
 SILENCE = 0.1  # of a stick, shorter than the one that ends its turn [s]
+PAUSE = 0.4  # of bids, shorter than the one after which they are withdrawn [s]
 
 
 class People(Safety):
@@ -42,19 +43,22 @@ class People(Safety):
         self.hold()
 
     def note_turns(self, begun, *feeders):
-        """Of two sources that began after a time [ns], from when the head moves. For each time that
-        one, or what a command passes through, got no processor for so long that it was silent, a
-        turn does not count.
-        """
+        """Of two sources that began after a time [ns], from when the head moves."""
         motion = self.head.motion
         moves = lambda: motion.moves(motion.since(begun))
         self.head.wait(moves, "the head moves")
         with self.head.waits() as waits:
             motion.wait_until(time.time_ns() + int(SECONDS * 1e9))
-        silences = sum(pause > SILENCE for each in feeders for pause in each.pauses)
-        silences += int(waits.until(time.time_ns()) / SILENCE)
-        where = "beside others who had the processor %d times" % silences
-        self.note("turns", max(0, motion.turns(moves()[0]) - silences), where)
+        self.note_without("turns", motion.turns(moves()[0]), SILENCE, feeders, waits)
+
+    def note_without(self, limit, count, silence, feeders, waits, where=""):
+        """Notes a count, without one for each time that a source, or what its messages pass through,
+        got no processor for so long [s].
+        """
+        silences = sum(pause > silence for each in feeders for pause in each.pauses)
+        silences += int(waits.until(time.time_ns()) / silence)
+        where += " beside others who had the processor %d times" % silences
+        self.note(limit, max(0, count - silences), where.strip())
         self.hold()
 
     def note_rest(self):
@@ -126,14 +130,15 @@ class People(Safety):
 
     def test_two_bids(self):
         head, mode = self.head, self.head.mode("telepresence")
-        self.feed("workspace.person", 0, lambda _: bid(1, mode, src=90), 0.1)
+        high = self.feed("workspace.person", 0, lambda _: bid(1, mode, src=90), 0.1)
         head.wait_focus("telepresence")
-        self.feed("workspace.person", 1, lambda _: bid(0, mode, src=91), 0.1)
+        low = self.feed("workspace.person", 1, lambda _: bid(0, mode, src=91), 0.1)
         begun = time.time_ns()
-        head.motion.wait_until(begun + int(SECONDS * 1e9))
+        with head.waits() as waits:
+            head.motion.wait_until(begun + int(SECONDS * 1e9))
         changes = head.focused.changes(begun)
-        self.note("changes", len(changes), str(changes))
-        self.hold()
+        lost = sum(now != mode for _, now in changes)
+        self.note_without("changes", lost, PAUSE, (high, low), waits, str(changes))
 
     def test_two_stops(self):
         head = self.head
