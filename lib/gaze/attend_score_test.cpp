@@ -30,7 +30,7 @@ TEST(AttendScore, of_a_still_face_has_its_overshoot_and_the_time_to_settle) {
 
 TEST(AttendScore, of_a_head_that_looks_elsewhere_says_so) {
   Attending run(kWithin);
-  EXPECT_NE(run.score().text().find("never looked"), std::string::npos) << "nobody was there";
+  EXPECT_NE(run.score().text().find("never looked"), std::string::npos) << "an empty room";
   for (int i = 0; i < 9; ++i) run.see(0.1 * i, {person_at(0.5)});
   EXPECT_NE(run.score().text().find("never looked"), std::string::npos);
   EXPECT_FALSE(run.score().settled);

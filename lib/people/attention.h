@@ -28,7 +28,7 @@ struct Place {
 class Attention {
  public:
   struct Options {
-    std::chrono::nanoseconds hold = std::chrono::seconds(2);  ///< before somebody who is nearer
+    std::chrono::nanoseconds hold = std::chrono::seconds(2);  ///< before a nearer person
     std::chrono::nanoseconds hold_from_speaker = std::chrono::milliseconds(300);
     double nearer = 0.4;  ///< how much nearer another must be [m]
   };
@@ -54,7 +54,7 @@ class Attention {
   void hold(int track) { held_ = track; }
   void release() { held_.reset(); }
 
-  /// The one to look at; nothing if there is nobody.
+  /// The person to look at; nothing if there is none.
   std::optional<Choice> choose(Time time);
 
  private:

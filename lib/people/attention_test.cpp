@@ -68,7 +68,7 @@ TEST_F(AttentionTest, changes_between_two_who_speak_in_turn) {
 TEST_F(AttentionTest, is_not_drawn_by_a_click_or_by_sounds_from_nobody) {
   look_for(1s);
   EXPECT_EQ(look_for(50ms, -0.3)->track, 1) << "one short sound";
-  EXPECT_EQ(look_for(2s, 1.2)->track, 1) << "nobody is there";
+  EXPECT_EQ(look_for(2s, 1.2)->track, 1) << "an empty room";
 }
 
 TEST_F(AttentionTest, holds_on_to_a_person_whoever_speaks) {

@@ -18,7 +18,7 @@ namespace hc::people {
 struct FaceRow {
   Face face;
   int track = 0;                                    ///< from 1
-  int person = 0;                                   ///< 0: nobody known
+  int person = 0;                                   ///< 0: unknown
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< between the eyes, in the head's frame [m]
 };
 

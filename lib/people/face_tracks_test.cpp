@@ -100,7 +100,7 @@ TEST_F(FaceTracksTest, follow_a_face_that_sets_off_between_rare_images) {
   for (int i = 0; i < 10; ++i) look({face_at(400)});
   now_ += 300ms;
   EXPECT_EQ(look({face_at(450)}), std::vector<int>{1}) << "1 m/s at 2 m";
-  EXPECT_EQ(look({face_at(600)}), std::vector<int>{2}) << "nobody is so fast";
+  EXPECT_EQ(look({face_at(600)}), std::vector<int>{2}) << "too fast for a person";
 }
 
 TEST_F(FaceTracksTest, a_stranger_far_from_a_lost_face_is_new) {

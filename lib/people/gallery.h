@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The people who are known by name. Pure.
+// Known people, by name. Pure.
 
 #include <map>
 #include <optional>
@@ -31,7 +31,7 @@ class Gallery {
     int number = 0;
     float distance = 0;
   };
-  /// The person who is nearest to an embedding, if nearer than `most`.
+  /// The person nearest to an embedding, if nearer than `most`.
   [[nodiscard]] std::optional<Match> find(const Embedding& embedding, float most) const;
   /// Name and number of all.
   [[nodiscard]] std::map<std::string, int> names() const;

@@ -19,7 +19,7 @@ class SearchTimes {
  public:
   /// Between searches, while no hand is followed, and while some are.
   static constexpr std::chrono::milliseconds kNone{100}, kSome{250};
-  /// The same where nobody is in view, though a hand may be.
+  /// The same where no face is in view, though a hand may be.
   static constexpr std::chrono::milliseconds kNobody{1000};
 
   /// Whether to search now, which the caller then does.

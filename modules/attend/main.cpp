@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the person at whom to look: the one who is held, who speaks, or who is nearest.
+// Chooses the person to look at: the held one, the speaker, or the nearest.
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -78,7 +78,7 @@ class Attend {
     if (choice)
       reason_.send(hc::format("looks at track {}, {}", choice->track, text(choice->reason)), time);
     else
-      reason_.send("sees nobody", time);
+      reason_.send("sees no person", time);
   }
 
   hc::Module& module_;

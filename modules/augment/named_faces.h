@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The people who are known by name and where their faces are, from the messages of `faces`. No
+// Known people, by name, and the places of their faces, from the messages of `faces`. No
 // ports.
 
 #include <chrono>
@@ -35,7 +35,7 @@ class NamedFaces {
   static constexpr std::size_t kMostLetters = 24;         ///< of a name; the others become "..."
   static constexpr std::chrono::milliseconds kLife{500};  ///< how long a face stays
 
-  /// The faces in a table, the nearest first; without those of persons who are not known, and those
+  /// The faces in a table, the nearest first; without those of unknown persons, and those
   /// in places where no head can be.
   static std::vector<Face> read(const hc::MatrixView<const double>& table);
   /// Takes all faces of a time.

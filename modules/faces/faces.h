@@ -42,7 +42,7 @@ class Faces {
   void read_folder();
   /// Forgets everybody where no image has come since the last call.
   void forget();
-  /// A person's number; 0: nobody who is known.
+  /// A person's number; 0: unknown.
   [[nodiscard]] int person(int track) const;
   /// The middle between the eyes, in the head's frame [m].
   [[nodiscard]] Eigen::Vector3d place(const hc::Header& image, const hc::people::Track& track);
@@ -62,7 +62,7 @@ class Faces {
       module_.input("name", hc::string(), "\"TRACK NAME\": learns the person of that track");
   hc::Output<hc::TableKind<double>> faces_ = module_.output(
       "faces", hc::table(),
-      "a row for each face of the left image, in its coordinate system; person 0 is nobody known; "
+      "a row for each face of the left image, in its coordinate system; person 0 is unknown; "
       "x y z: the middle between the eyes, in the head's frame",
       {.columns = hc::people::face_columns()});
   hc::Output<hc::PositionKind<double>> target_ =
@@ -72,7 +72,7 @@ class Faces {
       "names", hc::string(), "a line \"PERSON NAME\" for each known person, once a second");
   hc::Parameter<std::string> people_ =
       module_.parameter("people", "", "",
-                        "folder of the people who are known, a file for each (doc/people.md); "
+                        "folder of known people, a file for each (doc/people.md); "
                         "made when the first is learned",
                         {.fixed = true});
   hc::Parameter<double> same_ = module_.parameter(

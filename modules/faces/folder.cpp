@@ -91,7 +91,7 @@ hc::Status Folder::learn(const std::string& name, const std::vector<Embedding>& 
   if (!is_file_name(name))
     return refused("not a name: up to 64 bytes of UTF-8, without \"/\" and a dot at the beginning");
   if (path_.empty())
-    return refused("nobody can be learned without a folder: set the parameter people");
+    return refused("no face can be learned without a folder: set the parameter people");
   if (::mkdir(path_.c_str(), S_IRWXU) != 0 && errno != EEXIST)
     return hc::Error{hc::Code::System, path_ + ": " + std::generic_category().message(errno)};
   std::vector<Embedding> all;

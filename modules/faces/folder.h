@@ -19,7 +19,7 @@ class Folder {
   static constexpr std::size_t kMostViews = 25;
   static constexpr std::size_t kMostPeople = 1000;
 
-  /// @param path  of the folder; "": nobody is known, and nobody can be learned.
+  /// @param path  of the folder; "": no person is known or can be learned.
   /// @param log  for a line about a file that cannot be read.
   Folder(std::string path, std::function<void(std::string_view)> log)
       : path_(std::move(path)), log_(std::move(log)) {}

@@ -25,12 +25,12 @@ struct SeenFace {
   int known = 0;        ///< number of the person it was taken for, 0: unknown
 };
 
-/// The person whose face this is. Nothing where there is nobody, or where two persons' faces are so
-/// close that either may be the one.
+/// The person whose face this is. Nothing where there is no person, or where two persons' faces are
+/// so close that either may be the one.
 std::optional<int> person_at(const std::vector<TruePerson>& people, const SeenFace& face);
 
 /// Which person has each known number, of lines "NUMBER NAME" whose names are numbers of persons;
-/// 0: nobody of these.
+/// 0: none of these.
 std::map<int, int> persons_named(std::string_view lines);
 
 class IdentityScore {

@@ -17,7 +17,7 @@ TEST(PersonAt, is_the_one_whose_face_is_there) {
   const std::vector<TruePerson> people = {person_of(1, 100), person_of(2, 300)};
   EXPECT_EQ(person_at(people, face_of(110, 1)), 1);
   EXPECT_EQ(person_at(people, face_of(290, 1)), 2);
-  EXPECT_FALSE(person_at(people, face_of(200, 1))) << "nobody is there";
+  EXPECT_FALSE(person_at(people, face_of(200, 1))) << "no person there";
   EXPECT_FALSE(person_at({}, face_of(200, 1)));
 }
 

@@ -31,7 +31,7 @@ struct DriverOutputs {
       module.output("bid", hc::table(), "for the task chosen by the driver",
                     {.keep = kBids, .columns = {"salience"}});
   hc::Output<hc::StringKind> name = module.output(
-      "name", hc::string(), "\"TRACK NAME\": the name of a person who is seen", {.keep = kNames});
+      "name", hc::string(), "\"TRACK NAME\": names the person of a track", {.keep = kNames});
   hc::Output<hc::TableKind<double>> hold =
       module.output("hold", hc::table().of(1, 1), "track of the person to look at; 0: of anybody",
                     {.keep = 1, .columns = {"track"}});

@@ -42,7 +42,7 @@ const links = [
   link("rectify.left", "augment.left"),
 ];
 
-test("rows of faces and hands; what is no such row is left out", () => {
+test("rows of faces and hands; others are left out", () => {
   const [first, ...others] = facesOf(table([face, [NaN, ...face.slice(1)]]));
   assert.deepEqual(others, []);
   assert.deepEqual([first!.x, first!.height, first!.track, first!.person], [10, 40, 7, 3]);
@@ -100,7 +100,7 @@ test("the outputs are those for the images of the same camera", () => {
   assert.equal(peoplePorts(outputs, ring, "a.left").faces, undefined);
 });
 
-test("what is said of an image is that of the nearest time, for a second", () => {
+test("rows belong to the image of the nearest time, for a second", () => {
   const recent = new Recent<{ time: bigint }>();
   assert.equal(recent.at(0n), undefined);
   for (const time of [1_000_000_000n, 1_100_000_000n]) recent.push({ time });
@@ -135,7 +135,7 @@ test("outputs that are not known yet are asked for again, but not at once", asyn
   assert.equal(asked, 3, "all are known");
 });
 
-test("who is seen in an image: in its coordinates, until the rows end", async () => {
+test("people in an image: in its coordinates, until the rows end", async () => {
   const senders = new Map<string, (message: Message) => void>();
   const host = {
     state: { modules: [], links },

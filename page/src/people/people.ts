@@ -15,7 +15,7 @@ import {
   type Hand,
 } from "./tables";
 
-/** A face, and what is known of the person. */
+/** A face, and the name of its person. */
 export interface Person extends Face {
   /** The name, "person 3", or "?". */
   readonly name: string;
@@ -43,7 +43,7 @@ interface Rows<T> {
   readonly rows: readonly T[];
 }
 
-/** Without a table of faces for so long, nobody is seen any more; outputs that are unknown are asked
+/** Without a table of faces for so long, the image is empty; outputs that are unknown are asked
  *  for again [ms]. */
 const patience = 2000;
 

@@ -12,7 +12,7 @@ export interface Face extends Point {
   readonly width: number;
   readonly height: number;
   readonly track: number;
-  /** Number of a known person; 0: nobody known. */
+  /** Number of a known person; 0: unknown. */
   readonly person: number;
   /** Right and left eye, nose, mouth, right and left ear. */
   readonly points: readonly Point[];
