@@ -67,6 +67,9 @@ export class Graph {
     const take = (data) => (this.log += data);
     this.process.stdout.on("data", take);
     this.process.stderr.on("data", take);
+    process.once("exit", (code) => {
+      if (code !== 0) console.error(`the log of ${file}:\n${this.log}`);
+    });
   }
 
   /** A URL with a token that has not been used. */
