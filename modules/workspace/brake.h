@@ -61,11 +61,9 @@ class Brake {
   [[nodiscard]] std::string reason(hc::MonotonicTime now) const;
 
   void set_names(std::map<std::int32_t, std::string> names) { names_ = std::move(names); }
-  /// A source's name, or "source 14". Programs outside the graph, such as `hc estop`, share src 0.
+  /// @see hc::source_name()
   [[nodiscard]] std::string name(std::int32_t source) const {
-    const auto found = names_.find(source);
-    if (found != names_.end()) return found->second;
-    return source == 0 ? "a program outside the graph" : "source " + std::to_string(source);
+    return hc::source_name(source, names_);
   }
 
  private:

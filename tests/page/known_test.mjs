@@ -322,6 +322,7 @@ describe("the page, of what is known", { timeout: 10 * watchdog }, () => {
     const bar = page.locator(".stopped-bar");
     await bar.waitFor();
     await viewer.locator(".stop-note").waitFor();
+    await bar.getByText("by a page (web.stop). No task has the focus.").waitFor();
     assert.ok(await viewer.getByRole("button", { name: "Let it move" }).isHidden());
     await bar.getByLabel("the robot's way is clear").check();
     await bar.getByRole("button", { name: "Let it move" }).click();

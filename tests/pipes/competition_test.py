@@ -209,17 +209,18 @@ class Stopped(Graphs):
 
         workspace = self.module(wait_focus(self.LOOK), "workspace")["pid"]
         say(1)
-        self.assertEqual(wait_focus(None)["stopped"], ["workspace"])
-        self.assertIn(", stopped", self.shell("hc ps"))
+        stopped = {"workspace": ["source 12"]}
+        self.assertEqual(wait_focus(None)["stopped"], stopped)
+        self.assertIn(", stopped by source 12", self.shell("hc ps"))
         self.assertIn(", stopped", self.shell("hc top --once --of " + name))
         os.kill(workspace, signal.SIGKILL)
         wait_until(lambda: "stopped by source 12, before the restart" in self.read("errors"))
         state = self.state(
             messages, lambda state: self.module(state, "workspace")["pid"] not in (0, workspace)
         )
-        self.assertEqual((state["stopped"], state["focus"]["workspace"]), (["workspace"], None))
+        self.assertEqual((state["stopped"], state["focus"]["workspace"]), (stopped, None))
         say(2)
-        self.assertEqual(wait_focus(self.LOOK)["stopped"], [])
+        self.assertEqual(wait_focus(self.LOOK)["stopped"], {})
         self.stop(process)
 
 

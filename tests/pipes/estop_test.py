@@ -72,7 +72,7 @@ class Estop(Graphs):
             self.shell(estop + " clear", 1)
             is_done.set()
             repeating.join()
-        self.assertIn("NOT cleared: a source repeats its stop", self.err)
+        self.assertIn("NOT cleared: stopped by source 12; a source that repeats", self.err)
         self.shell(estop + " clear")
         self.shell(estop + " now", 2)
         # A workspace that hangs.

@@ -65,11 +65,11 @@ std::string why_not(const hc::GraphState& state, bool clears) {
     if (state.stopped.contains(workspace) == clears &&
         find_module(state, workspace).status != hc::ModuleStatus::Running)
       return what + workspace + " does not run, or hangs";
-  return what +
-         (clears
-              ? "a source repeats its stop, as a page does; clear it there: the log names it, hc "
-                "page prints the URL of a page"
-              : "the workspace does not report it");
+  if (!clears) return what + "the workspace does not report it";
+  return what + state.stopped_in_words() +
+         "; a source that repeats its stop, as a page does, must clear it: hc page prints the URL "
+         "of "
+         "a page";
 }
 
 /// Sends to all workspaces of a graph, and waits until they report that the robot is stopped, or

@@ -46,6 +46,14 @@ struct FieldReader {
     if (auto found = json.find(key); found != json.end() && !found->is_null())
       value = found->get<T>();
   }
+  void operator()(const char* key, std::map<std::string, std::vector<std::string>>& value) {
+    const auto found = json.find(key);
+    if (found == json.end()) return;
+    if (found->is_object())
+      found->get_to(value);
+    else  // an older graph does not name the sources
+      for (const auto& name : *found) value[name.get<std::string>()];
+  }
   void operator()(const char* key, ModuleStatus& value) {
     const auto text = json.value(key, std::string());
     value = enum_named<ModuleStatus>(kStatusNames, text).value_or(value);
@@ -161,10 +169,13 @@ std::string GraphState::focus_in_words() const {
 }
 
 std::string GraphState::stopped_in_words() const {
-  std::string words = stopped.empty() ? "" : "stopped";
-  if (focus.size() == 1) return words;
-  for (const auto& workspace : stopped)
-    words += (workspace == *stopped.begin() ? ": " : ", ") + workspace;
+  std::string words;
+  for (const auto& [workspace, sources] : stopped) {
+    words += words.empty() ? "stopped" : ", ";
+    if (focus.size() > 1) words += (words == "stopped" ? ": " : "") + workspace;
+    for (const auto& source : sources)
+      words += (source == sources.front() ? " by " : ", ") + source;
+  }
   return words;
 }
 

@@ -94,7 +94,8 @@ struct GraphState {
   double uptime = 0;  ///< [s]
   bool is_stopping = false;
   std::map<std::string, std::int64_t> focus;  ///< mode in focus of each workspace; 0: none
-  std::set<std::string> stopped;              ///< workspaces that have been stopped
+  /// Workspaces that have been stopped, and the sources that did it.
+  std::map<std::string, std::vector<std::string>> stopped;
   std::vector<HostState> hosts;
   std::vector<ModuleState> modules;
   std::vector<LinkState> links;
@@ -108,7 +109,8 @@ struct GraphState {
   /// The modes in focus: "track", or for several workspaces "left: track, right: none"; empty: no
   /// workspace has one.
   [[nodiscard]] std::string focus_in_words() const;
-  /// "stopped", or with several workspaces "stopped: left, right"; empty: none is stopped.
+  /// "stopped by web.stop, hands.stop", or with several workspaces "stopped: left by web.stop";
+  /// empty: none is stopped.
   [[nodiscard]] std::string stopped_in_words() const;
 };
 

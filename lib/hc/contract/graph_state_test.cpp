@@ -13,7 +13,7 @@ GraphState some_state() {
   state.process = 12;
   state.uptime = 3.25;
   state.focus = {{"left", 1}, {"right", 0}};
-  state.stopped = {"right"};
+  state.stopped = {{"right", {"web.stop", "source 14"}}};
   state.modes = {{"read", 2}, {"track", 1}};
   state.addresses = {{"eyes.command", 21}};
   ModuleState module;
@@ -52,7 +52,7 @@ GraphState some_state() {
 TEST(State, IsOneLineOfJson) {
   EXPECT_EQ(
       to_json(some_state()),
-      R"({"graph":"head","file":"graphs/head.toml","pid":12,"uptime":3.25,"stopped":["right"],)"
+      R"({"graph":"head","file":"graphs/head.toml","pid":12,"uptime":3.25,"stopped":{"right":["web.stop","source 14"]},)"
       R"("modes":{"read":2,"track":1},"addresses":{"eyes.command":21},)"
       R"("status":"running","focus":{"left":{"mode":"track","number":1},"right":null},)"
       R"("hosts":[{"name":"robot","connected":true,"detail":"","offset":3600.5,"error":0.25,)"
@@ -78,12 +78,21 @@ TEST(State, IsReadAsItWasWritten) {
   EXPECT_EQ(state->links.at(0).age->at(2), 2);
 }
 
+TEST(State, OfAnOlderGraphNamesNoSourcesOfStops) {
+  const auto state = parse_graph_state(
+      R"({"status":"running","focus":{"w":null},"stopped":["w"],"modules":[],"links":[]})");
+  ASSERT_TRUE(state);
+  EXPECT_EQ(state->stopped_in_words(), "stopped");
+}
+
 TEST(State, AnythingElseIsMalformed) {
-  for (const char* text : {"", "7", "{}", "[1]", R"({"graph":7})",
-                           R"({"status":"running","focus":{},"modules":[1],"links":[]})",
-                           R"({"status":"running","focus":{},"modules":[{"cpu":""}],"links":[]})",
-                           R"({"status":"running","focus":{"w":7},"modules":[],"links":[]})",
-                           R"({"status":"running","focus":[1],"modules":[],"links":[]})"}) {
+  for (const char* text :
+       {"", "7", "{}", "[1]", R"({"graph":7})",
+        R"({"status":"running","focus":{},"modules":[1],"links":[]})",
+        R"({"status":"running","focus":{},"modules":[{"cpu":""}],"links":[]})",
+        R"({"status":"running","focus":{"w":7},"modules":[],"links":[]})",
+        R"({"status":"running","focus":[1],"modules":[],"links":[]})",
+        R"({"status":"running","focus":{},"stopped":[1],"modules":[],"links":[]})"}) {
     auto state = parse_graph_state(text);
     ASSERT_FALSE(state) << text;
     EXPECT_EQ(state.error().code, Code::Malformed);
@@ -97,14 +106,16 @@ TEST(State, AFocusWithoutANameIsItsNumber) {
   EXPECT_NE(to_json(state).find(R"({"mode":"7","number":7})"), std::string::npos);
   EXPECT_EQ(state.focus_in_words(), "7");
   EXPECT_EQ(state.stopped_in_words(), "");
-  state.stopped = {"workspace"};
-  EXPECT_EQ(state.stopped_in_words(), "stopped");
+  state.stopped = {{"workspace", {"web.stop"}}};
+  EXPECT_EQ(state.stopped_in_words(), "stopped by web.stop");
 }
 
 TEST(State, TheFocusOfTwoWorkspacesIsShownForEach) {
   auto state = some_state();
   EXPECT_EQ(state.focus_in_words(), "left: track, right: none");
-  EXPECT_EQ(state.stopped_in_words(), "stopped: right");
+  EXPECT_EQ(state.stopped_in_words(), "stopped: right by web.stop, source 14");
+  state.stopped["left"] = {"hands.stop"};
+  EXPECT_EQ(state.stopped_in_words(), "stopped: left by hands.stop, right by web.stop, source 14");
   EXPECT_EQ(state.focus_of(state.modules.at(0)), "track");
   state.modules[0].workspace = "right";
   EXPECT_EQ(state.focus_of(state.modules.at(0)), "");

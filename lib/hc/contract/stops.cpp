@@ -11,6 +11,20 @@ bool any_stops(const Stops& stops) {
   return std::any_of(stops.begin(), stops.end(), [](const auto& each) { return each.second; });
 }
 
+std::string source_name(std::int32_t source, const std::map<std::int32_t, std::string>& names) {
+  const auto found = names.find(source);
+  if (found != names.end()) return found->second;
+  return source == 0 ? "a program outside the graph" : "source " + std::to_string(source);
+}
+
+std::vector<std::string> names_of_stops(const Stops& stops,
+                                        const std::map<std::int32_t, std::string>& names) {
+  std::vector<std::string> found;
+  for (const auto& [source, is_stop] : stops)
+    if (is_stop) found.push_back(source_name(source, names));
+  return found;
+}
+
 std::string stops_text(const Stops& stops) {
   std::string text;
   for (const auto& [source, is_stop] : stops)

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <hc/base/result.h>
 
@@ -20,6 +21,13 @@ using Stops = std::map<std::int32_t, bool>;
 inline constexpr const char* kStops = "stops";
 
 bool any_stops(const Stops& stops);
+
+/// A source's name, or "source 14". Programs outside the graph, such as `hc estop`, share src 0.
+/// @param names  by src.
+std::string source_name(std::int32_t source, const std::map<std::int32_t, std::string>& names);
+/// The names of the sources that have stopped the robot.
+std::vector<std::string> names_of_stops(const Stops& stops,
+                                        const std::map<std::int32_t, std::string>& names);
 
 /// "12=1,14=0": 1 for a source that stops, 0 for one that guards.
 std::string stops_text(const Stops& stops);

@@ -3,6 +3,7 @@
 import { CommandError, mayDrive, type Session } from "../server";
 import { button, h, meanings, setText, type Shell } from "../shell";
 import { patience, Stopping } from "./stopping";
+import { stoppedBy } from "./who";
 
 /** Two presses of Escape within this time stop the robot [ms]. */
 const twice = 600;
@@ -55,7 +56,7 @@ export function addStop(shell: Shell): void {
     class: "stop",
     title: `Stop the robot (Escape twice). ${meanings.stop}`,
   });
-  const { bar, showBar } = stoppedBar(() => {
+  const { bar, showBar, showSources } = stoppedBar(() => {
     stopping.press(false, performance.now());
     void order(false);
   });
@@ -83,6 +84,7 @@ export function addStop(shell: Shell): void {
     if (event.timeStamp - last < twice) stop();
     last = event.timeStamp;
   });
+  server.onState((state) => showSources(stoppedBy(state)));
   server.onConnection(({ status }) => {
     stopping.connected(status === "open");
     look();
@@ -102,16 +104,21 @@ const endedWords = "The graph has ended: no program takes the stop.";
 /** The words in the bar while the robot is stopped. @param clear  lets the robot move. */
 function stoppedBar(clear: () => void) {
   const confirm = h("input", { type: "checkbox", id: "stop-confirm" });
-  const clearButton = button("Let it move", clear, { class: "stop-clear", disabled: true });
+  const clearButton = button("Let it move", clear, {
+    class: "stop-clear",
+    title: "Lets the robot move, after you have ticked that its way is clear.",
+    disabled: true,
+  });
   confirm.onchange = () => (clearButton.disabled = !confirm.checked);
   const controls = h("span.stop-controls.row", [
     h("label.row", { for: "stop-confirm" }, [confirm, "the robot's way is clear"]),
     clearButton,
   ]);
   const note = h("span.stop-note", "Clearing this stop needs the right to drive.");
+  const words = h("span.stopped-words");
   const bar = h("div.stopped-bar.row", { role: "alert", hidden: true }, [
     h("strong", "STOPPED"),
-    h("span.stopped-words", "No task has the focus."),
+    words,
     controls,
     note,
   ]);
@@ -124,5 +131,8 @@ function stoppedBar(clear: () => void) {
     controls.hidden = !mayClear;
     note.hidden = mayClear;
   };
-  return { bar, showBar };
+  const showSources = (sources: string): void =>
+    setText(words, `${sources ? `${sources}. ` : ""}No task has the focus.`);
+  showSources("");
+  return { bar, showBar, showSources };
 }

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { GraphLink, GraphModule, GraphState, Session } from "../server";
-import { taskOf, whoText, type Situation } from "./who";
+import { stoppedBy, taskOf, whoText, type Situation } from "./who";
 
 const link = (from: string, to: string): GraphLink => ({ from, to }) as GraphLink;
 const module = (name: string, mode = ""): GraphModule => ({ name, mode }) as GraphModule;
@@ -35,6 +35,22 @@ test("an output's task is that of the module that reads it", () => {
   assert.equal(taskOf(state, "web", "text"), 0);
   assert.equal(taskOf(state, "web", "hold"), 6);
   assert.equal(taskOf(state, "page", "stick"), 0);
+});
+
+test("a stop names its sources, those that a person knows by another name, too", () => {
+  const state = {
+    modules: [
+      { name: "hands", program: "hands" },
+      { name: "page", program: "/usr/lib/hypercolumn/web" },
+    ],
+    stopped: { left: ["hands.stop"], right: ["page.stop", "hands.stop", "source 12"] },
+  } as unknown as GraphState;
+  assert.equal(
+    stoppedBy(state),
+    "by an open palm (hands.stop), a page (page.stop), source 12",
+  );
+  assert.equal(stoppedBy({ ...state, stopped: {} }), "");
+  assert.equal(stoppedBy(undefined), "");
 });
 
 const session = (more: Partial<Session> = {}): Session =>

@@ -3,6 +3,7 @@
 import {
   mayDrive,
   moduleOf,
+  programName,
   type Connection,
   type DriveOutput,
   type GraphState,
@@ -25,6 +26,20 @@ export function taskOf(state: GraphState, web: string, output: DriveOutput): num
     if (task) return task;
   }
   return 0;
+}
+
+/** Sources of stops that a person knows by another name, by program. */
+const stops: Readonly<Record<string, string>> = { hands: "an open palm", web: "a page" };
+
+/** What stopped the robot: "by an open palm (hands.stop)"; "" if it is not known. */
+export function stoppedBy(state: GraphState | undefined): string {
+  const sources = new Set(Object.values(state?.stopped ?? {}).flat());
+  const named = [...sources].map((source) => {
+    const module = state?.modules.find(({ name }) => name === moduleOf(source));
+    const known = module && stops[programName(module.program)];
+    return known ? `${known} (${source})` : source;
+  });
+  return named.length > 0 ? `by ${named.join(", ")}` : "";
 }
 
 export interface Situation {

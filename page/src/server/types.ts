@@ -80,6 +80,8 @@ export interface GraphState {
   readonly status: "running" | "stopping";
   /** The mode in focus, by workspace. */
   readonly focus: Readonly<Record<string, Focus | null>>;
+  /** The sources that have stopped the robot, by workspace. */
+  readonly stopped: Readonly<Record<string, readonly string[]>>;
   readonly modules: readonly GraphModule[];
   readonly links: readonly GraphLink[];
   readonly modes: Readonly<Record<string, number>>;
