@@ -9,12 +9,12 @@ import { Pairing, type Side } from "../views/pairing";
 import { Eye, type Picture } from "./eye";
 import type { Latency } from "./latency";
 import { drawPictures, thumbnailOf, type Pictures } from "./picture";
+import { silenceText, waiting } from "./silence";
 import { pixelAt, placesOf, sidesOf, wayNames, ways, type Way } from "./places";
 import type { XrView } from "./xr";
 
 /** Maximum width of requested images [px]. */
 const widest = 1280;
-const waiting = "Waiting for the first image…";
 /** After this time without an image of an eye, a headset shows the other one alone [ms]. */
 const patience = 1000;
 
@@ -40,6 +40,8 @@ export class SeatView {
   private readonly pairing = new Pairing<Picture>(close);
   /** When each eye's last image came, or its stream was opened. */
   private readonly came: Record<Side, number> = { left: 0, right: 0 };
+  /** What was said last of images that do not come. */
+  private silence = "";
   private pairs: readonly EyePair[] = [];
   private readonly resizing: ResizeObserver;
   private drawing = false;
@@ -75,6 +77,7 @@ export class SeatView {
   update(state: GraphState): void {
     const pairs = eyePairs(state);
     if (this.pair) this.people.follow(this.pair.left);
+    this.watch(state);
     if (JSON.stringify(pairs) === JSON.stringify(this.pairs)) return;
     this.pairs = pairs;
     const chips = [...labelsOf(pairs)].map(([module, label]) =>
@@ -83,6 +86,19 @@ export class SeatView {
     fill(this.sources, chips);
     const isThere = pairs.some(({ module }) => module === this.module);
     this.choose(isThere ? this.module : (pairs[0]?.module ?? ""), this.coding.value);
+  }
+
+  /** Says that no images come, and which module is the reason. */
+  private watch(state: GraphState): void {
+    const { pair, pictures } = this;
+    if (!pair || this.eyes.size === 0) return;
+    const last = Math.max(...[...this.eyes.keys()].map((side) => this.came[side]));
+    const sender = state.modules.find(({ name }) => name === moduleOf(pair.left));
+    const hasImage = (pictures.left ?? pictures.right) !== undefined;
+    const text = silenceText(hasImage, performance.now() - last, sender);
+    this.element.toggleAttribute("data-old", hasImage && text !== "");
+    if ([this.silence, ""].includes(this.problem.textContent)) this.problem.textContent = text;
+    this.silence = text;
   }
 
   /** Shows the images of a module. */
@@ -175,7 +191,7 @@ export class SeatView {
       this.problem.textContent = "The graph has no module that sends images left or right.";
       return;
     }
-    this.problem.textContent = waiting;
+    this.problem.textContent = this.silence = waiting;
     this.people.follow(pair.left);
     this.way.disabled = pair.right === undefined;
     const wanted = this.xr ? (["left", "right"] as const) : sidesOf(this.shownWay);
@@ -209,7 +225,8 @@ export class SeatView {
 
   /** Draws the pictures, and measures their latency by one of them. */
   private show(picture: Picture): void {
-    if (this.problem.textContent === waiting) this.problem.textContent = "";
+    if (this.problem.textContent === this.silence) this.problem.textContent = "";
+    this.element.removeAttribute("data-old");
     const thumbnail = thumbnailOf(picture.bitmap);
     this.draw(() =>
       this.latency.shown({
