@@ -14,15 +14,22 @@ using hc::people::Sign;
 
 constexpr double kPalm = 0.05;  // [rad]
 
+/// A hand, by pan and tilt of its wrist [rad]; its tip is farther from the elbow than that.
+HandCommand::Directions upright(double pan, double tilt = 0, double length = kPalm) {
+  const auto towards = [&](double height) -> Eigen::Vector3d {
+    return Eigen::Vector3d(std::cos(pan), std::sin(pan), std::tan(tilt + height)).normalized();
+  };
+  return {towards(0), towards(length), towards(1.8 * length)};
+}
+
 /// How often a hand that shows a sign for four seconds, and moves so, gives a command.
-template <typename Pan>
-int commands(Sign sign, const Pan& pan) {
+template <typename HandAt>
+int commands(Sign sign, const HandAt& hand_at) {
   HandCommand command;
   int count = 0;
   for (auto at = 0ms; at < 4s; at += 50ms) {
-    const double angle = pan(static_cast<double>(at.count()) / 1000);
-    const Eigen::Vector3d towards(std::cos(angle), std::sin(angle), 0);
-    const auto told = command.update(hc::Time(1'700'000'000s) + at, sign, towards, kPalm);
+    const auto told = command.update(hc::Time(1'700'000'000s) + at, sign,
+                                     hand_at(static_cast<double>(at.count()) / 1000));
     if (!told) continue;
     EXPECT_EQ(*told, sign);
     EXPECT_GE(at, HandCommand::kHold);
@@ -32,7 +39,7 @@ int commands(Sign sign, const Pan& pan) {
 }
 
 TEST(HandCommand, is_a_sign_that_is_held_still) {
-  const auto trembles = [](double t) { return 0.1 + 0.15 * kPalm * std::sin(40 * t); };
+  const auto trembles = [](double t) { return upright(0.1 + 0.1 * kPalm * std::sin(40 * t)); };
   EXPECT_EQ(commands(Sign::Open, trembles), 1);
   EXPECT_EQ(commands(Sign::ThumbUp, trembles), 1);
   EXPECT_EQ(commands(Sign::None, trembles), 0);
@@ -40,26 +47,38 @@ TEST(HandCommand, is_a_sign_that_is_held_still) {
 
 TEST(HandCommand, is_no_wave) {
   for (const double rate : {0.8, 1.5, 3.0})
-    EXPECT_EQ(
-        commands(Sign::Open,
-                 [&](double t) { return 2 * kPalm * std::sin(2 * std::numbers::pi * rate * t); }),
-        0)
+    EXPECT_EQ(commands(Sign::Open,
+                       [&](double t) {
+                         return upright(2 * kPalm * std::sin(2 * std::numbers::pi * rate * t));
+                       }),
+              0)
         << rate;
 }
 
+TEST(HandCommand, is_no_wave_along_the_line_of_sight) {
+  // From the elbow, by 0.45 rad, as the simulated people wave: it is lower, and shorter, twice a
+  // period.
+  EXPECT_EQ(commands(Sign::Open,
+                     [](double t) {
+                       const double swing = 0.45 * std::sin(2 * std::numbers::pi * 1.5 * t);
+                       constexpr double kForearm = 2.7 * kPalm;
+                       return upright(0, kForearm * std::cos(swing), kPalm * std::cos(swing));
+                     }),
+            0);
+}
+
 TEST(HandCommand, is_no_hand_that_passes_by) {
-  EXPECT_EQ(commands(Sign::Open, [](double t) { return 0.1 * t; }), 0);
+  EXPECT_EQ(commands(Sign::Open, [](double t) { return upright(0.1 * t); }), 0);
 }
 
 TEST(HandCommand, needs_a_hand_that_is_seen_all_the_time) {
   HandCommand command;
   for (int i = 0; i < 20; ++i)
-    EXPECT_FALSE(
-        command.update(hc::Time(1'700'000'000s) + i * 300ms, Sign::Open, {1, 0, 0}, kPalm));
+    EXPECT_FALSE(command.update(hc::Time(1'700'000'000s) + i * 300ms, Sign::Open, upright(0)));
 }
 
 TEST(HandCommand, comes_when_a_wave_ends) {
-  EXPECT_EQ(commands(Sign::Open, [](double t) { return t < 1 ? 0.2 * t : 0.2; }), 1);
+  EXPECT_EQ(commands(Sign::Open, [](double t) { return upright(t < 1 ? 0.2 * t : 0.2); }), 1);
 }
 
 }  // namespace

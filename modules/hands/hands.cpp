@@ -113,24 +113,22 @@ bool Hands::update_hold(const HandTrack& track) {
   const Sign sign = hc::people::sign_of(track.hand);
   if (const auto held = hold.update(track.seen, sign))
     sign_.send({static_cast<double>(*held), static_cast<double>(track.number)}, track.seen);
-  std::pair<Eigen::Vector3d, double> at{Eigen::Vector3d::Zero(), 0};
-  if (sign != Sign::None) at = seen_at(track);
-  command.update(track.seen, sign, at.first, at.second);
+  command.update(track.seen, sign,
+                 sign == Sign::None ? hc::people::HandCommand::Directions{} : seen_at(track));
   if (const auto word = stop_words_.update(module_.monotonic(), command.held()))
     stop_.send({*word}, module_.now());
   return hold.held() == Sign::Point;
 }
 
-std::pair<Eigen::Vector3d, double> Hands::seen_at(const HandTrack& track) {
+hc::people::HandCommand::Directions Hands::seen_at(const HandTrack& track) {
   const auto cameras = pair();
-  const auto& points = track.hand.points;
-  const auto to = [&](const cv::Point2f& p) -> Eigen::Vector3d {
-    return Eigen::Vector3d((p.x - cameras.cx) / cameras.fx, (p.y - cameras.cy) / cameras.fy, 1)
-        .normalized();
-  };
-  const Eigen::Vector3d middle = to(points[Hand::Middle]);
   const Eigen::Matrix3d R_robot_camera = mount_.pose_in("robot", track.seen, frames_).linear();
-  return {R_robot_camera * middle, (middle - to(points[Hand::Wrist])).norm()};
+  const auto to = [&](Hand::Point point) -> Eigen::Vector3d {
+    const auto& p = track.hand.points[point];
+    const Eigen::Vector3d ray((p.x - cameras.cx) / cameras.fx, (p.y - cameras.cy) / cameras.fy, 1);
+    return R_robot_camera * ray.normalized();
+  };
+  return {to(Hand::Wrist), to(Hand::Middle), to(Hand::MiddleTip)};
 }
 
 void Hands::aim(const hc::Message* right) {

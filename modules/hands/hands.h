@@ -49,8 +49,8 @@ class Hands {
   void send(const hc::Header& image, const std::vector<HandTrack>& tracks);
   /// Sends a sign that has been held. @returns whether the hand points now.
   bool update_hold(const HandTrack& track);
-  /// The direction of a hand in the robot's frame, and the length of its palm. [rad]
-  [[nodiscard]] std::pair<Eigen::Vector3d, double> seen_at(const HandTrack& track);
+  /// The directions of a hand, in the robot's frame.
+  [[nodiscard]] hc::people::HandCommand::Directions seen_at(const HandTrack& track);
   /// Sends the ray of the hand that points. @param right  null: not seen by the right eye.
   void aim(const hc::Message* right);
   [[nodiscard]] std::optional<hc::people::Joints> joints_of(const HandTrack& track,
