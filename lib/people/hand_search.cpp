@@ -7,6 +7,19 @@
 #include <people/sign.h>
 
 namespace hc::people {
+namespace {
+
+constexpr std::size_t kTimes = 2;  // around a face, for each time elsewhere
+
+/// Where a person's palm is held up: from above the head to the elbows, an arm's length to each
+/// side.
+cv::Rect reach_of(const cv::Rect2f& face) {
+  const float side = 8 * face.width;
+  return cv::Rect2f(face.x + (face.width - side) / 2, face.y + 1.5F * face.height - side / 2, side,
+                    side);
+}
+
+}  // namespace
 
 bool SearchTimes::is_due(Time time, std::size_t followed, bool is_anybody) {
   const auto period = followed > 0 ? kSome : is_anybody ? kNone : kNobody;
@@ -22,15 +35,19 @@ void HandSearch::add(const HandTracks::Sighting& found,
 }
 
 cv::Rect HandSearch::next_place(const cv::Size& image, const std::vector<cv::Rect2f>& faces) {
-  constexpr std::size_t kTimes = 2;  // around each face
-  const std::size_t around = kTimes * faces.size(), turn = turn_++ % (around + 1);
-  if (turn < around) {
-    // From above the head to the elbows, an arm's length to each side.
-    const cv::Rect2f& face = faces[turn % faces.size()];
-    const float side = 8 * face.width;
-    return cv::Rect2f(face.x + (face.width - side) / 2, face.y + 1.5F * face.height - side / 2,
-                      side, side);
+  const bool is_around_a_face = turn_++ % (kTimes + 1) < kTimes;
+  cv::Rect busiest;
+  double most = -1;
+  for (std::size_t i = 0; is_around_a_face && i < faces.size(); ++i) {
+    const cv::Rect2f seen = faces[i] & cv::Rect2f({}, cv::Size2f(image));
+    if (seen.empty() || faces[i].width > static_cast<float>(image.width)) continue;
+    const cv::Rect place = reach_of(faces[i]);
+    const double change = changes_.in(place);
+    if (change <= most) continue;
+    most = change;
+    busiest = place;
   }
+  if (!busiest.empty()) return busiest;
   // A hand near by is seen as a whole in the whole image alone, and one far away in a part.
   std::vector<cv::Rect> parts{{{}, image}};
   for (const cv::Rect& part : parts_of(image))
@@ -41,7 +58,7 @@ cv::Rect HandSearch::next_place(const cv::Size& image, const std::vector<cv::Rec
 void HandSearch::search(const cv::Mat& image, const std::vector<cv::Rect2f>& faces,
                         std::vector<HandTracks::Sighting>& hands) {
   const cv::Rect place = next_place(image.size(), faces);
-  if ((place & cv::Rect({}, image.size())).empty()) return;
+  changes_.forget(place);
   for (const Palm& palm : palms_.find(image, place)) {
     if (hands.size() > most_) return;
     const cv::Point2f middle = region_of(palm).middle;
@@ -56,6 +73,7 @@ void HandSearch::search(const cv::Mat& image, const std::vector<cv::Rect2f>& fac
 std::vector<HandTrack> HandSearch::look(Time time, const cv::Mat& image,
                                         const std::optional<std::vector<cv::Rect2f>>& faces) {
   if (image.empty()) return {};
+  changes_.add(image);
   std::vector<HandTracks::Sighting> hands;
   for (const auto& [number, region] : tracks_.expected(time)) {
     if (hands.size() > most_) break;

@@ -10,6 +10,7 @@
 
 #include <people/hand_landmarks.h>
 #include <people/hand_tracks.h>
+#include <people/image_changes.h>
 #include <people/palm_finder.h>
 
 namespace hc::people {
@@ -30,9 +31,10 @@ class SearchTimes {
 };
 
 /// Follows known hands by the network of their points alone, and searches for others now and then:
-/// twice around each face that is in view, where a palm is held up, then in all of the image or one
-/// of its parts, in turn. While enough are followed it searches for one
-/// more that is open and up, since that is a command to stop, and follows it as long as it is.
+/// twice around a face that is in view, where a palm is held up, of several the one around which
+/// the image has changed most; then in all of the image or one of its parts, in turn. While enough
+/// are followed it searches for one more that is open and up, since that is a command to stop, and
+/// follows it as long as it is.
 ///
 /// Cost: 14 ms for each known hand, of one core; 30 ms for a search and 14 ms for each other hand
 /// that it sees.
@@ -65,6 +67,7 @@ class HandSearch {
   std::size_t most_;
   HandTracks tracks_;
   SearchTimes times_;
+  ImageChanges changes_;
   std::size_t turn_ = 0, next_part_ = 0;
 };
 
