@@ -3,61 +3,51 @@
 
 #include <cstddef>
 
-#include <hc/base/check.h>
-#include <people/short_number.h>
-#include <people/table_row.h>
+#include <hc/base/table_row.h>
 
 namespace hc::people {
 namespace {
 
-/// The columns of its numbers.
-struct HandAt {
-  static constexpr std::size_t kTrack = 0, kSide = 1, kPresence = 2, kSign = 3, kPoints = 4;
-};
-
-}  // namespace
-
-std::vector<std::string> hand_columns() {
-  std::vector<std::string> columns{"track", "side", "presence", "sign"};
+/// The names of the columns of the points.
+std::vector<std::string> point_names() {
   std::vector<std::string> points{"wrist"};
   for (const auto* part : {"base", "knuckle", "joint", "tip"})
     points.push_back(std::string("thumb ") + part);
   for (const auto* finger : {"index", "middle", "ring", "little"})
     for (const auto* part : {"knuckle", "joint", "last joint", "tip"})
       points.push_back(std::string(finger) + " " + part);
+  std::vector<std::string> names;
   for (const auto& point : points)
-    for (const auto* axis : {" x [px]", " y [px]"}) columns.push_back(point + axis);
-  return columns;
+    for (const auto* axis : {" x", " y"}) names.push_back(point + axis);
+  return names;
+}
+
+struct HandColumns {
+  static void visit(auto& hand, auto&& column) {
+    static const auto kNames = point_names();
+    column("track", "", hand.track, 1.0);
+    column("side", "", hand.side, 0.0, 1.0);
+    column("presence", "", hand.presence, 0.0, 1.0);
+    column("sign", "", hand.sign, 0.0, static_cast<double>(Sign::ThumbUp));
+    for (std::size_t i = 0; i < Hand::kPoints; ++i) {
+      column(kNames[2 * i], "px", hand.points[i].x);
+      column(kNames[2 * i + 1], "px", hand.points[i].y);
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<std::string> hand_columns() {
+  return column_names<HandColumns, HandRow>();
 }
 
 void write(const HandRow& hand, std::span<double> row) {
-  HC_CHECK(row.size() == static_cast<std::size_t>(kHandColumns), row.size());
-  auto to = row.begin();
-  *to++ = hand.track;
-  *to++ = hand.side == Hand::Side::Right ? 1 : 0;
-  *to++ = short_number(hand.presence);
-  *to++ = static_cast<double>(hand.sign);
-  for (const auto& point : hand.points) {
-    *to++ = short_pixel(point.x);
-    *to++ = short_pixel(point.y);
-  }
+  write_row<HandColumns>(hand, row);
 }
 
 std::optional<HandRow> hand_in(std::span<const double> row) {
-  if (!is_row(row, kHandColumns) || !is_count(row[HandAt::kTrack], 1) ||
-      !is_count(row[HandAt::kSign], 0) || row[HandAt::kSign] > static_cast<double>(Sign::ThumbUp))
-    return std::nullopt;
-  if ((row[HandAt::kSide] != 0 && row[HandAt::kSide] != 1) ||
-      !(row[HandAt::kPresence] >= 0 && row[HandAt::kPresence] <= 1))
-    return std::nullopt;
-  HandRow hand;
-  hand.track = static_cast<int>(row[HandAt::kTrack]);
-  hand.side = row[HandAt::kSide] == 1 ? Hand::Side::Right : Hand::Side::Left;
-  hand.presence = static_cast<float>(row[HandAt::kPresence]);
-  hand.sign = static_cast<Sign>(row[HandAt::kSign]);
-  for (std::size_t i = 0; i < hand.points.size(); ++i)
-    hand.points[i] = pixel_of(row, HandAt::kPoints + 2 * i);
-  return hand;
+  return read_row<HandColumns, HandRow>(row);
 }
 
 }  // namespace hc::people

@@ -13,9 +13,6 @@
 
 namespace hc::room {
 
-/// Joints of a hand: the wrist, then of the thumb, index, middle, ring and little finger four each,
-/// from its root to its tip; as MediaPipe has them.
-inline constexpr int kHandJoints = 21;
 inline constexpr int kIndexRoot = 5, kIndexTip = 8;
 
 /// The joints [m]. @param side  kLeft or kRight.

@@ -15,6 +15,10 @@ namespace hc::room {
 enum class Sign { Relaxed, Open, Point, Fist, Thumb, Victory };
 inline constexpr int kSigns = 6;
 
+/// Joints of a hand: the wrist, then of the thumb, index, middle, ring and little finger four each,
+/// from its root to its tip; as MediaPipe has them.
+inline constexpr int kHandJoints = 21;
+
 inline constexpr int kLeft = 0, kRight = 1;  ///< the person's own
 
 struct Hand {

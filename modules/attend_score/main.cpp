@@ -7,28 +7,26 @@
 #include <frames/module_frames.h>
 #include <gaze/attend_score.h>
 #include <hc/module/module.h>
+#include <room/truth_rows.h>
 #include <transports/all.h>
 
 namespace {
 
 using Rows = hc::MatrixView<const double>;
 
-// Columns of the simulator's people.
-enum PersonColumn { Number, X, Y, Z, Yaw, Speaks, U, V, Width, Visible };
-constexpr int kPersonColumns = Visible + 1;
-
 /// @param T_eye_world  of an optical frame midway between the eyes.
 std::vector<hc::gaze::TruePerson> people_of(const Rows& rows,
                                             const Eigen::Isometry3d& T_eye_world) {
   std::vector<hc::gaze::TruePerson> people;
   for (std::size_t i = 0; i < rows.height(); ++i) {
-    const auto row = rows.row(i);
-    const Eigen::Vector3d p = T_eye_world * Eigen::Vector3d(row[X], row[Y], row[Z]);
-    people.push_back({static_cast<int>(row[Number]),
+    const auto row = hc::read_row<hc::room::PersonColumns, hc::room::PersonRow>(rows.row(i));
+    if (!row) continue;
+    const Eigen::Vector3d p = T_eye_world * row->p_world;
+    people.push_back({row->person,
                       {std::atan2(p.x(), p.z()), std::atan2(p.y(), p.z())},
                       p.norm(),
-                      row[Speaks] != 0,
-                      row[Visible]});
+                      row->speaks,
+                      row->visible});
   }
   return people;
 }
@@ -42,8 +40,8 @@ int main(int argc, char** argv) {
                     "Compares the direction of a head's eyes with the people in a simulated room."};
   auto eye = module.input("left_pose", hc::transformation().in(kWorldLeftEye),
                           "truth: T_world_left_eye", {.keep = 64});
-  auto truth = module.input("people", hc::table().of(0, kPersonColumns), "truth: of the simulator",
-                            {.keep = 64});
+  auto truth = module.input("people", hc::table().of(0, hc::room::kPersonColumns),
+                            "truth: of the simulator", {.keep = 64});
   auto result = module.output("score", hc::table().of(1, 6), "at the end",
                               {.columns = {"RMS error [rad]", "on target [s]", "overshoot [rad]",
                                            "settled [s]", "turns", "right turns"}});

@@ -11,6 +11,7 @@
 #include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <people/face_table.h>
+#include <room/truth_rows.h>
 #include <transports/all.h>
 
 #include "score.h"
@@ -19,16 +20,12 @@ namespace {
 
 using Rows = hc::MatrixView<const double>;
 
-// Columns of the simulator's people.
-constexpr std::size_t kNumber = 0, kU = 6, kV = 7, kWidth = 8, kVisible = 9;
-constexpr int kPersonColumns = 10;
-
 std::vector<TruePerson> people_of(const Rows& rows) {
   std::vector<TruePerson> people;
   for (std::size_t i = 0; i < rows.height(); ++i) {
-    const auto row = rows.row(i);
-    people.push_back(
-        {static_cast<int>(row[kNumber]), row[kU], row[kV], row[kWidth], row[kVisible]});
+    const auto row = hc::read_row<hc::room::PersonColumns, hc::room::PersonRow>(rows.row(i));
+    if (row)
+      people.push_back({row->person, row->pixel.x(), row->pixel.y(), row->width, row->visible});
   }
   return people;
 }
@@ -103,8 +100,9 @@ class Program {
   }
 
   hc::Module& module_;
-  hc::Input<hc::TableKind<double>> truth_ = module_.input(
-      "people", hc::table().of(0, kPersonColumns), "truth: of the simulator", {.keep = 64});
+  hc::Input<hc::TableKind<double>> truth_ =
+      module_.input("people", hc::table().of(0, hc::room::kPersonColumns),
+                    "truth: of the simulator", {.keep = 64});
   hc::Input<hc::TableKind<double>> faces_ = module_.input(
       "faces", hc::table().of(0, hc::people::kFaceColumns), "faces of module faces", {.keep = 64});
   hc::Input<hc::StringKind> names_ = module_.input(

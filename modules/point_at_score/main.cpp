@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scores hands, and the places at which they point, against the ground truth of a simulation.
 #include <deque>
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -9,6 +8,7 @@
 #include <hc/base/format.h>
 #include <hc/module/module.h>
 #include <people/hand_table.h>
+#include <room/truth_rows.h>
 #include <transports/all.h>
 
 #include "score.h"
@@ -17,26 +17,6 @@ namespace {
 
 using Rows = hc::MatrixView<const double>;
 
-// Columns of the simulator's hand_joints and pointed.
-enum JointColumn { Person, Hand, Joint, X, Y, Z, U, V };
-constexpr int kJointColumns = V + 1, kPointedColumns = 4;
-
-std::vector<TrueScene::TrueHand> hands_of(const Rows& rows) {
-  std::map<std::pair<int, int>, TrueScene::TrueHand> hands;
-  for (std::size_t i = 0; i < rows.height(); ++i) {
-    const auto row = rows.row(i);
-    if (!(row[Joint] >= 0 && row[Joint] < kJoints)) continue;
-    const auto joint = static_cast<std::size_t>(row[Joint]);
-    auto& hand = hands[{static_cast<int>(row[Person]), static_cast<int>(row[Hand])}];
-    hand.places[joint] = {row[X], row[Y], row[Z]};
-    hand.pixels[joint] = {row[U], row[V]};
-  }
-  std::vector<TrueScene::TrueHand> all;
-  all.reserve(hands.size());
-  for (const auto& [whose, hand] : hands) all.push_back(hand);
-  return all;
-}
-
 class PointAtScore {
  public:
   explicit PointAtScore(hc::Module& module) : module_(module) {
@@ -44,8 +24,10 @@ class PointAtScore {
     module.on(hc::together(pose_, joints_),
               [this](const auto& pose, const auto& joints) { see(pose, joints.matrix()); });
     module.on(pointed_, [this](const auto& message) {
-      const auto row = message.numbers();
-      pointed_at_ = {message.header.time, {row[1], row[2], row[3]}};
+      const auto row =
+          hc::read_row<hc::room::PointedColumns, hc::room::PointedRow>(message.numbers());
+      if (!row) return;
+      pointed_at_ = {message.header.time, row->p_world};
       for (auto& [time, image] : recent_)
         if (time == message.header.time) image.scene.pointed = pointed_at_->second;
     });
@@ -64,7 +46,7 @@ class PointAtScore {
     silence_.restart(hc::duration(*timeout_));
     const auto time = pose.header.time;
     const auto T_world_head = hc::value_or_drop(hc::pose_of(pose)).T_to_from;
-    Image image{{hands_of(joints), std::nullopt}, T_world_head};
+    Image image{{hc::room::true_hands(joints), std::nullopt}, T_world_head};
     if (pointed_at_ && pointed_at_->first == time) image.scene.pointed = pointed_at_->second;
     recent_.emplace_back(time, std::move(image));
     constexpr std::size_t kRecent = 64;
@@ -106,10 +88,12 @@ class PointAtScore {
       "head_pose",
       hc::transformation().in(hc::transform_coord(hc::Coord::kWorld, hc::Coord::kHead)),
       "truth: T_world_head", {.keep = 64});
-  hc::Input<hc::TableKind<double>> joints_ = module_.input(
-      "hand_joints", hc::table().of(0, kJointColumns), "truth: of the simulator", {.keep = 64});
-  hc::Input<hc::TableKind<double>> pointed_ = module_.input(
-      "pointed", hc::table().of(1, kPointedColumns), "truth: of the simulator", {.keep = 64});
+  hc::Input<hc::TableKind<double>> joints_ =
+      module_.input("hand_joints", hc::table().of(0, hc::room::kJointColumns),
+                    "truth: of the simulator", {.keep = 64});
+  hc::Input<hc::TableKind<double>> pointed_ =
+      module_.input("pointed", hc::table().of(1, hc::room::kPointedColumns),
+                    "truth: of the simulator", {.keep = 64});
   hc::Input<hc::TableKind<double>> hands_ = module_.input(
       "hands", hc::table().of(0, hc::people::kHandColumns), "hands of module hands", {.keep = 64});
   hc::Input<hc::PositionKind<double>> target_ =

@@ -25,7 +25,7 @@ double median_of(const std::vector<double>& numbers) {
 void Score::add_place(const TrueScene& scene, const Eigen::Vector3d& found) {
   if (!scene.pointed || scene.hands.empty()) return;
   // The hand that points is raised towards the place: its tip is the nearest.
-  const auto tip_of = [](const auto& hand) { return hand.places[Hand::IndexTip]; };
+  const auto tip_of = [](const auto& hand) { return hand.joints[Hand::IndexTip]; };
   const auto nearest =
       std::min_element(scene.hands.begin(), scene.hands.end(), [&](const auto& a, const auto& b) {
         return (tip_of(a) - *scene.pointed).norm() < (tip_of(b) - *scene.pointed).norm();
@@ -36,7 +36,7 @@ void Score::add_place(const TrueScene& scene, const Eigen::Vector3d& found) {
 }
 
 void Score::add_hand(const TrueScene& scene, const std::array<Eigen::Vector2d, kJoints>& found) {
-  const TrueScene::TrueHand* nearest = nullptr;
+  const hc::room::TrueHand* nearest = nullptr;
   double least = kSameHand;
   for (const auto& hand : scene.hands) {
     const double apart = (hand.pixels[Hand::Wrist] - found[Hand::Wrist]).norm();

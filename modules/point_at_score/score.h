@@ -10,16 +10,13 @@
 #include <Eigen/Geometry>
 
 #include <people/hand.h>
+#include <room/truth_rows.h>
 
 inline constexpr std::size_t kJoints = hc::people::Hand::kPoints;
 
 /// The hands and the place pointed at, as a simulation knows them at the time of an image.
 struct TrueScene {
-  struct TrueHand {
-    std::array<Eigen::Vector3d, kJoints> places;  ///< in the world [m]
-    std::array<Eigen::Vector2d, kJoints> pixels;
-  };
-  std::vector<TrueHand> hands;
+  std::vector<hc::room::TrueHand> hands;
   std::optional<Eigen::Vector3d> pointed;  ///< in the world [m]
 };
 

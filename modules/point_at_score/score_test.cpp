@@ -8,9 +8,9 @@
 namespace {
 
 /// A hand whose tip is at the origin, and whose joints are at a place in the image.
-TrueScene::TrueHand hand_at(const Eigen::Vector3d& tip, double x) {
-  TrueScene::TrueHand hand;
-  hand.places.fill(tip);
+hc::room::TrueHand hand_at(const Eigen::Vector3d& tip, double x) {
+  hc::room::TrueHand hand;
+  hand.joints.fill(tip);
   hand.pixels.fill({x, 100});
   return hand;
 }

@@ -28,26 +28,28 @@ class PersonRow : public testing::Test {
 
 TEST_F(PersonRow, has_the_face_in_the_world_and_where_the_camera_projects_it) {
   const auto row = row_of(all, 0, eye_at(face.x() - 2, face.y(), face.z() - 0.2), camera);
-  EXPECT_EQ(row[0], 1);
-  EXPECT_EQ(Vector3d(row[1], row[2], row[3]), face);
-  EXPECT_NEAR(std::abs(row[4]), std::numbers::pi - std::abs(std::atan2(face.y(), face.x())), 0.05);
-  EXPECT_EQ(row[5], 0);
-  EXPECT_NEAR(row[6], 399.5, 1e-9);
-  EXPECT_NEAR(row[7], 299.5 - 60, 1e-9);
-  EXPECT_NEAR(row[8], 300 * hc::room::kFaceWidth, 1e-9);
-  EXPECT_EQ(row[9], 1);
+  EXPECT_EQ(row.person, 1);
+  EXPECT_EQ(row.p_world, face);
+  EXPECT_NEAR(std::abs(row.yaw), std::numbers::pi - std::abs(std::atan2(face.y(), face.x())), 0.05);
+  EXPECT_FALSE(row.speaks);
+  EXPECT_NEAR(row.pixel.x(), 399.5, 1e-9);
+  EXPECT_NEAR(row.pixel.y(), 299.5 - 60, 1e-9);
+  EXPECT_NEAR(row.width, 300 * hc::room::kFaceWidth, 1e-9);
+  EXPECT_EQ(row.visible, 1);
 }
 
 TEST_F(PersonRow, has_a_part_at_the_border_and_nothing_behind_the_eye) {
   const double border = 2 * 400.0 / 600;
   const auto half = row_of(all, 0, eye_at(face.x() - 2, face.y() - border, face.z()), camera);
-  EXPECT_NEAR(half[9], 0.5, 0.15);
+  EXPECT_NEAR(half.visible, 0.5, 0.15);
   const auto outside =
       row_of(all, 0, eye_at(face.x() - 2, face.y() - border - 0.2, face.z()), camera);
-  EXPECT_EQ(outside[9], 0);
-  EXPECT_GT(outside[8], 30);
+  EXPECT_EQ(outside.visible, 0);
+  EXPECT_GT(outside.width, 30);
   const auto behind = row_of(all, 0, eye_at(face.x() + 1, face.y(), face.z()), camera);
-  for (int i = 6; i < 10; ++i) EXPECT_EQ(behind[static_cast<std::size_t>(i)], 0);
+  EXPECT_EQ(behind.pixel, Eigen::Vector2d(0, 0));
+  EXPECT_EQ(behind.width, 0);
+  EXPECT_EQ(behind.visible, 0);
 }
 
 TEST_F(PersonRow, of_a_joint_has_its_numbers_and_place) {
@@ -55,15 +57,15 @@ TEST_F(PersonRow, of_a_joint_has_its_numbers_and_place) {
   const Vector3d wrist = hand.T_world_wrist.translation();
   const auto eye = eye_at(wrist.x() - 2, wrist.y(), wrist.z());
   const auto row = joint_row(all[0], hc::room::kLeft, 0, eye, camera);
-  EXPECT_EQ(row[0], 1);
-  EXPECT_EQ(row[1], 0);
-  EXPECT_EQ(row[2], 0);
-  EXPECT_LT((Vector3d(row[3], row[4], row[5]) - wrist).norm(), 1e-6);
-  EXPECT_NEAR(row[6], 399.5, 1e-3);
-  EXPECT_NEAR(row[7], 299.5, 1e-3);
+  EXPECT_EQ(row.person, 1);
+  EXPECT_EQ(row.side, 0);
+  EXPECT_EQ(row.joint, 0);
+  EXPECT_LT((row.p_world - wrist).norm(), 1e-6);
+  EXPECT_NEAR(row.pixel.x(), 399.5, 1e-3);
+  EXPECT_NEAR(row.pixel.y(), 299.5, 1e-3);
   const auto tip = joint_row(all[0], hc::room::kLeft, 12, eye, camera);
-  EXPECT_EQ(tip[2], 12);
-  EXPECT_GT(tip[7], 299.5 + 40);  // it hangs down
+  EXPECT_EQ(tip.joint, 12);
+  EXPECT_GT(tip.pixel.y(), 299.5 + 40);  // it hangs down
 }
 
 }  // namespace

@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scores how soon a palm that is held up stops a robot, and stops without one, against the ground
 // truth of a simulation.
+#include <algorithm>
 #include <cstdint>
-#include <map>
-#include <utility>
 #include <vector>
 
 #include <hc/module/module.h>
+#include <room/truth_rows.h>
 #include <transports/all.h>
 
 #include "score.h"
 
 namespace {
 
-// Columns of the simulator's hand_joints.
-constexpr std::size_t kPerson = 0, kHand = 1, kJoint = 2, kX = 3, kY = 4, kZ = 5, kU = 6, kV = 7;
-constexpr int kJointColumns = 8;
 constexpr std::uint8_t kClearAll = 2;  // for the workspace
 
 double seconds_of(hc::Time time) {
@@ -45,35 +42,33 @@ class Program {
     module_.stop();
   }
 
-  [[nodiscard]] std::vector<TrueHand> hands_of(const hc::MatrixView<const double>& rows) const {
-    std::map<std::pair<int, int>, TrueHand> hands;
-    for (std::size_t i = 0; i < rows.height(); ++i) {
-      const auto row = rows.row(i);
-      if (!(row[kJoint] >= 0 && row[kJoint] < kHandJoints)) continue;
-      const std::pair whose(static_cast<int>(row[kPerson]), static_cast<int>(row[kHand]));
-      auto& hand = hands.try_emplace(whose, TrueHand{whose, {}, true}).first->second;
-      hand.joints[static_cast<std::size_t>(row[kJoint])] = {row[kX], row[kY], row[kZ]};
+  [[nodiscard]] std::vector<ShownHand> hands_of(const hc::MatrixView<const double>& rows) const {
+    std::vector<ShownHand> shown;
+    for (const auto& hand : hc::room::true_hands(rows)) {
       // Behind the eye a joint has the pixel (0, 0).
-      hand.is_in_image &= row[kU] > 0 && row[kU] < *width_ && row[kV] > 0 && row[kV] < *height_;
+      const bool is_in_image = std::ranges::all_of(hand.pixels, [this](const Eigen::Vector2d& at) {
+        return at.x() > 0 && at.x() < static_cast<double>(*width_) && at.y() > 0 &&
+               at.y() < static_cast<double>(*height_);
+      });
+      shown.push_back({hand, is_in_image});
     }
-    std::vector<TrueHand> all;
-    for (const auto& [whose, hand] : hands) all.push_back(hand);
-    return all;
+    return shown;
   }
 
   hc::Module& module_;
-  hc::Input<hc::TableKind<double>> joints_ = module_.input(
-      "hand_joints", hc::table().of(0, kJointColumns), "truth: of the simulator", {.keep = 64});
+  hc::Input<hc::TableKind<double>> joints_ =
+      module_.input("hand_joints", hc::table().of(0, hc::room::kJointColumns),
+                    "truth: of the simulator", {.keep = 64});
   hc::Input<hc::TableKind<std::uint8_t>> stopped_ = module_.input(
       "stopped", hc::table<std::uint8_t>().of(1, 1), "stopped of workspace", {.keep = 64});
   hc::Output<hc::TableKind<std::uint8_t>> clear_ = module_.output(
       "clear", hc::table<std::uint8_t>().of(1, 1),
       "for workspace: 2 some time after a stop, when no palm is up, so that the next "
       "one can stop it");
-  hc::Output<hc::TableKind<double>> result_ =
-      module_.output("score", hc::table().of(1, 6), "at the end",
-                     {.columns = {"median [s]", "maximum [s]", "palms that stopped it", "palms",
-                                  "stops without a palm", "duration [s]"}});
+  hc::Output<hc::TableKind<double>> result_ = module_.output(
+      "score", hc::table().of(1, 7), "at the end",
+      {.columns = {"median [s]", "maximum [s]", "palms that stopped it", "palms",
+                   "stops without a palm", "stops by one at the border", "duration [s]"}});
   hc::Parameter<double> duration_ =
       module_.parameter("duration", 60.0, "s", "how long it is scored", {.min = 0.1, .max = 1e6});
   hc::Parameter<std::int64_t> width_ =

@@ -6,38 +6,38 @@
 
 #include <hc/base/format.h>
 #include <hc/base/median.h>
+#include <people/hand.h>
 
 namespace {
 
-constexpr std::size_t kWrist = 0, kFirstFinger = 5, kPerFinger = 4;
+using hc::people::Hand;
+
 constexpr double kStraight = 0.95;  // a finger's length, of that of its bones
 constexpr double kUp = 0.5;         // cosine of a finger's angle with the vertical
 constexpr double kPause = 0.5;      // without a palm, until a stop may be cleared [s]
 
 }  // namespace
 
-bool is_palm_up(const TrueHand& hand) {
-  const auto& joints = hand.joints;
-  for (std::size_t root = kFirstFinger; root < kHandJoints; root += kPerFinger) {
+bool is_palm_up(const hc::room::TrueHand& hand) {
+  for (const std::size_t knuckle : {Hand::Index, Hand::Middle, Hand::Ring, Hand::Little}) {
+    const auto* joints = &hand.joints[knuckle];
     double bones = 0;
-    for (std::size_t i = root; i + 1 < root + kPerFinger; ++i)
-      bones += (joints[i + 1] - joints[i]).norm();
-    const Eigen::Vector3d finger = joints[root + kPerFinger - 1] - joints[root];
+    for (std::size_t i = 0; i < 3; ++i) bones += (joints[i + 1] - joints[i]).norm();
+    const Eigen::Vector3d finger = joints[3] - joints[0];
     if (finger.norm() < kStraight * bones || finger.z() < kUp * finger.norm()) return false;
   }
   return true;
 }
 
-void StopScore::see(double time, const std::vector<TrueHand>& hands) {
+void StopScore::see(double time, const std::vector<ShownHand>& hands) {
   if (!begin_) begin_ = time;
   last_ = time;
   std::vector<std::pair<int, int>> up;
-  for (const auto& hand : hands) {
-    if (!is_palm_up(hand)) continue;
+  for (const auto& shown : hands) {
+    if (!is_palm_up(shown.hand)) continue;
     palm_ = time;
-    if (!hand.is_in_image) continue;
-    up.push_back(hand.whose);
-    see_palm(time, hand);
+    up.emplace_back(shown.hand.person, shown.hand.side);
+    see_palm(time, shown);
   }
   for (auto& palm : palms_) {
     palm.is_up &= std::ranges::count(up, palm.whose) > 0;
@@ -46,17 +46,19 @@ void StopScore::see(double time, const std::vector<TrueHand>& hands) {
   drop_ended(time);
 }
 
-void StopScore::see_palm(double time, const TrueHand& hand) {
+void StopScore::see_palm(double time, const ShownHand& shown) {
+  const std::pair whose(shown.hand.person, shown.hand.side);
+  const auto& wrist = shown.hand.joints[Hand::Wrist];
   const auto known = std::ranges::find_if(
-      palms_, [&](const Palm& palm) { return palm.is_up && palm.whose == hand.whose; });
+      palms_, [&](const Palm& palm) { return palm.is_up && palm.whose == whose; });
   if (known != palms_.end()) {
-    if ((hand.joints[kWrist] - known->at).norm() <= kStill) {
+    if ((wrist - known->at).norm() <= kStill && known->is_in_image == shown.is_in_image) {
       known->seen = time;
       return;
     }
     known->is_up = false;
   }
-  palms_.push_back({hand.whose, time, time, hand.joints[kWrist]});
+  palms_.push_back({whose, time, time, wrist, shown.is_in_image});
 }
 
 void StopScore::drop_ended(double time) {
@@ -69,14 +71,22 @@ void StopScore::drop_ended(double time) {
 
 void StopScore::stop(double time) {
   if (std::exchange(is_stopped_, true)) return;
-  // Of several palms the first one stops; the others cannot.
-  const auto first = std::ranges::find_if(
-      palms_, [](const Palm& palm) { return palm.is_held() && !palm.has_stopped; });
+  // Of several palms the first one stops, if it is whole in the image; the others cannot.
+  const auto find_held = [this](bool in_image) {
+    return std::ranges::find_if(palms_, [in_image](const Palm& palm) {
+      return palm.is_in_image == in_image && palm.is_held() && !palm.has_stopped;
+    });
+  };
+  auto first = find_held(true);
+  if (first == palms_.end()) first = find_held(false);
   if (first == palms_.end()) {
     ++false_;
     return;
   }
-  delays_.push_back(time - first->begin);
+  if (first->is_in_image)
+    delays_.push_back(time - first->begin);
+  else
+    ++at_border_;
   for (auto& palm : palms_) palm.has_stopped |= palm.is_held();
 }
 
@@ -84,19 +94,20 @@ bool StopScore::wants_to_go(double now) const {
   return is_stopped_ && now - palm_ > kPause;
 }
 
-std::array<double, 6> StopScore::numbers() const {
+std::array<double, 7> StopScore::numbers() const {
   double middle = -1, most = -1;
   if (!delays_.empty()) {
     middle = hc::median(delays_);
     most = *std::ranges::max_element(delays_);
   }
   const auto stopped = static_cast<double>(delays_.size());
-  return {middle, most, stopped, stopped + missed_, double(false_), duration()};
+  return {middle, most, stopped, stopped + missed_, double(false_), double(at_border_), duration()};
 }
 
 std::string StopScore::text() const {
-  const auto [middle, most, stopped, palms, wrong, lasted] = numbers();
-  const auto others = hc::format("{} stops without a palm in {:.0f} s", wrong, lasted);
+  const auto [middle, most, stopped, palms, wrong, border, lasted] = numbers();
+  const auto others = hc::format("{} stops without a palm, {} by one at the border, in {:.0f} s",
+                                 wrong, border, lasted);
   if (palms == 0) return others;
   return hc::format("missed {} of {} palms, stopped after {:.3f} s median, {:.3f} s at most; ",
                     palms - stopped, palms, middle, most) +

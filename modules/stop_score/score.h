@@ -11,21 +11,21 @@
 
 #include <Eigen/Core>
 
-inline constexpr std::size_t kHandJoints = 21;  ///< of a hand, in MediaPipe's order
+#include <room/truth_rows.h>
 
-/// A hand in an image, as a simulation knows it.
-struct TrueHand {
-  std::pair<int, int> whose;                        ///< person, and side
-  std::array<Eigen::Vector3d, kHandJoints> joints;  ///< in the world, z up [m]
-  bool is_in_image = false;                         ///< all of it
+/// A hand that the simulation shows.
+struct ShownHand {
+  hc::room::TrueHand hand;
+  bool is_in_image = false;  ///< all of it
 };
 
 /// Whether a hand is open, with its fingers up.
-bool is_palm_up(const TrueHand& hand);
+bool is_palm_up(const hc::room::TrueHand& hand);
 
 /// Collects a run. A palm counts from the first image in which it is in sight, open, up, and where
 /// it then stays; one that stays for less than kHeld is no command, and one that is held when the
-/// robot is stopped already stops nothing.
+/// robot is stopped already stops nothing. One that is not whole in the image may stop the robot or
+/// not: neither counts.
 class StopScore {
  public:
   /// How far a palm that is held still moves at most [m].
@@ -36,7 +36,7 @@ class StopScore {
   static constexpr double kLate = 1;
 
   /// Takes the hands of an image.
-  void see(double time, const std::vector<TrueHand>& hands);
+  void see(double time, const std::vector<ShownHand>& hands);
   /// The robot is stopped, since or at a time [s]; repeated calls are ignored.
   void stop(double time);
   /// The robot is free again.
@@ -48,23 +48,25 @@ class StopScore {
   [[nodiscard]] double duration() const { return begin_ ? last_ - *begin_ : 0; }
 
   /// Median and maximum time from a palm to its stop [s], -1 without; palms that stopped the robot,
-  /// palms held, stops without a palm, and duration [s].
-  [[nodiscard]] std::array<double, 6> numbers() const;
-  /// "missed 0 of 12 palms, stopped after 0.580 s median, 0.630 s at most; 0 stops without a palm
-  /// in 60 s"; without a palm only its end.
+  /// palms held, stops without a palm, stops by one that is not whole in the image, and duration
+  /// [s].
+  [[nodiscard]] std::array<double, 7> numbers() const;
+  /// "missed 0 of 12 palms, stopped after 0.580 s median, 0.630 s at most; 0 stops without a palm,
+  /// 1 by one at the border, in 60 s"; without a palm only its end.
   [[nodiscard]] std::string text() const;
 
  private:
   struct Palm {
-    std::pair<int, int> whose;
+    std::pair<int, int> whose;   // person, and side
     double begin = 0, seen = 0;  // [s]
     Eigen::Vector3d at;          // its wrist [m]
-    bool is_up = true;           // in the last image
+    bool is_in_image = true;
+    bool is_up = true;  // in the last image
     bool has_stopped = false;
     [[nodiscard]] bool is_held() const { return seen - begin >= kHeld; }
-    [[nodiscard]] bool must_stop() const { return seen - begin >= kMustStop; }
+    [[nodiscard]] bool must_stop() const { return is_in_image && seen - begin >= kMustStop; }
   };
-  void see_palm(double time, const TrueHand& hand);
+  void see_palm(double time, const ShownHand& shown);
   void drop_ended(double time);
 
   std::vector<Palm> palms_;  // those up, and those whose stop may still come
@@ -73,5 +75,5 @@ class StopScore {
   double palm_ = -1e9;  // last image with a palm up
   bool is_stopped_ = false;
   std::vector<double> delays_;
-  int missed_ = 0, false_ = 0;
+  int missed_ = 0, false_ = 0, at_border_ = 0;
 };

@@ -3,18 +3,19 @@
 // them do; says what it is told of them, and whom it holds.
 #include <hc/base/format.h>
 #include <hc/module/module.h>
+#include <people/face_table.h>
+#include <people/hand_table.h>
 #include <transports/all.h>
 
-#include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace {
 
 constexpr int kWidth = 320, kHeight = 240;
-constexpr int kFaceColumns = 24, kHandColumns = 46;
-constexpr double kAnn = 7, kStranger = 8;  // tracks
+constexpr int kAnn = 7, kStranger = 8;  // tracks
 
 std::vector<std::uint8_t> image_pixels() {
   std::vector<std::uint8_t> pixels;
@@ -26,30 +27,38 @@ std::vector<std::uint8_t> image_pixels() {
   return pixels;
 }
 
-/// A row of a face whose box is a square [px].
-std::array<double, kFaceColumns> face(double x, double y, double side, double track,
-                                      double person) {
-  std::array<double, kFaceColumns> row = {x, y, side, side, 0.9, track, person};
+/// A face whose box is a square [px].
+hc::people::FaceRow face(float x, float y, float side, int track, int person) {
+  hc::people::FaceRow row{{{x, y, side, side}, 0.9F, {}}, track, person, {2, 0, 0}};
   // Eyes, nose, mouth and ears, as parts of the box.
-  constexpr double kPoints[] = {0.3, 0.4, 0.7, 0.4, 0.5, 0.6, 0.5, 0.8, 0.05, 0.5, 0.95, 0.5};
+  constexpr float kPoints[][2] = {{0.3F, 0.4F}, {0.7F, 0.4F},  {0.5F, 0.6F},
+                                  {0.5F, 0.8F}, {0.05F, 0.5F}, {0.95F, 0.5F}};
   for (std::size_t i = 0; i < std::size(kPoints); ++i)
-    row[7 + i] = (i % 2 == 0 ? x : y) + side * kPoints[i];
-  row[21] = 2;  // before the head [m]
+    row.face.points[i] = {x + side * kPoints[i][0], y + side * kPoints[i][1]};
   return row;
 }
 
-/// A row of a right hand that is open, with its wrist at a place [px].
-std::array<double, kHandColumns> open_hand(double x, double y) {
-  constexpr int kFingers = 5, kJoints = 4;
-  constexpr double kSign = 1, kTrack = 3;
-  std::array<double, kHandColumns> row = {kTrack, 1, 0.9, kSign, x, y};
+/// A right hand that is open, with its wrist at a place [px].
+hc::people::HandRow open_hand(float x, float y) {
+  constexpr int kFingers = 5, kJoints = 4, kTrack = 3;
+  hc::people::HandRow row{kTrack, hc::people::Hand::Side::Right, 0.9F, hc::people::Sign::Open, {}};
+  row.points[0] = {x, y};
   for (int finger = 0; finger < kFingers; ++finger)
-    for (int joint = 0; joint < kJoints; ++joint) {
-      const auto at = static_cast<std::size_t>(6 + 2 * (kJoints * finger + joint));
-      row[at] = x + (finger - 2) * (6.0 + 3 * joint);
-      row[at + 1] = y - 20 - 8 * joint;
-    }
+    for (int joint = 0; joint < kJoints; ++joint)
+      row.points[static_cast<std::size_t>(1 + kJoints * finger + joint)] = {
+          x + static_cast<float>((finger - 2) * (6 + 3 * joint)),
+          y - 20 - 8 * static_cast<float>(joint)};
   return row;
+}
+
+/// A table of such rows.
+template <typename Row>
+std::vector<double> table_of(const std::vector<Row>& rows, std::int32_t columns) {
+  const auto width = static_cast<std::size_t>(columns);
+  std::vector<double> numbers(rows.size() * width);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    write(rows[i], std::span(numbers).subspan(i * width, width));
+  return numbers;
 }
 
 }  // namespace
@@ -58,12 +67,11 @@ int main(int argc, char** argv) {
   hc::add_all_transports();
   hc::Module module{"seen", "Sends people and a hand at known places."};
   auto left = module.output("left", hc::rgb_image().in(hc::Coord::kLeftImage), "a grey image");
-  auto faces = module.output(
-      "faces", hc::table(), "two faces",
-      {.columns = {"x [px]", "y [px]", "width [px]", "height [px]", "score", "track", "person"}});
+  auto faces =
+      module.output("faces", hc::table(), "two faces", {.columns = hc::people::face_columns()});
   auto names = module.output("names", hc::string(), "Ann is person 1");
-  auto hands = module.output("hands", hc::table(), "a hand",
-                             {.columns = {"track", "side", "presence", "sign"}});
+  auto hands =
+      module.output("hands", hc::table(), "a hand", {.columns = hc::people::hand_columns()});
   auto attended = module.output("attended", hc::table().of(1, 3), "whoever is held, else Ann",
                                 {.columns = {"track", "person", "reason"}});
   auto place = module.output("target", hc::position().in(hc::Coord::kHead), "straight ahead");
@@ -88,24 +96,24 @@ int main(int argc, char** argv) {
   module.every(std::chrono::milliseconds(50), [&] {
     const auto now = module.now();
     left.send(hc::rgb_image().message(kHeight, kWidth, pixels), now, hc::Coord::kLeftImage);
-    std::vector<double> rows;
-    if (*show)
-      for (const auto& row : {face(40, 60, 80, kAnn, 1), face(200, 80, 60, kStranger, 0)})
-        rows.insert(rows.end(), row.begin(), row.end());
-    const auto count = static_cast<std::int32_t>(rows.size()) / kFaceColumns;
-    faces.send(hc::table().message(count, kFaceColumns, rows), now, hc::Coord::kLeftRectified);
-    std::vector<double> hand;
+    std::vector<hc::people::FaceRow> seen;
+    std::vector<hc::people::HandRow> shown;
     if (*show) {
-      const auto row = open_hand(160, 220);
-      hand.assign(row.begin(), row.end());
+      seen = {face(40, 60, 80, kAnn, 1), face(200, 80, 60, kStranger, 0)};
+      shown = {open_hand(160, 220)};
     }
-    hands.send(hc::table().message(*show ? 1 : 0, kHandColumns, hand), now,
+    using hc::people::kFaceColumns, hc::people::kHandColumns;
+    const auto count = [](const auto& rows) { return static_cast<std::int32_t>(rows.size()); };
+    faces.send(hc::table().message(count(seen), kFaceColumns, table_of(seen, kFaceColumns)), now,
+               hc::Coord::kLeftRectified);
+    hands.send(hc::table().message(count(shown), kHandColumns, table_of(shown, kHandColumns)), now,
                hc::Coord::kLeftRectified);
     names.send("1 Ann", now);
     if (*show) place.send({2, 0, 0}, now);
     if (*show)
-      attended.send({held != 0 ? held : kAnn, held == kStranger ? 0.0 : 1.0, held != 0 ? 2.0 : 0.0},
-                    now);
+      attended.send(
+          {held != 0 ? held : double(kAnn), held == kStranger ? 0.0 : 1.0, held != 0 ? 2.0 : 0.0},
+          now);
   });
   return module.run(argc, argv);
 }

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The rows of the simulator's tables about persons: people, hand_joints, pointed. Pure. Header
+// only: a score needs no room.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <hc/base/table_row.h>
+
+#include <room/person.h>
+
+namespace hc::room {
+
+/// A person, as an eye sees them. The last three are 0 for one who is behind the eye.
+struct PersonRow {
+  int person = 0;                                     ///< from 1
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< between the eyes [m]
+  double yaw = 0;                                     ///< of the face, in the world [rad]
+  bool speaks = false;
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< of p_world
+  double width = 0;                                 ///< of the face [px]
+  double visible = 0;                               ///< share of the face, 0 … 1
+};
+struct PersonColumns {
+  static void visit(auto& row, auto&& column) {
+    column("person", "", row.person, 1.0);
+    column("x", "m", row.p_world.x());
+    column("y", "m", row.p_world.y());
+    column("z", "m", row.p_world.z());
+    column("yaw", "rad", row.yaw);
+    column("speaks", "", row.speaks, 0.0, 1.0);
+    column("u", "px", row.pixel.x());
+    column("v", "px", row.pixel.y());
+    column("width", "px", row.width, 0.0);
+    column("visible", "", row.visible, 0.0, 1.0);
+  }
+};
+inline constexpr std::int32_t kPersonColumns = 10;
+
+/// A joint of a hand; behind the eye it has the pixel (0, 0).
+struct JointRow {
+  int person = 0;                                     ///< from 1
+  int side = 0;                                       ///< kLeft or kRight
+  int joint = 0;                                      ///< 0 … 20, as MediaPipe has them
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+};
+struct JointColumns {
+  static void visit(auto& row, auto&& column) {
+    column("person", "", row.person, 1.0);
+    column("hand", "", row.side, 0.0, 1.0);
+    column("joint", "", row.joint, 0.0, kHandJoints - 1.0);
+    column("x", "m", row.p_world.x());
+    column("y", "m", row.p_world.y());
+    column("z", "m", row.p_world.z());
+    column("u", "px", row.pixel.x());
+    column("v", "px", row.pixel.y());
+  }
+};
+inline constexpr std::int32_t kJointColumns = 8;
+
+/// The place at which a person points.
+struct PointedRow {
+  int person = 0;                                     ///< from 1
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< [m]
+};
+struct PointedColumns {
+  static void visit(auto& row, auto&& column) {
+    column("person", "", row.person, 1.0);
+    column("x", "m", row.p_world.x());
+    column("y", "m", row.p_world.y());
+    column("z", "m", row.p_world.z());
+  }
+};
+inline constexpr std::int32_t kPointedColumns = 4;
+
+/// A hand, of its rows of hand_joints.
+struct TrueHand {
+  int person = 0, side = 0;                         ///< as in JointRow
+  std::array<Eigen::Vector3d, kHandJoints> joints;  ///< in the world [m]
+  std::array<Eigen::Vector2d, kHandJoints> pixels;
+};
+
+/// The hands in the rows of hand_joints, a matrix view. Rows that no joint has are left out.
+template <typename Rows>
+std::vector<TrueHand> true_hands(const Rows& rows) {
+  std::vector<TrueHand> hands;
+  for (std::size_t i = 0; i < rows.height(); ++i) {
+    const auto joint = read_row<JointColumns, JointRow>(rows.row(i));
+    if (!joint) continue;
+    if (hands.empty() || hands.back().person != joint->person || hands.back().side != joint->side)
+      hands.push_back({joint->person, joint->side, {}, {}});
+    const auto at = static_cast<std::size_t>(joint->joint);
+    hands.back().joints[at] = joint->p_world;
+    hands.back().pixels[at] = joint->pixel;
+  }
+  return hands;
+}
+
+}  // namespace hc::room
