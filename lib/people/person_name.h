@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Names of people, and the request "TRACK NAME" that gives one to a track. Pure, header only: the
+// Names of people, and the texts that give one to a track or a person. Pure, header only: the
 // page's server needs no networks.
 
 #include <algorithm>
@@ -23,15 +23,15 @@ inline bool is_person_name(std::string_view text) {
   return std::ranges::none_of(text, [](char c) { return c == '\t' || c == '/'; });
 }
 
-/// A name for the person of a track.
-struct NamedTrack {
-  int track = 0;          ///< from 1
+/// A name, and the number of a track or of a person.
+struct NumberedName {
+  int number = 0;         ///< from 1
   std::string_view name;  ///< of the text; see is_person_name()
 };
-/// The parts of a text "TRACK NAME"; nothing if it has no track.
-inline std::optional<NamedTrack> named_track(std::string_view text) {
-  NamedTrack named;
-  if (!read_number(take_until(text, ' '), named.track) || named.track < 1) return std::nullopt;
+/// The parts of a text "NUMBER NAME"; nothing if it has no number.
+inline std::optional<NumberedName> numbered_name(std::string_view text) {
+  NumberedName named;
+  if (!read_number(take_until(text, ' '), named.number) || named.number < 1) return std::nullopt;
   named.name = text;
   return named;
 }

@@ -26,15 +26,15 @@ TEST(PersonName, is_utf8) {
     EXPECT_FALSE(is_person_name(name));
 }
 
-TEST(PersonName, is_asked_for_by_a_track) {
-  const auto named = named_track("12 Zoë de la Cruz");
+TEST(PersonName, follows_a_number) {
+  const auto named = numbered_name("12 Zoë de la Cruz");
   ASSERT_TRUE(named);
-  EXPECT_EQ(named->track, 12);
+  EXPECT_EQ(named->number, 12);
   EXPECT_EQ(named->name, "Zoë de la Cruz");
-  EXPECT_EQ(named_track("1 ")->name, "");
-  EXPECT_EQ(named_track("1")->name, "");
+  EXPECT_EQ(numbered_name("1 ")->name, "");
+  EXPECT_EQ(numbered_name("1")->name, "");
   for (const auto* text : {"", " Ann", "Ann", "0 Ann", "-1 Ann", "1.5 Ann", "99999999999 Ann"})
-    EXPECT_FALSE(named_track(text)) << text;
+    EXPECT_FALSE(numbered_name(text)) << text;
 }
 
 }  // namespace

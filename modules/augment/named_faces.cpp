@@ -2,7 +2,6 @@
 #include "named_faces.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include <hc/base/format.h>
@@ -10,6 +9,7 @@
 #include <hc/base/text.h>
 #include <hc/base/visible.h>
 #include <people/face_table.h>
+#include <people/person_name.h>
 
 namespace {
 
@@ -24,14 +24,6 @@ std::string shown(std::string_view name) {
   return end < text.size() ? text.substr(0, end) + "..." : text;
 }
 
-/// Person and name, from "PERSON NAME".
-std::optional<std::pair<int, std::string>> read_name(std::string_view line) {
-  int person = 0;
-  const auto number = hc::take_until(line, ' ');
-  if (!hc::read_number(number, person) || person < 1 || line.empty()) return std::nullopt;
-  return std::pair(person, shown(line));
-}
-
 }  // namespace
 
 std::vector<NamedFaces::Face> NamedFaces::read(const hc::MatrixView<const double>& table) {
@@ -42,7 +34,6 @@ std::vector<NamedFaces::Face> NamedFaces::read(const hc::MatrixView<const double
       faces.push_back({face->person, face->place});
   }
   std::ranges::stable_sort(faces, {}, [](const Face& face) { return face.p_head.norm(); });
-  if (faces.size() > kMostFaces) faces.resize(kMostFaces);
   return faces;
 }
 
@@ -58,16 +49,17 @@ hc::Status NamedFaces::name(std::string_view lines) {
   hc::Status status;
   while (!lines.empty()) {
     const auto line = hc::take_until(lines, '\n');
-    auto name = read_name(line);
-    if (name && names.size() < kMostNames) {
-      names.insert(std::move(*name));
+    const auto named = hc::people::numbered_name(line);
+    const bool is_name = named && !named->name.empty();
+    if (is_name && names.size() < kMostNames) {
+      names.emplace(named->number, shown(named->name));
       continue;
     }
     if (status)
       status = hc::Error{hc::Code::Malformed,
-                         name ? hc::format("there are more than {} names", kMostNames)
-                              : hc::format("\"{}\" is not PERSON NAME", shown(line))};
-    if (name) break;
+                         is_name ? hc::format("there are more than {} names", kMostNames)
+                                 : hc::format("\"{}\" is not PERSON NAME", shown(line))};
+    if (is_name) break;
   }
   names_ = std::move(names);
   return status;
@@ -77,7 +69,7 @@ std::vector<NamedFace> NamedFaces::at(hc::Time time) const {
   std::vector<NamedFace> faces;
   if (std::chrono::abs(time - time_) > kLife) return faces;
   for (const auto& [person, p_world] : seen_)
-    if (const auto name = names_.find(person); name != names_.end())
+    if (const auto name = names_.find(person); name != names_.end() && faces.size() < kMostFaces)
       faces.push_back({name->second, p_world});
   return faces;
 }

@@ -30,7 +30,7 @@ class NamedFaces {
     Eigen::Vector3d p_head;  ///< the middle between the eyes, in the head's frame [m]
   };
 
-  static constexpr std::size_t kMostFaces = 16;  ///< the nearest count
+  static constexpr std::size_t kMostFaces = 16;  ///< that are shown, the nearest
   static constexpr std::size_t kMostNames = 1000;
   static constexpr std::size_t kMostLetters = 24;         ///< of a name; the others become "..."
   static constexpr std::chrono::milliseconds kLife{500};  ///< how long a face stays

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <hc/base/format.h>
 #include <people/face_table.h>
 
 namespace {
@@ -84,13 +85,20 @@ TEST(NamedFaces, that_cannot_be_are_ignored) {
   EXPECT_EQ(found[0].person, 5);
 }
 
-TEST(NamedFaces, are_the_nearest_of_too_many) {
+TEST(NamedFaces, are_the_nearest_with_a_name_of_too_many) {
   std::vector<std::vector<double>> rows;
-  for (int i = 100; i > 0; --i) rows.push_back(face_row(i, {0.5 * i, 0, 0}));
-  const auto found = faces_in(rows);
+  std::string names;
+  for (int i = 100; i > 0; --i) {
+    rows.push_back(face_row(i, {0.5 * i, 0, 0}));
+    if (i > 20) names += hc::format("{} {}\n", i, i);
+  }
+  NamedFaces faces;
+  ASSERT_TRUE(faces.name(names));
+  faces.see(kLooked, faces_in(rows), Eigen::Isometry3d::Identity());
+  const auto found = faces.at(kLooked);
   ASSERT_EQ(found.size(), NamedFaces::kMostFaces);
-  EXPECT_EQ(found.front().person, 1);
-  EXPECT_EQ(found.back().person, static_cast<int>(NamedFaces::kMostFaces));
+  EXPECT_EQ(found.front().name, "21");
+  EXPECT_EQ(found.back().name, "36");
 }
 
 TEST(NamedFaces, have_names_that_can_be_shown) {

@@ -2,12 +2,12 @@
 #include "score.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
-#include <system_error>
 
 #include <hc/base/format.h>
+#include <hc/base/text.h>
+#include <people/person_name.h>
 
 namespace {
 
@@ -40,14 +40,10 @@ std::optional<int> person_at(const std::vector<TruePerson>& people, const SeenFa
 std::map<int, int> persons_named(std::string_view lines) {
   std::map<int, int> persons;
   while (!lines.empty()) {
-    const auto line = lines.substr(0, lines.find('\n'));
-    lines.remove_prefix(std::min(line.size() + 1, lines.size()));
-    const auto end = line.data() + line.size();
-    int known = 0, person = 0;
-    const auto number = std::from_chars(line.data(), end, known);
-    if (number.ec != std::errc() || number.ptr == end) continue;
-    const auto name = std::from_chars(number.ptr + 1, end, person);
-    persons[known] = name.ec == std::errc() && name.ptr == end ? person : 0;
+    const auto named = hc::people::numbered_name(hc::take_until(lines, '\n'));
+    if (!named || named->name.empty()) continue;
+    int& person = persons[named->number];
+    if (!hc::read_number(named->name, person)) person = 0;
   }
   return persons;
 }

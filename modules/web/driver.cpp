@@ -35,7 +35,7 @@ constexpr std::size_t kMaxText = 4096;  // [byte]
 
 /// Whether a text is "TRACK NAME".
 bool is_track_and_name(std::string_view text) {
-  const auto named = hc::people::named_track(text);
+  const auto named = hc::people::numbered_name(text);
   return named && hc::people::is_person_name(named->name);
 }
 
