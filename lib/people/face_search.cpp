@@ -31,6 +31,10 @@ std::vector<Face> FaceSearch::look_around(const cv::Mat& image, const cv::Rect2f
   return near_.find(image, around, least);
 }
 
+bool FaceSearch::follows(int track, Time time) const {
+  return std::ranges::count(expected(time), track, &FaceTracks::Expected::number) > 0;
+}
+
 void FaceSearch::follow(Time time, const cv::Mat& image, float least, std::vector<Face>& faces) {
   auto boxes = tracks_.expected(time);
   if (boxes.size() > kMostFollowed) boxes.resize(kMostFollowed);

@@ -34,6 +34,8 @@ class FaceSearch {
   [[nodiscard]] std::vector<FaceTracks::Expected> expected(Time time) const {
     return tracks_.expected(time);
   }
+  /// Whether a track has not ended at a time.
+  [[nodiscard]] bool follows(int track, Time time) const;
   /// The faces around a place, such as that of a known face in the image of the other eye.
   std::vector<Face> look_around(const cv::Mat& image, const cv::Rect2f& box, float least = 0.5F);
 

@@ -37,9 +37,10 @@ Faces::Faces(hc::Module& module) : module_(module) {
   module.on(cameras_, [this](const hc::Message& message) {
     mount_.take(hc::value_or_drop(hc::pose_of(message)));
   });
-  module.on(name_, [this](const auto& message) { learn(message.text()); });
+  module.on(name_, [this](const auto& message) { ask(message.text()); });
   module.every(std::chrono::seconds(1), [this] {
     read_folder();
+    learn_asked();
     forget();
   });
   module.on_end([this] {
@@ -83,6 +84,7 @@ void Faces::look(const hc::Message& message) {
   last_ = time;
   seen_ = networks_->search.look(time, image, static_cast<float>(*score_), turn);
   describe(time, image, seen_);
+  learn_asked();
   send(message.header, seen_);
   look_right(right_image_);
 }
@@ -153,25 +155,41 @@ int Faces::person(int track) const {
   return found ? found->number : 0;
 }
 
-void Faces::learn(std::string_view text) {
-  const auto named = hc::people::named_track(text);
+void Faces::ask(std::string_view text) {
+  const auto named = hc::people::numbered_name(text);
   if (!named) throw hc::BadMessage("it is not \"TRACK NAME\"");
-  const int track = named->track;
-  const std::string name(named->name);
-  const auto& views = views_.views(track);
-  if (!hc::people::is_person_name(name)) throw hc::BadMessage("it has no name of 1 to 64 bytes");
+  if (!hc::people::is_person_name(named->name))
+    throw hc::BadMessage("it has no name of 1 to 64 bytes");
+  std::erase_if(asked_, [&](const Asked& other) { return other.track == named->number; });
+  if (asked_.size() == kMostAsked) asked_.erase(asked_.begin());
+  asked_.push_back({named->number, std::string(named->name), module_.monotonic() + kPatience});
+  learn_asked();
+}
+
+void Faces::learn_asked() {
+  std::erase_if(asked_, [this](const Asked& asked) { return learn(asked); });
+}
+
+bool Faces::learn(const Asked& asked) {
+  const auto& [track, name, until] = asked;
   // A person asked for it, so each answer is logged.
-  const auto refuse = [&](const std::string& why) {
-    module_.log(hc::format("{} was not learned: {}", name, why), hc::Level::Warning);
+  const auto refuse = [&, &who = name](const std::string& why) {
+    module_.log(hc::format("{} was not learned: {}", who, why), hc::Level::Warning);
+    return true;
   };
-  if (views.empty()) return refuse(hc::format("no face has track {} now: try again", track));
-  if (!views_.embedding(track))
-    return refuse("it is not certain yet whose face it is: try again, away from other faces");
+  if (!networks_->search.follows(track, last_))
+    return refuse(hc::format("no face has track {} now: try again", track));
+  if (!views_.embedding(track)) {
+    if (module_.monotonic() < until) return false;
+    return refuse("it is not certain whose face it is: try again, away from other faces");
+  }
   for (const auto& [known, number] : folder_->gallery().names())
     if (number == person(track) && known != name)
       return refuse(hc::format("it is {} already; rename the file {}/{}", known, *people_, known));
+  const auto& views = views_.views(track);
   if (const auto learned = folder_->learn(name, views); !learned)
     return refuse(learned.error().detail);
   module_.log(hc::format("learned {} from {} views", name, views.size()));
   read_folder();
+  return true;
 }

@@ -27,6 +27,14 @@ class Faces {
     hc::people::FaceSearch search;
     hc::people::Identifier identifier;
   };
+  /// A name that somebody gave to a track.
+  struct Asked {
+    int track;
+    std::string name;
+    hc::MonotonicTime until;
+  };
+  static constexpr std::chrono::milliseconds kPatience{10'000};  // with such a request
+  static constexpr std::size_t kMostAsked = 16;
 
   void start();
   /// Looks at a left image, once it is known how the head was turned then.
@@ -38,7 +46,11 @@ class Faces {
   /// Describes one of the faces, if it is due.
   void describe(hc::Time time, const cv::Mat& image, const std::vector<hc::people::Track>& seen);
   void send(const hc::Header& image, const std::vector<hc::people::Track>& seen);
-  void learn(std::string_view text);
+  /// Takes a request for a name, which waits until it is certain whose face the track shows.
+  void ask(std::string_view text);
+  void learn_asked();
+  /// @returns whether the request is answered, by yes or no.
+  bool learn(const Asked& asked);
   void read_folder();
   /// Forgets everybody where no image has come since the last call.
   void forget();
@@ -93,4 +105,5 @@ class Faces {
   hc::Time last_;                                  // left image
   std::optional<Eigen::Matrix3d> R_robot_camera_;  // then
   std::vector<hc::people::Track> seen_;            // then
+  std::vector<Asked> asked_;                       // not answered yet
 };
