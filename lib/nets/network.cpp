@@ -11,6 +11,7 @@
 
 #include <hc/base/check.h>
 #include <hc/base/format.h>
+#include <nets/depthwise.h>
 #include <nets/face_api.h>
 #include <nets/shapes.h>
 #include <nets/tflite.h>
@@ -54,6 +55,7 @@ class Builder {
  public:
   explicit Builder(const Layers& layers) : layers_(layers), places_(layers.tensors.size()) {
     places_[static_cast<std::size_t>(layers.input)] = 0;  // OpenCV's layer 0 is the input
+    register_depthwise();
   }
 
   cv::dnn::Net build() {
@@ -100,7 +102,7 @@ class Builder {
     params.set("stride_h", layer.stride_down);
     params.set("stride_w", layer.stride_right);
     const bool is_even = window.top == window.bottom && window.left == window.right;
-    if (!is_even && (layer.kind == Kind::Convolution || layer.kind == Kind::DepthwiseConvolution))
+    if (!is_even && layer.kind == Kind::Convolution)
       return pad({0, 0, 0, 0, window.top, window.bottom, window.left, window.right}, from);
     params.set("pad_t", window.top);
     params.set("pad_b", window.bottom);
@@ -111,8 +113,9 @@ class Builder {
 
   void add(const Layer& layer) {
     int made = make(layer);
-    if (layer.activation == Kind::Relu) made = put("ReLU", made);
-    if (layer.activation == Kind::Relu6) made = put("ReLU6", made);
+    const bool is_activated = layer.kind == Kind::DepthwiseConvolution;  // already
+    if (!is_activated && layer.activation == Kind::Relu) made = put("ReLU", made);
+    if (!is_activated && layer.activation == Kind::Relu6) made = put("ReLU6", made);
     places_[static_cast<std::size_t>(layer.output)] = made;
   }
 
@@ -133,13 +136,12 @@ class Builder {
         for (const int each : layer.inputs) all.push_back(place(each));
         return put("Concat", params, all);
       }
-      case Kind::Convolution:
-      case Kind::DepthwiseConvolution: {
+      case Kind::DepthwiseConvolution:
+        return depthwise(layer, from, shape, to);
+      case Kind::Convolution: {
         const Tensor& of = tensor(layer.inputs[1]);
-        const bool is_deep = layer.kind == Kind::DepthwiseConvolution;
-        params.blobs.push_back(is_deep ? weights(of, {3, 0, 1, 2}) : weights(of, {0, 3, 1, 2}));
+        params.blobs.push_back(weights(of, {0, 3, 1, 2}));
         params.set("num_output", to[3]);
-        params.set("group", is_deep ? shape[3] : 1);
         params.set("bias_term", layer.inputs.size() > 2);
         if (layer.inputs.size() > 2) params.blobs.push_back(row(tensor(layer.inputs[2]).numbers));
         const int placed = place_window(layer, window_of(layer, shape, of.shape), params, from);
@@ -193,6 +195,20 @@ class Builder {
       }
     }
     return from;
+  }
+
+  /// With its activation.
+  int depthwise(const Layer& layer, int from, const Shape& shape, const Shape& to) {
+    const Tensor& of = tensor(layer.inputs[1]);
+    PlaneConvolution::Options options{window_of(layer, shape, of.shape), layer.stride_down,
+                                      layer.stride_right};
+    if (layer.activation) options.least = 0;
+    if (layer.activation == Kind::Relu6) options.most = 6;
+    auto params = depthwise_params(options, {to[2], to[1]});
+    const std::vector<float> none(static_cast<std::size_t>(shape[3]));
+    params.blobs = {weights(of, {3, 0, 1, 2}),
+                    row(layer.inputs.size() > 2 ? tensor(layer.inputs[2]).numbers : none)};
+    return put(kDepthwise, params, from);
   }
 
   int channels_last(int from) {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <hc/testing/vectors.h>
 #include <opencv2/imgproc.hpp>
-#include "test_vectors.h"
 
 namespace hc::vision {
 namespace {

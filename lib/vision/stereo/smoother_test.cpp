@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "test_vectors.h"
+#include <hc/testing/vectors.h>
 
 namespace hc::vision {
 namespace {

@@ -11,7 +11,7 @@
 #define HWY_WANT_AVX3_DL
 #include <hwy/highway.h>
 
-namespace hc::vision {
+namespace hc {
 
 class TestOfVectors : public testing::TestWithParam<std::int64_t> {
  protected:
@@ -34,4 +34,4 @@ inline std::string name_of_vectors(const testing::TestParamInfo<std::int64_t>& e
   return hwy::TargetName(each.param);
 }
 
-}  // namespace hc::vision
+}  // namespace hc

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nets/depthwise.h>
+
+#include <algorithm>
+#include <mutex>
+
+#include <opencv2/dnn/layer.details.hpp>
+
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "nets/depthwise.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace hc::nets::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// to[i] = bias + Σ weights[k] taps[k][i], within limits; up to four vectors more than `size`.
+void add_taps(const float* const* taps, const float* weights, std::size_t count, float bias,
+              float least, float most, std::size_t size, float* to) {
+  const hn::ScalableTag<float> d;
+  const std::size_t lanes = hn::Lanes(d);
+  const auto low = hn::Set(d, least), high = hn::Set(d, most);
+  for (std::size_t i = 0; i < size; i += 4 * lanes) {
+    auto a = hn::Set(d, bias), b = a, c = a, e = a;
+    for (std::size_t k = 0; k < count; ++k) {
+      const float* tap = taps[k] + i;
+      const auto weight = hn::Set(d, weights[k]);
+      // Not fused, since not every processor can.
+      a = hn::Add(a, hn::Mul(weight, hn::LoadU(d, tap)));
+      b = hn::Add(b, hn::Mul(weight, hn::LoadU(d, tap + lanes)));
+      c = hn::Add(c, hn::Mul(weight, hn::LoadU(d, tap + 2 * lanes)));
+      e = hn::Add(e, hn::Mul(weight, hn::LoadU(d, tap + 3 * lanes)));
+    }
+    hn::StoreU(hn::Min(hn::Max(a, low), high), d, to + i);
+    hn::StoreU(hn::Min(hn::Max(b, low), high), d, to + i + lanes);
+    hn::StoreU(hn::Min(hn::Max(c, low), high), d, to + i + 2 * lanes);
+    hn::StoreU(hn::Min(hn::Max(e, low), high), d, to + i + 3 * lanes);
+  }
+}
+
+}  // namespace hc::nets::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace hc::nets {
+namespace {
+
+HWY_EXPORT(add_taps);
+
+constexpr std::size_t kBeyond = 4 * 16;  // read and written beyond the end, of the widest vectors
+
+std::size_t area(const cv::Size& size) {
+  return static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
+}
+
+int divided_up(int a, int b) {
+  return (a + b - 1) / b;
+}
+
+/// The layer in OpenCV's network.
+class DepthwiseLayer final : public cv::dnn::Layer {
+ public:
+  explicit DepthwiseLayer(const cv::dnn::LayerParams& params) : Layer(params) {
+    const auto whole = [&](const char* name) { return params.get<int>(name); };
+    options_.window = {whole("kernel_h"), whole("kernel_w"), whole("pad_t"),
+                       whole("pad_b"),    whole("pad_l"),    whole("pad_r")};
+    options_.stride_down = whole("stride_h");
+    options_.stride_right = whole("stride_w");
+    options_.least = params.get<float>("least");
+    options_.most = params.get<float>("most");
+    to_ = {whole("width"), whole("height")};
+  }
+  static cv::Ptr<Layer> create(cv::dnn::LayerParams& params) {
+    return cv::makePtr<DepthwiseLayer>(params);
+  }
+
+  bool getMemoryShapes(const std::vector<cv::dnn::MatShape>& inputs, int /*outputs*/,
+                       std::vector<cv::dnn::MatShape>& outputs,
+                       std::vector<cv::dnn::MatShape>& /*internals*/) const override {
+    outputs = {{inputs[0][0], inputs[0][1], to_.height, to_.width}};
+    return false;
+  }
+
+  void forward(cv::InputArrayOfArrays inputs, cv::OutputArrayOfArrays outputs,
+               cv::OutputArrayOfArrays /*internals*/) override {
+    std::vector<cv::Mat> from, to;
+    inputs.getMatVector(from);
+    outputs.getMatVector(to);
+    const cv::Mat& image = from[0];
+    cv::Mat& result = to[0];
+    const cv::Mat &weights = blobs[0], &bias = blobs[1];
+    const std::size_t window = weights.total() / static_cast<std::size_t>(weights.size[0]);
+    cv::parallel_for_({0, image.size[1]}, [&](const cv::Range& channels) {
+      PlaneConvolution plane(options_, {image.size[3], image.size[2]}, to_);
+      for (int i = channels.start; i < channels.end; ++i)
+        plane.convolve(image.ptr<float>(0, i), {weights.ptr<float>(i), window},
+                       bias.ptr<float>()[i], result.ptr<float>(0, i));
+    });
+  }
+
+ private:
+  PlaneConvolution::Options options_;
+  cv::Size to_;
+};
+
+}  // namespace
+
+PlaneConvolution::PlaneConvolution(const Options& options, const cv::Size& from,
+                                   const cv::Size& to)
+    : options_(options), from_(from), to_(to) {
+  const auto& [window, down, right, least, most] = options_;
+  phase_ = {divided_up(from.width + window.left + window.right, right),
+            divided_up(from.height + window.top + window.bottom, down)};
+  const std::size_t count = static_cast<std::size_t>(down) * static_cast<std::size_t>(right);
+  phases_.assign(count * area(phase_) + area({window.width, window.height}) + kBeyond, 0);
+  sums_.resize(area({phase_.width, to.height}) + kBeyond);
+  for (int v = 0; v < window.height; ++v)
+    for (int u = 0; u < window.width; ++u) {
+      const int phase = v % down * right + u % right;
+      taps_.push_back(phases_.data() + static_cast<std::size_t>(phase) * area(phase_) +
+                      v / down * phase_.width + u / right);
+    }
+}
+
+void PlaneConvolution::fill_phases(const float* from) {
+  const auto& [window, down, right, least, most] = options_;
+  for (int y = 0; y < from_.height; ++y, from += from_.width) {
+    const int row = y + window.top;
+    float* phases = phases_.data() + static_cast<std::size_t>(row % down * right) * area(phase_) +
+                    row / down * phase_.width;
+    if (right == 1) {
+      std::copy_n(from, from_.width, phases + window.left);
+      continue;
+    }
+    for (int x = 0; x < from_.width; ++x) {
+      const int column = x + window.left;
+      phases[static_cast<std::size_t>(column % right) * area(phase_) +
+             static_cast<std::size_t>(column / right)] = from[x];
+    }
+  }
+}
+
+void PlaneConvolution::convolve(const float* from, std::span<const float> weights, float bias,
+                                float* to) {
+  fill_phases(from);
+  // Over all rows at once: between them sums come out that mean nothing.
+  const std::size_t size = area({phase_.width, to_.height});
+  HWY_DYNAMIC_DISPATCH(add_taps)
+  (taps_.data(), weights.data(), taps_.size(), bias, options_.least, options_.most, size,
+   sums_.data());
+  for (int y = 0; y < to_.height; ++y)
+    std::copy_n(sums_.data() + y * phase_.width, to_.width, to + y * to_.width);
+}
+
+cv::dnn::LayerParams depthwise_params(const PlaneConvolution::Options& options,
+                                      const cv::Size& to) {
+  const auto& [window, down, right, least, most] = options;
+  cv::dnn::LayerParams params;
+  params.set("kernel_h", window.height);
+  params.set("kernel_w", window.width);
+  params.set("pad_t", window.top);
+  params.set("pad_b", window.bottom);
+  params.set("pad_l", window.left);
+  params.set("pad_r", window.right);
+  params.set("stride_h", down);
+  params.set("stride_w", right);
+  params.set("least", least);
+  params.set("most", most);
+  params.set("height", to.height);
+  params.set("width", to.width);
+  return params;
+}
+
+void register_depthwise() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    cv::dnn::LayerFactory::registerLayer(kDepthwise, DepthwiseLayer::create);
+  });
+}
+
+}  // namespace hc::nets
+#endif  // HWY_ONCE
