@@ -21,9 +21,8 @@ cv::Rect reach_of(const cv::Rect2f& face) {
 
 }  // namespace
 
-bool SearchTimes::is_due(Time time, std::size_t followed, bool is_anybody) {
-  const auto period = followed > 0 ? kSome : is_anybody ? kNone : kNobody;
-  if (last_ && std::chrono::abs(time - *last_) < period) return false;
+bool SearchTimes::is_due(Time time, bool is_anybody) {
+  if (last_ && std::chrono::abs(time - *last_) < (is_anybody ? kSomebody : kNobody)) return false;
   last_ = time;
   return true;
 }
@@ -66,7 +65,9 @@ void HandSearch::search(const cv::Mat& image, const std::vector<cv::Rect2f>& fac
       return one.hand.box().contains(middle);
     });
     if (is_known) continue;
-    add({0, landmarks_.find(image, region_of(palm))}, hands);
+    // Once more, in the region that its points give: a palm gives another one.
+    const Hand hand = landmarks_.find(image, region_of(palm));
+    if (hand.presence >= kHandIsThere) add({0, landmarks_.find(image, region_of(hand))}, hands);
   }
 }
 
@@ -79,8 +80,8 @@ std::vector<HandTrack> HandSearch::look(Time time, const cv::Mat& image,
     if (hands.size() > most_) break;
     add({number, landmarks_.find(image, region)}, hands);
   }
-  const bool is_anybody = !faces || !faces->empty();
-  if (hands.size() <= most_ && times_.is_due(time, hands.size(), is_anybody))
+  const bool is_anybody = !hands.empty() || !faces || !faces->empty();
+  if (hands.size() <= most_ && times_.is_due(time, is_anybody))
     search(image, faces.value_or(std::vector<cv::Rect2f>()), hands);
   return tracks_.update(time, hands);
 }

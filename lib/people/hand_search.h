@@ -18,13 +18,11 @@ namespace hc::people {
 /// When to search for palms. Pure.
 class SearchTimes {
  public:
-  /// Between searches, while no hand is followed, and while some are.
-  static constexpr std::chrono::milliseconds kNone{100}, kSome{250};
-  /// The same where no face is in view, though a hand may be.
-  static constexpr std::chrono::milliseconds kNobody{1000};
+  /// Between searches, while somebody may be in view, and where no face is, though a hand may be.
+  static constexpr std::chrono::milliseconds kSomebody{100}, kNobody{1000};
 
   /// Whether to search now, which the caller then does.
-  bool is_due(Time time, std::size_t followed, bool is_anybody = true);
+  bool is_due(Time time, bool is_anybody);
 
  private:
   std::optional<Time> last_;
