@@ -5,18 +5,19 @@ import { moduleOf, type DriveOutput, type Server } from "../server";
 import { button, h, setText } from "../shell";
 import type { Seat } from "./holder";
 
-/** How long the log is about a name that was sent [ms]. */
-const answerTime = 5000;
+const needsSeat = "Take the seat first, then name a person.";
+/** How long the log is about a name that was sent: `faces` waits ten seconds until it is sure [ms]. */
+const answerTime = 12_000;
 /** A person who has not been seen for longer is held no more [ms]. */
 const lostTime = 3000;
 
 export class SeatPeople {
   private readonly nobody = h("p.muted.small", "Nobody is seen.");
-  readonly list = h(
-    "div.seat-people.wrap",
-    { role: "group", "aria-label": "People seen" },
+  private readonly caption = h("span.muted.small", "People seen:");
+  readonly list = h("div.seat-people.wrap", { role: "group", "aria-label": "People seen" }, [
     this.nobody,
-  );
+    this.caption,
+  ]);
   private readonly buttons = new Map<number, HTMLButtonElement>(); // by track
   private readonly who = h("b.person-who");
   private readonly name = h("input", {
@@ -80,7 +81,7 @@ export class SeatPeople {
 
   /** A person in the image was clicked: opens the form, or releases them. */
   click(person: Person): void {
-    if (!this.seat.isHeld) return this.say("Take the seat first, then name a person.");
+    if (!this.seat.isHeld) return this.say(needsSeat);
     if (this.seat.held === person.track) return this.release();
     this.open(person);
   }
@@ -118,6 +119,7 @@ export class SeatPeople {
       each.setAttribute("aria-expanded", String(this.track === track));
     }
     this.nobody.hidden = seen.length > 0;
+    this.caption.hidden = seen.length === 0;
   }
 
   private addButton(track: number): HTMLButtonElement {
@@ -154,7 +156,8 @@ export class SeatPeople {
 
   private sendName(): void {
     const name = this.name.value.trim();
-    if (!this.seat.isHeld || !this.has("name")) return;
+    if (!this.seat.isHeld) return this.say(needsSeat);
+    if (!this.has("name")) return;
     if (name === "") return this.say("Type a name.");
     if (!isName(name))
       return this.say("A name has at most 64 bytes, and neither “/” nor a dot at its beginning.");

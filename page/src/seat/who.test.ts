@@ -45,10 +45,7 @@ test("a stop names its sources, those that a person knows by another name, too",
     ],
     stopped: { left: ["hands.stop"], right: ["page.stop", "hands.stop", "source 12"] },
   } as unknown as GraphState;
-  assert.equal(
-    stoppedBy(state),
-    "by an open palm (hands.stop), a page (page.stop), source 12",
-  );
+  assert.equal(stoppedBy(state), "by an open palm (hands.stop), a page (page.stop), source 12");
   assert.equal(stoppedBy({ ...state, stopped: {} }), "");
   assert.equal(stoppedBy(undefined), "");
 });
