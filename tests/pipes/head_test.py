@@ -3,6 +3,7 @@
 """The tasks of the head in the simulated one, as the graphs score_TASK.toml score them."""
 
 import math
+import os
 import pathlib
 import re
 import shutil
@@ -180,6 +181,24 @@ class CalibrationFile(Head):
         )
         # Swapped: what the right camera's cable brings is the left eye's.
         self.assertGreater(len(self.read_bytes("rectified.mtp")), 3 * 800 * 600)
+
+
+class People(Head):
+    """graphs/score_identity.toml and score_stop.toml: two persons in the simulated room."""
+
+    def test_everybody_gets_a_name(self):
+        self.shell(
+            "HC_PEOPLE=people hc run %s/graphs/score_identity.toml --set head_eyes.people_motion=still"
+            " --set identity_score.names_people=true --set identity_score.duration=300" % ROOT
+        )
+        self.assertEqual(set(os.listdir(self.path("people"))), {"1", "2"})
+
+    def test_stops_are_counted(self):
+        line = self.score("stop", "stop_score.duration=12")
+        self.assertRegex(
+            line,
+            r"^(missed .* palms, .*; )?\d+ stops without a palm, \d+ by one at the border, in 12 s$",
+        )
 
 
 class Read(Head):
