@@ -34,9 +34,8 @@ TEST(Waving, in_half_an_hour_of_three_who_walk_is_no_command) {
     int count = 0;
     for (hc::Time at{}; at < hc::Time(600s); at += 50ms)
       for (const auto& person : people.at(hc::seconds(at.time_since_epoch())))
-        count += commands[person.number]
-                     .update(at, hc::people::Sign::Open, seen(person))
-                     .has_value();
+        count +=
+            commands[person.number].update(at, hc::people::Sign::Open, seen(person)).has_value();
     EXPECT_EQ(count, 0) << "seed " << seed;
   }
 }
