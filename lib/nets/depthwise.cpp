@@ -107,8 +107,7 @@ class DepthwiseLayer final : public cv::dnn::Layer {
 
 }  // namespace
 
-PlaneConvolution::PlaneConvolution(const Options& options, const cv::Size& from,
-                                   const cv::Size& to)
+PlaneConvolution::PlaneConvolution(const Options& options, const cv::Size& from, const cv::Size& to)
     : options_(options), from_(from), to_(to) {
   const auto& [window, down, right, least, most] = options_;
   phase_ = {divided_up(from.width + window.left + window.right, right),
@@ -134,10 +133,10 @@ void PlaneConvolution::fill_phases(const float* from) {
       std::copy_n(from, from_.width, phases + window.left);
       continue;
     }
-    for (int x = 0; x < from_.width; ++x) {
-      const int column = x + window.left;
-      phases[static_cast<std::size_t>(column % right) * area(phase_) +
-             static_cast<std::size_t>(column / right)] = from[x];
+    for (int first = 0; first < std::min(right, from_.width); ++first) {
+      const int column = first + window.left;
+      float* to = phases + static_cast<std::size_t>(column % right) * area(phase_) + column / right;
+      for (int x = first; x < from_.width; x += right) *to++ = from[x];
     }
   }
 }
@@ -175,9 +174,8 @@ cv::dnn::LayerParams depthwise_params(const PlaneConvolution::Options& options,
 
 void register_depthwise() {
   static std::once_flag once;
-  std::call_once(once, [] {
-    cv::dnn::LayerFactory::registerLayer(kDepthwise, DepthwiseLayer::create);
-  });
+  std::call_once(once,
+                 [] { cv::dnn::LayerFactory::registerLayer(kDepthwise, DepthwiseLayer::create); });
 }
 
 }  // namespace hc::nets

@@ -47,8 +47,7 @@ class PlaneConvolution {
 /// The type of OpenCV's layer that has such weights (channels, 1, height, width) and bias as its
 /// blobs; depthwise_params() makes its parameters.
 inline constexpr const char* kDepthwise = "HypercolumnDepthwise";
-cv::dnn::LayerParams depthwise_params(const PlaneConvolution::Options& options,
-                                      const cv::Size& to);
+cv::dnn::LayerParams depthwise_params(const PlaneConvolution::Options& options, const cv::Size& to);
 /// Makes OpenCV know the type. May be called again.
 void register_depthwise();
 
