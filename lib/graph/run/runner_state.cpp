@@ -114,9 +114,12 @@ GraphState Runner::state() const {
   for (const auto& declared : changes_.graph().hosts)
     if (const auto host = options_.hosts == nullptr ? nullptr : options_.hosts->find(declared.name))
       state.hosts.push_back(host->state());
-  std::map<std::int32_t, std::string> sources;
-  for (const auto& [name, number] : plan_.sources)
-    sources[static_cast<std::int32_t>(number)] = name;
+  const auto source_names = [this] {
+    std::map<std::int32_t, std::string> names;
+    for (const auto& [name, number] : plan_.sources)
+      names[static_cast<std::int32_t>(number)] = name;
+    return names;
+  };
   for (const auto& planned : plan_.modules) {
     const auto* module = modules_.find(planned.name);
     if (module == nullptr) continue;
@@ -125,7 +128,7 @@ GraphState Runner::state() const {
         log_.with_link_names(std::move(state.modules.back().last_line));
     // A stop outlives the process that reported it.
     if (const auto& stops = module->reports().state().stops; any_stops(stops))
-      state.stopped[planned.name] = names_of_stops(stops, sources);
+      state.stopped[planned.name] = names_of_stops(stops, source_names());
     // The focus, as reported by modules that receive or decide it; stale unless they run.
     if (module->status() != ModuleStatus::Running) continue;
     const bool decides = plan_.workspaces.contains(planned.name);

@@ -46,14 +46,6 @@ struct FieldReader {
     if (auto found = json.find(key); found != json.end() && !found->is_null())
       value = found->get<T>();
   }
-  void operator()(const char* key, std::map<std::string, std::vector<std::string>>& value) {
-    const auto found = json.find(key);
-    if (found == json.end()) return;
-    if (found->is_object())
-      found->get_to(value);
-    else  // an older graph does not name the sources
-      for (const auto& name : *found) value[name.get<std::string>()];
-  }
   void operator()(const char* key, ModuleStatus& value) {
     const auto text = json.value(key, std::string());
     value = enum_named<ModuleStatus>(kStatusNames, text).value_or(value);
@@ -133,7 +125,6 @@ void visit_graph(Graph& graph, Visit visit) {
   visit("file", graph.file);
   visit("pid", graph.process);
   visit("uptime", graph.uptime);
-  visit("stopped", graph.stopped);
   visit("modes", graph.modes);
   visit("addresses", graph.addresses);
 }
@@ -171,7 +162,7 @@ std::string GraphState::focus_in_words() const {
 std::string GraphState::stopped_in_words() const {
   std::string words;
   for (const auto& [workspace, sources] : stopped) {
-    words += words.empty() ? "stopped" : ", ";
+    words += words.empty() ? "stopped" : "; ";
     if (focus.size() > 1) words += (words == "stopped" ? ": " : "") + workspace;
     for (const auto& source : sources)
       words += (source == sources.front() ? " by " : ", ") + source;
@@ -182,6 +173,7 @@ std::string GraphState::stopped_in_words() const {
 std::string to_json(const GraphState& state) {
   Json json = Json::object();
   visit_graph(state, FieldWriter{json});
+  json["stopped"] = state.stopped;
   json["status"] = state.is_stopping ? "stopping" : "running";
   auto& focus = json["focus"] = Json::object();
   for (const auto& [workspace, number] : state.focus)
@@ -203,6 +195,10 @@ Result<GraphState> parse_graph_state(std::string_view text) {
     const auto json = Json::parse(text);
     GraphState state;
     visit_graph(state, FieldReader{json});
+    if (const auto stopped = json.value("stopped", Json::object()); stopped.is_object())
+      stopped.get_to(state.stopped);
+    else  // an older graph does not name the sources
+      for (const auto& workspace : stopped) state.stopped[workspace.get<std::string>()];
     state.is_stopping = json.at("status") == "stopping";
     for (const auto& [workspace, mode] : json.at("focus").items())
       state.focus[workspace] = mode.is_null() ? 0 : mode.at("number").get<std::int64_t>();

@@ -109,8 +109,8 @@ struct GraphState {
   /// The modes in focus: "track", or for several workspaces "left: track, right: none"; empty: no
   /// workspace has one.
   [[nodiscard]] std::string focus_in_words() const;
-  /// "stopped by web.stop, hands.stop", or with several workspaces "stopped: left by web.stop";
-  /// empty: none is stopped.
+  /// "stopped by web.stop, hands.stop", or with several workspaces "stopped: left by web.stop;
+  /// right by hands.stop"; empty: none is stopped.
   [[nodiscard]] std::string stopped_in_words() const;
 };
 

@@ -52,9 +52,9 @@ GraphState some_state() {
 TEST(State, IsOneLineOfJson) {
   EXPECT_EQ(
       to_json(some_state()),
-      R"({"graph":"head","file":"graphs/head.toml","pid":12,"uptime":3.25,"stopped":{"right":["web.stop","source 14"]},)"
+      R"({"graph":"head","file":"graphs/head.toml","pid":12,"uptime":3.25,)"
       R"("modes":{"read":2,"track":1},"addresses":{"eyes.command":21},)"
-      R"("status":"running","focus":{"left":{"mode":"track","number":1},"right":null},)"
+      R"("stopped":{"right":["web.stop","source 14"]},"status":"running","focus":{"left":{"mode":"track","number":1},"right":null},)"
       R"("hosts":[{"name":"robot","connected":true,"detail":"","offset":3600.5,"error":0.25,)"
       R"("drift":null,"latency":0.5}],)"
       R"("modules":[{"name":"camera","program":"camera","host":"robot","group":"",)"
@@ -115,7 +115,7 @@ TEST(State, TheFocusOfTwoWorkspacesIsShownForEach) {
   EXPECT_EQ(state.focus_in_words(), "left: track, right: none");
   EXPECT_EQ(state.stopped_in_words(), "stopped: right by web.stop, source 14");
   state.stopped["left"] = {"hands.stop"};
-  EXPECT_EQ(state.stopped_in_words(), "stopped: left by hands.stop, right by web.stop, source 14");
+  EXPECT_EQ(state.stopped_in_words(), "stopped: left by hands.stop; right by web.stop, source 14");
   EXPECT_EQ(state.focus_of(state.modules.at(0)), "track");
   state.modules[0].workspace = "right";
   EXPECT_EQ(state.focus_of(state.modules.at(0)), "");

@@ -37,7 +37,7 @@ test("an output's task is that of the module that reads it", () => {
   assert.equal(taskOf(state, "page", "stick"), 0);
 });
 
-test("a stop names its sources, those that a person knows by another name, too", () => {
+test("a stop names its sources, known ones in words", () => {
   const state = {
     modules: [
       { name: "hands", program: "hands" },
