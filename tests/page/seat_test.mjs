@@ -101,7 +101,7 @@ describe("the seat", { timeout: 10 * watchdog }, () => {
     const eyes = graph.pid("head_eyes");
     process.kill(eyes, "SIGSTOP");
     const says =
-      /^The last image is \d+ s old\. The module head_eyes is stalled: stopped by a signal/;
+      /^The last image is \d+ s old\. Module head_eyes: stalled \(stopped by a signal\)\.$/;
     await page.locator(".seat-view[data-old] .seat-problem", { hasText: says }).waitFor();
     process.kill(eyes, "SIGCONT");
     await page

@@ -1,26 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { linkOf, moduleNamed, stateOf } from "../graph/graph_file";
 import type { GraphModule } from "../server";
 import { silenceText } from "./silence";
 
-const camera = (status: string, detail = ""): GraphModule =>
-  ({ name: "camera", status, detail }) as GraphModule;
+const port = "rectify.left";
+
+/** A camera and what rectifies its images; a neck, which sends it frames and obeys it. */
+const graph = (camera: Partial<GraphModule> = {}, rectify: Partial<GraphModule> = {}) =>
+  stateOf(
+    [moduleNamed("camera", camera), moduleNamed("rectify", rectify), moduleNamed("neck")],
+    [
+      linkOf("camera.left", "rectify.left"),
+      linkOf("neck.pose", "rectify.frames"),
+      linkOf("rectify.left", "neck.image"),
+    ],
+  );
 
 test("while images come, and before the first, nothing is wrong", () => {
-  assert.equal(silenceText(true, 1900, camera("starting")), "");
-  assert.equal(silenceText(false, 1900, camera("starting")), "Waiting for the first image…");
-  assert.equal(silenceText(false, 60_000, camera("running")), "Waiting for the first image…");
+  const starts = graph({ status: "starting" });
+  assert.equal(silenceText(true, 1900, starts, port), "");
+  assert.equal(silenceText(false, 1900, starts, port), "Waiting for the first image…");
+  assert.equal(silenceText(false, 60_000, graph(), port), "Waiting for the first image…");
 });
 
 test("an old image is said to be old, and why", () => {
-  assert.equal(silenceText(true, 12_400, undefined), "The last image is 12 s old.");
+  assert.equal(silenceText(true, 3400, graph(), port), "The last image is 3 s old.");
+  assert.equal(silenceText(true, 14_000, graph(), port), "The last image is 10 s old.");
   assert.equal(
-    silenceText(true, 3000, camera("given up", "no device /dev/video0")),
-    "The last image is 3 s old. The module camera is given up: no device /dev/video0.",
+    silenceText(true, 3000, graph({ status: "given up", detail: "no device /dev/video0" }), port),
+    "The last image is 3 s old. Module camera: given up (no device /dev/video0).",
   );
   assert.equal(
-    silenceText(false, 3000, camera("stalled")),
-    "Waiting for the first image… The module camera is stalled.",
+    silenceText(false, 3000, graph({}, { status: "stalled" }), port),
+    "Waiting for the first image… Module rectify: stalled.",
   );
 });

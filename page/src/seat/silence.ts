@@ -1,25 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the seat says while no images come. Pure.
-import type { GraphModule } from "../server";
+import { moduleOf, type GraphModule, type GraphState } from "../server";
 
 export const waiting = "Waiting for the first image…";
 /** Images that come after a longer time are rare enough to say how old the last one is [ms]. */
 const patience = 2000;
+/** The age is told in steps, since a screen reader reads each [s]. */
+const step = 5;
 
 /**
  * The sentence; "" while images come.
  *
  * @param since  the last image, or the request for the first [ms].
- * @param module  that sends them.
+ * @param port  that sends them.
  */
 export function silenceText(
   hasImage: boolean,
   since: number,
-  module: GraphModule | undefined,
+  state: GraphState,
+  port: string,
 ): string {
   if (since < patience) return hasImage ? "" : waiting;
-  const text = hasImage ? `The last image is ${Math.floor(since / 1000)} s old.` : waiting;
-  if (!module || module.status === "running") return text;
-  const { name, status, detail } = module;
-  return `${text} The module ${name} is ${status}${detail ? `: ${detail}` : ""}.`;
+  const seconds = since / 1000;
+  const age = seconds < step ? Math.floor(seconds) : Math.floor(seconds / step) * step;
+  const text = hasImage ? `The last image is ${age} s old.` : waiting;
+  const reason = reasonOf(state, moduleOf(port));
+  return reason ? `${text} ${reason}` : text;
+}
+
+/** Which module does not run: the one that sends the images, or one before it. */
+function reasonOf(state: GraphState, sender: string): string {
+  const names = new Set([sender]);
+  for (const name of names) {
+    const module = state.modules.find((each) => each.name === name);
+    if (module && module.status !== "running") return conditionOf(module);
+    for (const { from, to } of state.links) if (moduleOf(to) === name) names.add(moduleOf(from));
+  }
+  return "";
+}
+
+function conditionOf({ name, status, detail }: GraphModule): string {
+  return `Module ${name}: ${status}${detail ? ` (${detail})` : ""}.`;
 }

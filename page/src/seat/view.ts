@@ -42,6 +42,8 @@ export class SeatView {
   private readonly came: Record<Side, number> = { left: 0, right: 0 };
   /** What was said last of images that do not come. */
   private silence = "";
+  /** When images were shown last, or their streams were opened. */
+  private shown = 0;
   private pairs: readonly EyePair[] = [];
   private readonly resizing: ResizeObserver;
   private drawing = false;
@@ -92,10 +94,10 @@ export class SeatView {
   private watch(state: GraphState): void {
     const { pair, pictures } = this;
     if (!pair || this.eyes.size === 0) return;
-    const last = Math.max(...[...this.eyes.keys()].map((side) => this.came[side]));
-    const sender = state.modules.find(({ name }) => name === moduleOf(pair.left));
+    const sides = [...this.eyes.keys()].sort((a, b) => this.came[a] - this.came[b]);
+    const port = (sides[0] === "right" && pair.right) || pair.left;
     const hasImage = (pictures.left ?? pictures.right) !== undefined;
-    const text = silenceText(hasImage, performance.now() - last, sender);
+    const text = silenceText(hasImage, performance.now() - this.shown, state, port);
     this.element.toggleAttribute("data-old", hasImage && text !== "");
     if ([this.silence, ""].includes(this.problem.textContent)) this.problem.textContent = text;
     this.silence = text;
@@ -192,6 +194,7 @@ export class SeatView {
       return;
     }
     this.problem.textContent = this.silence = waiting;
+    this.shown = performance.now();
     this.people.follow(pair.left);
     this.way.disabled = pair.right === undefined;
     const wanted = this.xr ? (["left", "right"] as const) : sidesOf(this.shownWay);
@@ -225,6 +228,7 @@ export class SeatView {
 
   /** Draws the pictures, and measures their latency by one of them. */
   private show(picture: Picture): void {
+    this.shown = performance.now();
     if (this.problem.textContent === this.silence) this.problem.textContent = "";
     this.element.removeAttribute("data-old");
     const thumbnail = thumbnailOf(picture.bitmap);
