@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <people/hand_command.h>
 
-#include <algorithm>
 #include <utility>
 
 namespace hc::people {
 namespace {
 
-double farthest_apart(const HandCommand::Directions& a, const HandCommand::Directions& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, (a[i] - b[i]).norm());
-  return most;
+bool is_still(const HandCommand::Directions& from, const HandCommand::Directions& to) {
+  const double most = HandCommand::kStill * (to[1] - to[0]).norm();
+  for (std::size_t i = 0; i < from.size(); ++i)
+    if (!((from[i] - to[i]).norm() <= most)) return false;
+  return true;
 }
 
 }  // namespace
 
-std::optional<Sign> HandCommand::update(Time time, Sign sign, const Directions& towards) {
+std::optional<Sign> HandCommand::update(Time time, Sign sign,
+                                        const std::optional<Directions>& towards) {
   const bool was_unseen = std::chrono::abs(time - std::exchange(last_, time)) > kUnseen;
-  const double palm = (towards[1] - towards[0]).norm();
-  const bool has_moved = sign != Sign::None && farthest_apart(towards, from_) > kStill * palm;
+  const bool has_moved = towards && !(from_ && is_still(*from_, *towards));
   if (was_unseen || has_moved) {
     hold_ = SignHold{kHold};
     from_ = towards;

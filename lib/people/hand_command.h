@@ -28,16 +28,16 @@ class HandCommand {
   static constexpr std::chrono::milliseconds kUnseen{250};
 
   /// Takes the sign in an image.
-  /// @param towards  do not matter for a hand without a sign.
+  /// @param towards  nothing for a hand without a sign.
   /// @returns a sign, once, that was held still for kHold.
-  std::optional<Sign> update(Time time, Sign sign, const Directions& towards);
+  std::optional<Sign> update(Time time, Sign sign, const std::optional<Directions>& towards);
   /// The command that the hand still holds.
   [[nodiscard]] Sign held() const { return hold_.held(); }
 
  private:
   SignHold hold_{kHold};
   Time last_;
-  Directions from_ = {};  // where the hand was at first
+  std::optional<Directions> from_;  // where the hand was at first
 };
 
 }  // namespace hc::people

@@ -56,15 +56,21 @@ TEST(HandCommand, is_no_wave) {
 }
 
 TEST(HandCommand, is_no_wave_along_the_line_of_sight) {
-  // From the elbow, by 0.45 rad, as the simulated people wave: it is lower, and shorter, twice a
-  // period.
-  EXPECT_EQ(commands(Sign::Open,
-                     [](double t) {
-                       const double swing = 0.45 * std::sin(2 * std::numbers::pi * 1.5 * t);
-                       constexpr double kForearm = 2.7 * kPalm;
-                       return upright(0, kForearm * std::cos(swing), kPalm * std::cos(swing));
-                     }),
-            0);
+  // At the wrist, by 0.9 rad: of its knuckle alone, the hand seems to be still.
+  const auto waves = [](double t) {
+    return upright(0, 0, kPalm * std::cos(0.9 * std::sin(2 * std::numbers::pi * 1.5 * t)));
+  };
+  EXPECT_EQ(commands(Sign::Open, waves), 0);
+}
+
+TEST(HandCommand, begins_anew_after_an_image_without_a_hand) {
+  HandCommand command;
+  EXPECT_FALSE(command.update(hc::Time(1s), Sign::None, std::nullopt));
+  EXPECT_FALSE(command.update(hc::Time(1s) + 50ms, Sign::Open, upright(0)));
+  EXPECT_FALSE(command.update(hc::Time(1s) + 200ms, Sign::Open, upright(0)));
+  EXPECT_FALSE(command.update(hc::Time(1s) + 400ms, Sign::Open, upright(0)));
+  EXPECT_FALSE(command.update(hc::Time(1s) + 500ms, Sign::Open, upright(0)));
+  EXPECT_TRUE(command.update(hc::Time(1s) + 550ms, Sign::Open, upright(0)));
 }
 
 TEST(HandCommand, is_no_hand_that_passes_by) {

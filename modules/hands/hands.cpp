@@ -7,13 +7,13 @@
 
 #include <frames/messages.h>
 #include <hc/base/format.h>
+#include <hc/base/table_row.h>
 #include <nets/weights.h>
 #include <people/hand_place.h>
-#include <people/short_number.h>
 #include <vision/messages.h>
 
+using hc::rounded;
 using hc::people::Hand;
-using hc::people::short_number;
 using hc::people::Sign;
 
 namespace {
@@ -114,7 +114,7 @@ bool Hands::update_hold(const HandTrack& track) {
   if (const auto held = hold.update(track.seen, sign))
     sign_.send({static_cast<double>(*held), static_cast<double>(track.number)}, track.seen);
   command.update(track.seen, sign,
-                 sign == Sign::None ? hc::people::HandCommand::Directions{} : seen_at(track));
+                 sign == Sign::None ? std::nullopt : std::optional(seen_at(track)));
   if (const auto word = stop_words_.update(module_.monotonic(), command.held()))
     stop_.send({*word}, module_.now());
   return hold.held() == Sign::Point;
@@ -143,7 +143,7 @@ void Hands::aim(const hc::Message* right) {
   const Eigen::Vector3d from = T * ray.from, direction = T.linear() * ray.direction;
   std::vector<double> numbers;
   for (const auto& part : {from, direction})
-    for (const double each : part) numbers.push_back(short_number(each));
+    for (const double each : part) numbers.push_back(rounded(each));
   numbers.push_back(ray.is_from_eye ? 1 : 0);
   ray_.send(numbers, track.seen);
 }
@@ -187,5 +187,5 @@ void Hands::see_depth(const hc::Message& message) {
   const Eigen::Vector3d place = hc::people::place_pointed_at(ray, metres, lens_of(pair()))
                                     .value_or(ray.from + kAhead * ray.direction);
   const Eigen::Vector3d p = T_head_camera(time) * place;
-  target_.send({short_number(p.x()), short_number(p.y()), short_number(p.z())}, time);
+  target_.send({rounded(p.x()), rounded(p.y()), rounded(p.z())}, time);
 }
