@@ -9,14 +9,15 @@
 namespace hc::people {
 namespace {
 
-constexpr std::size_t kTimes = 2;  // around a face, for each time elsewhere
-
 /// Where a person's palm is held up: from above the head to the elbows, an arm's length to each
-/// side.
-cv::Rect reach_of(const cv::Rect2f& face) {
+/// side. Empty if that is not in the image, or more than it.
+cv::Rect reach_of(const cv::Rect2f& face, const cv::Size& image) {
   const float side = 8 * face.width;
-  return cv::Rect2f(face.x + (face.width - side) / 2, face.y + 1.5F * face.height - side / 2, side,
-                    side);
+  const cv::Rect2f reach(face.x + (face.width - side) / 2, face.y + 1.5F * face.height - side / 2,
+                         side, side);
+  const auto most = 2 * static_cast<float>(std::max(image.width, image.height));
+  if (side > most || (reach & cv::Rect2f({}, cv::Size2f(image))).empty()) return {};
+  return reach;
 }
 
 }  // namespace
@@ -34,19 +35,18 @@ void HandSearch::add(const HandTracks::Sighting& found,
 }
 
 cv::Rect HandSearch::next_place(const cv::Size& image, const std::vector<cv::Rect2f>& faces) {
-  const bool is_around_a_face = turn_++ % (kTimes + 1) < kTimes;
-  cv::Rect busiest;
+  const std::size_t turn = turn_++ % 3;
+  cv::Rect next;
   double most = -1;
-  for (std::size_t i = 0; is_around_a_face && i < faces.size(); ++i) {
-    const cv::Rect2f seen = faces[i] & cv::Rect2f({}, cv::Size2f(image));
-    if (seen.empty() || faces[i].width > static_cast<float>(image.width)) continue;
-    const cv::Rect place = reach_of(faces[i]);
-    const double change = changes_.in(place);
-    if (change <= most) continue;
-    most = change;
-    busiest = place;
+  for (std::size_t i = 0; turn < 2 && i < faces.size(); ++i) {
+    const auto place = reach_of(faces[i], image);
+    if (place.empty()) continue;
+    const double due = turn == 0 ? changes_.change(place) : changes_.age(place);
+    if (due <= most) continue;
+    most = due;
+    next = place;
   }
-  if (!busiest.empty()) return busiest;
+  if (!next.empty()) return next;
   // A hand near by is seen as a whole in the whole image alone, and one far away in a part.
   std::vector<cv::Rect> parts{{{}, image}};
   for (const cv::Rect& part : parts_of(image))

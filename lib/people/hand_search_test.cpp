@@ -209,7 +209,10 @@ TEST_F(HandsInAPhotograph, far_from_the_camera_are_found_beside_a_face) {
   }
   EXPECT_EQ(without, 0U);
   EXPECT_GT(with, 0U);
-  EXPECT_NO_THROW(search.look(time += 1s, image, std::vector{cv::Rect2f(-900, -900, 20, 20)}));
+  for (const cv::Rect2f& odd : {cv::Rect2f(-900, -900, 20, 20), cv::Rect2f(0, -1990, 60, 2000),
+                                cv::Rect2f(-1e8F, 0, 1e9F, 1e9F), cv::Rect2f(799, 599, 1, 1)})
+    for (int i = 0; i < 3; ++i)
+      EXPECT_NO_THROW(search.look(time += 100ms, image, std::vector{odd})) << odd;
 }
 
 TEST(Networks, that_do_not_fit_are_refused) {

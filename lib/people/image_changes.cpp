@@ -25,11 +25,13 @@ void ImageChanges::add(const cv::Mat& image) {
   const cv::Mat last = std::exchange(last_, grey);
   if (std::exchange(size_, image.size()) != image.size()) {
     sum_ = cv::Mat::zeros(size, CV_32F);
+    ages_ = cv::Mat::zeros(size, CV_32F);
     return;
   }
   cv::Mat change;
   cv::absdiff(grey, last, change);
   cv::add(sum_, change, sum_, cv::noArray(), CV_32F);
+  cv::add(ages_, 1, ages_);
 }
 
 cv::Rect ImageChanges::coarse(const cv::Rect& part) const {
@@ -39,13 +41,21 @@ cv::Rect ImageChanges::coarse(const cv::Rect& part) const {
   return cv::Rect(begin, end) & cv::Rect({}, sum_.size());
 }
 
-double ImageChanges::in(const cv::Rect& part) const {
+double ImageChanges::change(const cv::Rect& part) const {
   const cv::Rect of = coarse(part);
   return of.empty() ? 0 : cv::mean(sum_(of))[0];
 }
 
+double ImageChanges::age(const cv::Rect& part) const {
+  const cv::Rect of = coarse(part);
+  return of.empty() ? 0 : cv::mean(ages_(of))[0];
+}
+
 void ImageChanges::forget(const cv::Rect& part) {
-  if (const cv::Rect of = coarse(part); !of.empty()) sum_(of) = 0;
+  const cv::Rect of = coarse(part);
+  if (of.empty()) return;
+  sum_(of) = 0;
+  ages_(of) = 0;
 }
 
 }  // namespace hc::people

@@ -6,18 +6,19 @@
 
 namespace hc::people {
 
-/// Sums up by how much the parts of an image change, so that a search looks first where somebody
-/// has moved; a camera that turns changes all of it. Where nothing moves, noise sums up alike, and
-/// the part that was searched longest ago is the next.
+/// Accumulates the change of each part of an image, so that a search can look where somebody has
+/// moved; a camera that turns changes all of it.
 ///
-/// Cost: 0.3 ms for an SVGA image.
+/// Cost: 1 ms for an SVGA image.
 class ImageChanges {
  public:
   /// Takes the next image, (height, width) of u8, RGB or grey. One of another size begins anew.
   void add(const cv::Mat& image);
   /// The mean change in a part since it was searched, of the levels of grey. 0 outside.
   /// @param part  [px]
-  [[nodiscard]] double in(const cv::Rect& part) const;
+  [[nodiscard]] double change(const cv::Rect& part) const;
+  /// How many images have come since a part was searched, on average over it. 0 outside.
+  [[nodiscard]] double age(const cv::Rect& part) const;
   /// Begins anew in a part, since it is searched now.
   void forget(const cv::Rect& part);
 
@@ -25,9 +26,9 @@ class ImageChanges {
   /// A part in the coarse images.
   [[nodiscard]] cv::Rect coarse(const cv::Rect& part) const;
 
-  cv::Size size_;  // of the images
-  cv::Mat last_;   // coarse, grey
-  cv::Mat sum_;    // f32
+  cv::Size size_;       // of the images
+  cv::Mat last_;        // coarse, grey
+  cv::Mat sum_, ages_;  // f32
 };
 
 }  // namespace hc::people

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-
 #include <opencv2/core.hpp>
 
 namespace hc::people {
@@ -23,27 +21,27 @@ TEST(ImageChanges, are_where_something_moves) {
   cv::RNG chance(1);
   ImageChanges changes;
   changes.add(noisy(chance));
-  EXPECT_EQ(changes.in(kLeft), 0) << "one image has no changes";
+  EXPECT_EQ(changes.change(kLeft), 0) << "one image has no changes";
   cv::Mat moved = noisy(chance);
   moved(cv::Rect(100, 300, 60, 90)) = cv::Scalar(200, 180, 160);
   changes.add(moved);
-  EXPECT_GT(changes.in(kLeft), 1.3 * changes.in(kRight));
+  EXPECT_GT(changes.change(kLeft), 1.3 * changes.change(kRight));
   changes.forget(kLeft);
-  EXPECT_EQ(changes.in(kLeft), 0);
-  EXPECT_GT(changes.in(kRight), 0);
+  EXPECT_EQ(changes.change(kLeft), 0);
+  EXPECT_GT(changes.change(kRight), 0);
 }
 
-TEST(ImageChanges, without_motion_are_a_matter_of_time) {
-  cv::RNG chance(1);
+TEST(ImageChanges, tell_how_long_ago_a_part_was_searched) {
   ImageChanges changes;
-  std::array<int, 2> searched{};
-  for (int i = 0; i < 40; ++i) {
-    changes.add(noisy(chance));
-    const bool is_left = changes.in(kLeft) > changes.in(kRight);
-    changes.forget(is_left ? kLeft : kRight);
-    ++searched[is_left ? 0 : 1];
-  }
-  EXPECT_NEAR(searched[0], 20, 2);
+  const cv::Mat image(600, 800, CV_8UC1, cv::Scalar(90));
+  for (int i = 0; i < 5; ++i) changes.add(image);
+  EXPECT_EQ(changes.age(kLeft), 4);
+  changes.forget(kLeft);
+  changes.add(image);
+  EXPECT_EQ(changes.age(kLeft), 1);
+  EXPECT_EQ(changes.age(kRight), 5);
+  EXPECT_NEAR(changes.age({200, 0, 400, 600}), 3, 1e-6);
+  EXPECT_EQ(changes.change(kRight), 0);
 }
 
 TEST(ImageChanges, of_other_images_begin_anew) {
@@ -52,10 +50,11 @@ TEST(ImageChanges, of_other_images_begin_anew) {
   changes.add(noisy(chance));
   changes.add(noisy(chance));
   changes.add(cv::Mat(3, 5, CV_8UC1, cv::Scalar(7)));
-  EXPECT_EQ(changes.in({0, 0, 5, 3}), 0);
+  EXPECT_EQ(changes.change({0, 0, 5, 3}), 0);
   changes.add(cv::Mat(3, 5, CV_8UC1, cv::Scalar(9)));
-  EXPECT_EQ(changes.in({0, 0, 5, 3}), 2);
-  EXPECT_EQ(changes.in({-500, 40, 60, 60}), 0) << "outside";
+  EXPECT_EQ(changes.change({0, 0, 5, 3}), 2);
+  EXPECT_EQ(changes.change({-500, 40, 60, 60}), 0) << "outside";
+  EXPECT_EQ(changes.age({-500, 40, 60, 60}), 0);
 }
 
 }  // namespace

@@ -30,6 +30,12 @@
 
 namespace hc {
 
+/// Rounded to 0.01 of a pixel, or to 0.0001 of another unit: further digits mean nothing.
+inline double rounded(double number, std::string_view unit = "") {
+  const double steps = unit == "px" ? 100 : 10'000;
+  return std::round(number * steps) / steps;
+}
+
 /// Largest magnitude of a number that is read from a row: an int holds it.
 inline constexpr double kMostInRow = 1e9;
 
@@ -45,7 +51,7 @@ std::vector<std::string> column_names() {
   return names;
 }
 
-/// Writes a row without digits that mean nothing: pixels to 0.01, other fractions to 0.0001.
+/// Writes a row, rounded.
 ///
 /// @param[out] to  as many numbers as there are columns.
 template <typename Columns, typename Row>
@@ -53,16 +59,15 @@ void write_row(const Row& row, std::span<double> to) {
   std::size_t next = 0;
   Columns::visit(row, [&](std::string_view, std::string_view unit, const auto& value, auto...) {
     HC_CHECK(next < to.size(), to.size());
-    const double steps = unit == "px" ? 100 : 10'000;  // a unit
     if constexpr (std::is_floating_point_v<std::decay_t<decltype(value)>>)
-      to[next++] = std::round(static_cast<double>(value) * steps) / steps;
+      to[next++] = rounded(static_cast<double>(value), unit);
     else
       to[next++] = static_cast<double>(value);
   });
   HC_CHECK(next == to.size(), to.size());
 }
 
-/// Reads a row. Columns whose values are no members, but computed, are passed over.
+/// Reads a row. Computed columns are checked, and not stored.
 ///
 /// @returns nothing if it has too few numbers, or one that is NaN, infinite, outside its limits, or
 /// no whole number where the member is one (int, bool, enum).
