@@ -24,7 +24,9 @@ void TrackViews::doubt_close(const std::vector<FaceTracks::Expected>& all) {
     views.is_close = std::any_of(all.begin(), all.end(), [&](const FaceTracks::Expected& other) {
       return number != other.number && are_close(box, other.box);
     });
-    if (views.is_close) views.is_sure = false;
+    if (!views.is_close) continue;
+    views.is_sure = false;
+    views.may_be_another = true;
   }
 }
 
@@ -58,7 +60,10 @@ void TrackViews::add(int track, Time time, const Embedding& view) {
   const bool is_apart = !views.last.empty() && distance(view, mean(views.last)) > kApart;
   views.described = views.seen = time;
   if (std::exchange(views.was_apart, is_apart) < is_apart && views.is_sure) return;
-  if (is_apart) views.last.clear();
+  if (is_apart) {
+    views.last.clear();
+    views.may_be_another = true;
+  }
   views.last.push_back(view);
   if (views.last.size() > kViews) views.last.erase(views.last.begin());
   views.is_sure = !views.is_close && views.last.size() >= kLeast;
@@ -68,6 +73,12 @@ const std::vector<Embedding>& TrackViews::views(int track) const {
   static const std::vector<Embedding> kNone;
   const auto found = tracks_.find(track);
   return found == tracks_.end() ? kNone : found->second.last;
+}
+
+bool TrackViews::is_new(int track) const {
+  const auto found = tracks_.find(track);
+  return found == tracks_.end() ||
+         (found->second.last.size() < kLeast && !found->second.may_be_another);
 }
 
 std::optional<Embedding> TrackViews::embedding(int track) const {

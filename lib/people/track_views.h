@@ -43,6 +43,8 @@ class TrackViews {
 
   /// The last views of a track, at most kViews.
   [[nodiscard]] const std::vector<Embedding>& views(int track) const;
+  /// Whether the first views of a track are still collected, of one person as far as is known.
+  [[nodiscard]] bool is_new(int track) const;
   /// Their mean; nothing while it is not sure whose they are.
   [[nodiscard]] std::optional<Embedding> embedding(int track) const;
 
@@ -51,6 +53,7 @@ class TrackViews {
     std::vector<Embedding> last;
     Time seen, described;
     bool is_close = false, is_sure = false, was_apart = false;
+    bool may_be_another = false;  // than at first
   };
   void doubt_close(const std::vector<FaceTracks::Expected>& all);
 

@@ -66,6 +66,25 @@ TEST_F(TrackViewsTest, few_are_not_sure) {
   EXPECT_TRUE(views_.views(7).empty());
 }
 
+TEST_F(TrackViewsTest, are_new_until_there_are_enough_or_they_may_be_anothers) {
+  EXPECT_TRUE(views_.is_new(1)) << "no view yet";
+  look(4, 400, 0, 1);
+  EXPECT_TRUE(views_.is_new(1));
+  look(2, 400, 0, 1);
+  EXPECT_FALSE(views_.is_new(1)) << "there are enough";
+  const auto begin_again = [this] {
+    views_ = {};
+    look(2, 400, 0, 1);
+    ASSERT_TRUE(views_.is_new(1) && views_.is_new(2));
+  };
+  begin_again();
+  look(1, 120, 0, 1);
+  EXPECT_FALSE(views_.is_new(1) || views_.is_new(2)) << "they were close";
+  begin_again();
+  look(2, 400, 1, 0);
+  EXPECT_FALSE(views_.is_new(1) || views_.is_new(2)) << "another person's view";
+}
+
 TEST_F(TrackViewsTest, faces_that_were_close_are_looked_at_again) {
   look(20, 400, 0, 1);
   look(5, 120, 0, 1);

@@ -71,6 +71,7 @@ void Faces::read_folder() {
 
 void Faces::forget() {
   if (!std::exchange(is_idle_, true)) return;
+  for (const Asked& asked : std::exchange(asked_, {})) refuse(asked, "no image comes");
   views_ = {};
   seen_.clear();
   right_image_ = {};
@@ -160,36 +161,51 @@ void Faces::ask(std::string_view text) {
   if (!named) throw hc::BadMessage("it is not \"TRACK NAME\"");
   if (!hc::people::is_person_name(named->name))
     throw hc::BadMessage("it has no name of 1 to 64 bytes");
-  std::erase_if(asked_, [&](const Asked& other) { return other.track == named->number; });
-  if (asked_.size() == kMostAsked) asked_.erase(asked_.begin());
-  asked_.push_back({named->number, std::string(named->name), module_.monotonic() + kPatience});
-  learn_asked();
+  const Asked asked{named->number, std::string(named->name), module_.monotonic() + kPatience};
+  for (const Asked& other : asked_)
+    if (other.track == asked.track && other.name == asked.name) return;  // it waits already
+  if (asked_.size() == kMostAsked)
+    refuse(asked, "too many names wait: try again");
+  else if (!learn(asked))
+    asked_.push_back(asked);
 }
 
 void Faces::learn_asked() {
   std::erase_if(asked_, [this](const Asked& asked) { return learn(asked); });
 }
 
+void Faces::refuse(const Asked& asked, const std::string& why) {
+  module_.log(hc::format("{} was not learned: {}", asked.name, why), hc::Level::Warning);
+}
+
 bool Faces::learn(const Asked& asked) {
   const auto& [track, name, until] = asked;
+  if (!views_.embedding(track) && networks_->search.follows(track, last_) && views_.is_new(track) &&
+      module_.monotonic() < until)
+    return false;
   // A person asked for it, so each answer is logged.
-  const auto refuse = [&, &who = name](const std::string& why) {
-    module_.log(hc::format("{} was not learned: {}", who, why), hc::Level::Warning);
+  if (const auto why = reason_against(asked)) {
+    refuse(asked, *why);
     return true;
-  };
-  if (!networks_->search.follows(track, last_))
-    return refuse(hc::format("no face has track {} now: try again", track));
-  if (!views_.embedding(track)) {
-    if (module_.monotonic() < until) return false;
-    return refuse("it is not certain whose face it is: try again, away from other faces");
   }
-  for (const auto& [known, number] : folder_->gallery().names())
-    if (number == person(track) && known != name)
-      return refuse(hc::format("it is {} already; rename the file {}/{}", known, *people_, known));
   const auto& views = views_.views(track);
-  if (const auto learned = folder_->learn(name, views); !learned)
-    return refuse(learned.error().detail);
+  if (const auto learned = folder_->learn(name, views); !learned) {
+    refuse(asked, learned.error().detail);
+    return true;
+  }
   module_.log(hc::format("learned {} from {} views", name, views.size()));
   read_folder();
   return true;
+}
+
+std::optional<std::string> Faces::reason_against(const Asked& asked) const {
+  const auto& [track, name, until] = asked;
+  if (!networks_->search.follows(track, last_))
+    return hc::format("no face has track {} now: try again", track);
+  if (!views_.embedding(track))
+    return "it is not certain whose face it is: try again, away from other faces";
+  for (const auto& [known, number] : folder_->gallery().names())
+    if (number == person(track) && known != name)
+      return hc::format("it is {} already; rename the file {}/{}", known, *people_, known);
+  return std::nullopt;
 }

@@ -49,8 +49,11 @@ class Faces {
   /// Takes a request for a name, which waits until it is certain whose face the track shows.
   void ask(std::string_view text);
   void learn_asked();
-  /// @returns whether the request is answered, by yes or no.
+  void refuse(const Asked& asked, const std::string& why);
+  /// @returns whether the request has been answered; otherwise it waits.
   bool learn(const Asked& asked);
+  /// Why a track's person does not get this name; nothing: they do.
+  [[nodiscard]] std::optional<std::string> reason_against(const Asked& asked) const;
   void read_folder();
   /// Forgets everybody where no image has come since the last call.
   void forget();
