@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <mutex>
 
-#include <opencv2/dnn/layer.details.hpp>
-
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "nets/depthwise.cpp"
@@ -18,10 +16,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// to[i] = bias + Σ weights[k] taps[k][i], within limits; up to four vectors more than `size`.
 void add_taps(const float* const* taps, const float* weights, std::size_t count, float bias,
-              float least, float most, std::size_t size, float* to) {
+              float min, float max, std::size_t size, float* to) {
   const hn::ScalableTag<float> d;
+  static_assert(hn::MaxLanes(d) <= 64 / sizeof(float));
   const std::size_t lanes = hn::Lanes(d);
-  const auto low = hn::Set(d, least), high = hn::Set(d, most);
+  const auto low = hn::Set(d, min), high = hn::Set(d, max);
   for (std::size_t i = 0; i < size; i += 4 * lanes) {
     auto a = hn::Set(d, bias), b = a, c = a, e = a;
     for (std::size_t k = 0; k < count; ++k) {
@@ -49,7 +48,8 @@ namespace {
 
 HWY_EXPORT(add_taps);
 
-constexpr std::size_t kBeyond = 4 * 16;  // read and written beyond the end, of the widest vectors
+// Read and written beyond the end: four of the widest vectors.
+constexpr std::size_t kBeyond = 4 * 64 / sizeof(float);
 
 std::size_t area(const cv::Size& size) {
   return static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
@@ -68,8 +68,8 @@ class DepthwiseLayer final : public cv::dnn::Layer {
                        whole("pad_b"),    whole("pad_l"),    whole("pad_r")};
     options_.stride_down = whole("stride_h");
     options_.stride_right = whole("stride_w");
-    options_.least = params.get<float>("least");
-    options_.most = params.get<float>("most");
+    options_.min = params.get<float>("min");
+    options_.max = params.get<float>("max");
     to_ = {whole("width"), whole("height")};
   }
   static cv::Ptr<Layer> create(cv::dnn::LayerParams& params) {
@@ -109,33 +109,42 @@ class DepthwiseLayer final : public cv::dnn::Layer {
 
 PlaneConvolution::PlaneConvolution(const Options& options, const cv::Size& from, const cv::Size& to)
     : options_(options), from_(from), to_(to) {
-  const auto& [window, down, right, least, most] = options_;
+  const auto& [window, down, right, min, max] = options_;
   phase_ = {divided_up(from.width + window.left + window.right, right),
             divided_up(from.height + window.top + window.bottom, down)};
-  const std::size_t count = static_cast<std::size_t>(down) * static_cast<std::size_t>(right);
-  phases_.assign(count * area(phase_) + area({window.width, window.height}) + kBeyond, 0);
+  phases_down_ = std::min(down, window.height);
+  phases_right_ = std::min(right, window.width);
+  const auto count = static_cast<std::size_t>(phases_down_ * phases_right_);
+  phases_.assign(count * area(phase_) + static_cast<std::size_t>(window.width) + kBeyond, 0);
   sums_.resize(area({phase_.width, to.height}) + kBeyond);
   for (int v = 0; v < window.height; ++v)
-    for (int u = 0; u < window.width; ++u) {
-      const int phase = v % down * right + u % right;
-      taps_.push_back(phases_.data() + static_cast<std::size_t>(phase) * area(phase_) +
-                      v / down * phase_.width + u / right);
-    }
+    for (int u = 0; u < window.width; ++u)
+      taps_.push_back(phases_.data() + phase_at(v % down, u % right) + offset(v / down) +
+                      u / right);
+}
+
+std::ptrdiff_t PlaneConvolution::phase_at(int row, int column) const {
+  return (std::ptrdiff_t{row} * phases_right_ + column) * static_cast<std::ptrdiff_t>(area(phase_));
+}
+
+std::ptrdiff_t PlaneConvolution::offset(int row) const {
+  return std::ptrdiff_t{row} * phase_.width;
 }
 
 void PlaneConvolution::fill_phases(const float* from) {
-  const auto& [window, down, right, least, most] = options_;
+  const auto& [window, down, right, min, max] = options_;
   for (int y = 0; y < from_.height; ++y, from += from_.width) {
     const int row = y + window.top;
-    float* phases = phases_.data() + static_cast<std::size_t>(row % down * right) * area(phase_) +
-                    row / down * phase_.width;
+    if (row % down >= phases_down_) continue;
+    float* phases = phases_.data() + phase_at(row % down, 0) + offset(row / down);
     if (right == 1) {
       std::copy_n(from, from_.width, phases + window.left);
       continue;
     }
     for (int first = 0; first < std::min(right, from_.width); ++first) {
       const int column = first + window.left;
-      float* to = phases + static_cast<std::size_t>(column % right) * area(phase_) + column / right;
+      if (column % right >= phases_right_) continue;
+      float* to = phases + phase_at(0, column % right) + column / right;
       for (int x = first; x < from_.width; x += right) *to++ = from[x];
     }
   }
@@ -144,18 +153,18 @@ void PlaneConvolution::fill_phases(const float* from) {
 void PlaneConvolution::convolve(const float* from, std::span<const float> weights, float bias,
                                 float* to) {
   fill_phases(from);
-  // Over all rows at once: between them sums come out that mean nothing.
+  // All rows at once; sums in the padding columns are discarded.
   const std::size_t size = area({phase_.width, to_.height});
   HWY_DYNAMIC_DISPATCH(add_taps)
-  (taps_.data(), weights.data(), taps_.size(), bias, options_.least, options_.most, size,
+  (taps_.data(), weights.data(), taps_.size(), bias, options_.min, options_.max, size,
    sums_.data());
   for (int y = 0; y < to_.height; ++y)
-    std::copy_n(sums_.data() + y * phase_.width, to_.width, to + y * to_.width);
+    std::copy_n(sums_.data() + offset(y), to_.width, to + std::ptrdiff_t{y} * to_.width);
 }
 
 cv::dnn::LayerParams depthwise_params(const PlaneConvolution::Options& options,
                                       const cv::Size& to) {
-  const auto& [window, down, right, least, most] = options;
+  const auto& [window, down, right, min, max] = options;
   cv::dnn::LayerParams params;
   params.set("kernel_h", window.height);
   params.set("kernel_w", window.width);
@@ -165,8 +174,8 @@ cv::dnn::LayerParams depthwise_params(const PlaneConvolution::Options& options,
   params.set("pad_r", window.right);
   params.set("stride_h", down);
   params.set("stride_w", right);
-  params.set("least", least);
-  params.set("most", most);
+  params.set("min", min);
+  params.set("max", max);
   params.set("height", to.height);
   params.set("width", to.width);
   return params;

@@ -15,14 +15,14 @@
 namespace hc::nets {
 
 /// The depthwise convolution of one channel after another. The results are the same, bit by bit,
-/// on every processor. Pure.
+/// on every processor, of finite numbers. Pure.
 class PlaneConvolution {
  public:
   struct Options {
     Window window;
     int stride_down = 1, stride_right = 1;
-    float least = -std::numeric_limits<float>::infinity();  ///< of the results, as by ReLU6
-    float most = std::numeric_limits<float>::infinity();
+    float min = -std::numeric_limits<float>::infinity();  ///< of the results, as by ReLU6
+    float max = std::numeric_limits<float>::infinity();
   };
 
   PlaneConvolution(const Options& options, const cv::Size& from, const cv::Size& to);
@@ -34,21 +34,25 @@ class PlaneConvolution {
 
  private:
   void fill_phases(const float* from);
+  /// Where the phase of a row and column begins, and a row in it.
+  [[nodiscard]] std::ptrdiff_t phase_at(int row, int column) const;
+  [[nodiscard]] std::ptrdiff_t offset(int row) const;
 
   Options options_;
   cv::Size from_, to_;
-  // The image with its padding, apart by the remainders of row and column to the strides, so that
-  // neighbours in a phase are neighbours in the result.
+  // The image with its padding, split into its polyphase components: rows and columns modulo the
+  // strides, as far as the window has them. Neighbours in a phase are neighbours in the result.
+  int phases_down_ = 1, phases_right_ = 1;
   cv::Size phase_;
   std::vector<float> phases_, sums_;
-  std::vector<const float*> taps_;  // where in the phases each place of the window begins
+  std::vector<const float*> taps_;  // the first input of each place of the window
 };
 
-/// The type of OpenCV's layer that has such weights (channels, 1, height, width) and bias as its
-/// blobs; depthwise_params() makes its parameters.
+/// The type of OpenCV's layer whose blobs are weights (channels, 1, height, width) and bias;
+/// depthwise_params() makes its parameters.
 inline constexpr const char* kDepthwise = "HypercolumnDepthwise";
 cv::dnn::LayerParams depthwise_params(const PlaneConvolution::Options& options, const cv::Size& to);
-/// Makes OpenCV know the type. May be called again.
+/// Registers the type with OpenCV. May be called again.
 void register_depthwise();
 
 }  // namespace hc::nets

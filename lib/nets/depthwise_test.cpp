@@ -39,7 +39,7 @@ std::vector<float> plain(const Options& options, const cv::Size& from, const cv:
               is_inside ? image[static_cast<std::size_t>(at.y * from.width + at.x)] : 0;
           sum += weights[static_cast<std::size_t>(v * window.width + u)] * pixel;
         }
-      result.push_back(std::clamp(sum, options.least, options.most));
+      result.push_back(std::clamp(sum, options.min, options.max));
     }
   return result;
 }
@@ -53,11 +53,13 @@ TEST_P(DepthwiseOf, is_the_plain_one_bit_by_bit) {
     auto& window = options.window;
     window = {rng.uniform(1, 8), rng.uniform(1, 8), rng.uniform(0, 4),
               rng.uniform(0, 4), rng.uniform(0, 4), rng.uniform(0, 4)};
-    options.stride_down = rng.uniform(1, 4);
-    options.stride_right = rng.uniform(1, 4);
-    if (i % 3 == 0) options.least = 0;
-    if (i % 6 == 0) options.most = 6;
-    const cv::Size from(rng.uniform(8, 60), rng.uniform(8, 40));
+    options.stride_down = i % 20 == 0 ? 64 : rng.uniform(1, 5);
+    options.stride_right = i % 20 == 1 ? 64 : rng.uniform(1, 5);
+    if (i % 3 == 0) options.min = 0;
+    if (i % 6 == 0) options.max = 6;
+    const cv::Size least(std::max(1, window.width - window.left - window.right),
+                         std::max(1, window.height - window.top - window.bottom));
+    const cv::Size from = least + cv::Size(rng.uniform(0, 60), i % 5 == 0 ? 0 : rng.uniform(0, 40));
     const cv::Size to = size_of_result(options, from);
     std::vector<float> image(static_cast<std::size_t>(from.area())),
         weights(static_cast<std::size_t>(window.height * window.width)),

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <new>
 #include <optional>
 #include <span>
 #include <utility>
@@ -113,9 +114,10 @@ class Builder {
 
   void add(const Layer& layer) {
     int made = make(layer);
-    const bool is_activated = layer.kind == Kind::DepthwiseConvolution;  // already
-    if (!is_activated && layer.activation == Kind::Relu) made = put("ReLU", made);
-    if (!is_activated && layer.activation == Kind::Relu6) made = put("ReLU6", made);
+    if (layer.kind != Kind::DepthwiseConvolution) {  // it has its activation itself
+      if (layer.activation == Kind::Relu) made = put("ReLU", made);
+      if (layer.activation == Kind::Relu6) made = put("ReLU6", made);
+    }
     places_[static_cast<std::size_t>(layer.output)] = made;
   }
 
@@ -202,8 +204,8 @@ class Builder {
     const Tensor& of = tensor(layer.inputs[1]);
     PlaneConvolution::Options options{window_of(layer, shape, of.shape), layer.stride_down,
                                       layer.stride_right};
-    if (layer.activation) options.least = 0;
-    if (layer.activation == Kind::Relu6) options.most = 6;
+    if (layer.activation) options.min = 0;
+    if (layer.activation == Kind::Relu6) options.max = 6;
     auto params = depthwise_params(options, {to[2], to[1]});
     const std::vector<float> none(static_cast<std::size_t>(shape[3]));
     params.blobs = {weights(of, {3, 0, 1, 2}),
@@ -324,6 +326,8 @@ Result<std::unique_ptr<Network>> Network::make(const Layers& layers) {
     auto network = std::make_unique<OpencvNetwork>(layers);
     HC_TRY(network->try_out());
     return std::unique_ptr<Network>(std::move(network));
+  } catch (const std::bad_alloc&) {
+    return Error{Code::TooLarge, "there is not enough memory for it"};
   } catch (const cv::Exception& failed) {
     return Error{Code::Unsupported, "OpenCV cannot compute it: " + failed.err};
   }

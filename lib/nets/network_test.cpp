@@ -144,6 +144,34 @@ INSTANTIATE_TEST_SUITE_P(Network, Windows,
                                            WindowCase{8, 1, 1, true}, WindowCase{8, 2, 2, false},
                                            WindowCase{9, 3, 2, false}, WindowCase{7, 7, 1, false}));
 
+TEST_F(OneLayer, a_depthwise_convolution_adds_its_bias_and_is_activated) {
+  for (const auto activation : {std::optional<Kind>(), {Kind::Relu}, {Kind::Relu6}}) {
+    layers = {};
+    const Shape input{1, 4, 5, 2};
+    const int weights = constant({1, 1, 1, 2}, 1), bias = add({"bias", {2}, {-0.5F, 5.8F}, {}});
+    Layer convolution{Kind::DepthwiseConvolution, {weights, bias}};
+    convolution.activation = activation;
+    const auto result = run(input, convolution, input);
+    ASSERT_TRUE(result) << result.error().text();
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      float expected = image[i] * numbers(weights)[i % 2] + numbers(bias)[i % 2];
+      if (activation) expected = std::max(expected, 0.F);
+      if (activation == Kind::Relu6) expected = std::min(expected, 6.F);
+      EXPECT_NEAR((*result)[i], expected, 1e-6) << i;
+    }
+  }
+}
+
+TEST_F(OneLayer, one_whose_padding_is_too_large_is_refused) {
+  const int weights = constant({1, 1, 64, 1}, 1);
+  Layer convolution{Kind::DepthwiseConvolution, {weights}};
+  convolution.is_padded = true;
+  constexpr int kHigh = 1 << 21;
+  const auto refused = run({1, kHigh, 1, 1}, convolution, {1, kHigh, 1, 1});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().text(), "TooLarge: more than 67108864 numbers with the padding");
+}
+
 TEST_F(OneLayer, a_pool_takes_the_largest) {
   Layer pool{Kind::MaxPool, {}};
   pool.window_height = pool.window_width = pool.stride_down = pool.stride_right = 2;

@@ -208,6 +208,9 @@ class Check {
     const int down = from[1] + window.top + window.bottom - window.height;
     const int right = from[2] + window.left + window.right - window.width;
     if (down < 0 || right < 0) return malformed("a window larger than the image");
+    if (1LL * (down + window.height) * (right + window.width) * from[3] > kMostNumbers)
+      return Error{Code::TooLarge,
+                   hc::format("more than {} numbers with the padding", kMostNumbers)};
     return Shape{down / layer_->stride_down + 1, right / layer_->stride_right + 1};
   }
 
@@ -221,7 +224,10 @@ class Check {
       return malformed("with weights of " + text(of) + " for " + text(shape(0)));
     HC_TRY(numbers(1, size_of(of)));
     if (layer_->inputs.size() > 2) HC_TRY(numbers(2, out));
-    HC_TRY(multiply(size_of(of) * made[0] * made[1]));
+    // Of a depthwise one, sums are computed in the padding, too.
+    const Window window = window_of(*layer_, shape(0), of);
+    const int padding = is_deep ? (window.left + window.right) / layer_->stride_right + 1 : 0;
+    HC_TRY(multiply(size_of(of) * made[0] * (made[1] + padding)));
     return is({1, made[0], made[1], out});
   }
 
