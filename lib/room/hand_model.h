@@ -13,8 +13,6 @@
 
 namespace hc::room {
 
-inline constexpr int kIndexRoot = 5, kIndexTip = 8;
-
 /// The joints [m]. @param side  kLeft or kRight.
 const std::array<Eigen::Vector3d, kHandJoints>& hand_joints(int side, Sign sign);
 

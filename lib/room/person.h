@@ -18,6 +18,7 @@ inline constexpr int kSigns = 6;
 /// Joints of a hand: the wrist, then of the thumb, index, middle, ring and little finger four each,
 /// from its root to its tip; as MediaPipe has them.
 inline constexpr int kHandJoints = 21;
+inline constexpr int kIndexRoot = 5, kIndexTip = 8, kFingerJoints = 4;
 
 inline constexpr int kLeft = 0, kRight = 1;  ///< the person's own
 

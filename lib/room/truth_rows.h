@@ -6,6 +6,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -81,23 +83,27 @@ inline constexpr std::int32_t kPointedColumns = 4;
 
 /// A hand, of its rows of hand_joints.
 struct TrueHand {
-  int person = 0, side = 0;                         ///< as in JointRow
-  std::array<Eigen::Vector3d, kHandJoints> joints;  ///< in the world [m]
-  std::array<Eigen::Vector2d, kHandJoints> pixels;
+  int person = 0, side = 0;                           ///< as in JointRow
+  std::array<Eigen::Vector3d, kHandJoints> joints{};  ///< in the world [m]
+  std::array<Eigen::Vector2d, kHandJoints> pixels{};
 };
 
-/// The hands in the rows of hand_joints, a matrix view. Rows that no joint has are left out.
+/// The hands that have a row for each joint in a table of hand_joints, a matrix view; by persons.
+/// Invalid rows are skipped.
 template <typename Rows>
 std::vector<TrueHand> true_hands(const Rows& rows) {
+  std::map<std::pair<int, int>, std::map<int, JointRow>> found;
+  for (std::size_t i = 0; i < rows.height(); ++i)
+    if (const auto joint = read_row<JointColumns, JointRow>(rows.row(i)))
+      found[{joint->person, joint->side}][joint->joint] = *joint;
   std::vector<TrueHand> hands;
-  for (std::size_t i = 0; i < rows.height(); ++i) {
-    const auto joint = read_row<JointColumns, JointRow>(rows.row(i));
-    if (!joint) continue;
-    if (hands.empty() || hands.back().person != joint->person || hands.back().side != joint->side)
-      hands.push_back({joint->person, joint->side, {}, {}});
-    const auto at = static_cast<std::size_t>(joint->joint);
-    hands.back().joints[at] = joint->p_world;
-    hands.back().pixels[at] = joint->pixel;
+  for (const auto& [whose, joints] : found) {
+    if (joints.size() != kHandJoints) continue;
+    TrueHand& hand = hands.emplace_back(TrueHand{whose.first, whose.second});
+    for (const auto& [number, joint] : joints) {
+      hand.joints[static_cast<std::size_t>(number)] = joint.p_world;
+      hand.pixels[static_cast<std::size_t>(number)] = joint.pixel;
+    }
   }
   return hands;
 }

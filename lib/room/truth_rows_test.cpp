@@ -27,22 +27,32 @@ TEST(TruthRows, have_as_many_columns_as_they_say) {
   EXPECT_EQ((column_names<PointedColumns, PointedRow>().size()), std::size_t{kPointedColumns});
 }
 
-TEST(TruthRows, of_a_hand_are_put_together) {
-  const auto hands = true_hands(Rows{{joint(1, kLeft, 0, 1), joint(1, kLeft, 20, 2),
-                                      joint(1, kRight, 3, 3), joint(2, kRight, 3, 4)}});
-  ASSERT_EQ(hands.size(), 3U);
-  EXPECT_EQ(hands[0].joints[20].x(), 2);
-  EXPECT_EQ(hands[0].pixels[0].x(), 10);
-  EXPECT_EQ(hands[1].side, kRight);
-  EXPECT_EQ(hands[2].person, 2);
-  EXPECT_EQ(hands[2].joints[3].x(), 4);
+/// All joints of a hand, the last one first.
+std::vector<std::vector<double>> hand(int person, int side) {
+  std::vector<std::vector<double>> rows;
+  for (int i = kHandJoints - 1; i >= 0; --i) rows.push_back(joint(person, side, i, i));
+  return rows;
 }
 
-TEST(TruthRows, that_no_joint_has_are_left_out) {
-  auto high = joint(1, kLeft, 20, 1), nan = joint(1, kLeft, 0, 1);
-  high[2] = 21;
-  nan[3] = std::nan("");
-  EXPECT_TRUE(true_hands(Rows{{high, nan, {}}}).empty());
+TEST(TruthRows, of_a_hand_are_put_together) {
+  Rows rows{hand(2, kRight)};
+  const auto left = hand(1, kLeft);
+  rows.all.insert(rows.all.begin() + 7, left.begin(), left.end());
+  const auto hands = true_hands(rows);
+  ASSERT_EQ(hands.size(), 2U);
+  EXPECT_EQ(hands[0].person, 1);
+  EXPECT_EQ(hands[1].side, kRight);
+  EXPECT_EQ(hands[1].joints[20].x(), 20);
+  EXPECT_EQ(hands[1].pixels[3].x(), 30);
+}
+
+TEST(TruthRows, that_are_invalid_are_skipped_and_a_hand_with_them) {
+  for (const auto& [column, wrong] : {std::pair(2U, 21.0), {3U, std::nan("")}, {1U, 2.0}}) {
+    Rows rows{hand(1, kLeft)};
+    rows.all[4][column] = wrong;
+    EXPECT_TRUE(true_hands(rows).empty()) << column;
+  }
+  EXPECT_TRUE(true_hands(Rows{{{}, {1, 2}}}).empty());
 }
 
 }  // namespace

@@ -6,11 +6,8 @@
 
 #include <hc/base/format.h>
 #include <hc/base/median.h>
-#include <people/hand.h>
 
 namespace {
-
-using hc::people::Hand;
 
 constexpr double kStraight = 0.95;  // a finger's length, of that of its bones
 constexpr double kUp = 0.5;         // cosine of a finger's angle with the vertical
@@ -19,8 +16,9 @@ constexpr double kPause = 0.5;      // without a palm, until a stop may be clear
 }  // namespace
 
 bool is_palm_up(const hc::room::TrueHand& hand) {
-  for (const std::size_t knuckle : {Hand::Index, Hand::Middle, Hand::Ring, Hand::Little}) {
-    const auto* joints = &hand.joints[knuckle];
+  for (std::size_t root = hc::room::kIndexRoot; root < hand.joints.size();
+       root += hc::room::kFingerJoints) {
+    const auto* joints = &hand.joints[root];
     double bones = 0;
     for (std::size_t i = 0; i < 3; ++i) bones += (joints[i + 1] - joints[i]).norm();
     const Eigen::Vector3d finger = joints[3] - joints[0];
@@ -48,17 +46,28 @@ void StopScore::see(double time, const std::vector<ShownHand>& hands) {
 
 void StopScore::see_palm(double time, const ShownHand& shown) {
   const std::pair whose(shown.hand.person, shown.hand.side);
-  const auto& wrist = shown.hand.joints[Hand::Wrist];
+  const auto& wrist = shown.hand.joints[0];
   const auto known = std::ranges::find_if(
       palms_, [&](const Palm& palm) { return palm.is_up && palm.whose == whose; });
   if (known != palms_.end()) {
-    if ((wrist - known->at).norm() <= kStill && known->is_in_image == shown.is_in_image) {
+    if ((wrist - known->at).norm() <= kStill) {
       known->seen = time;
+      known->see_border(time, shown.is_in_image);
       return;
     }
     known->is_up = false;
   }
   palms_.push_back({whose, time, time, wrist, shown.is_in_image});
+}
+
+void StopScore::Palm::see_border(double time, bool is_whole) {
+  if (is_whole && is_in_image) return;
+  is_in_image = false;
+  if (!is_whole) return whole_since.reset();
+  if (!whole_since) whole_since = time;
+  if (time - *whole_since < kHeld) return;
+  is_in_image = true;
+  begin = *std::exchange(whole_since, std::nullopt);
 }
 
 void StopScore::drop_ended(double time) {

@@ -57,12 +57,15 @@ class StopScore {
 
  private:
   struct Palm {
-    std::pair<int, int> whose;   // person, and side
-    double begin = 0, seen = 0;  // [s]
-    Eigen::Vector3d at;          // its wrist [m]
-    bool is_in_image = true;
-    bool is_up = true;  // in the last image
+    std::pair<int, int> whose;            // person, and side
+    double begin = 0, seen = 0;           // [s]
+    Eigen::Vector3d at;                   // its wrist [m]
+    bool is_in_image = true;              // whole; once it is not, for kHeld at least
+    std::optional<double> whole_since{};  // of one that was not [s]
+    bool is_up = true;                    // in the last image
     bool has_stopped = false;
+    /// Whether it is whole in an image: it begins anew when it has been for a while.
+    void see_border(double time, bool is_whole);
     [[nodiscard]] bool is_held() const { return seen - begin >= kHeld; }
     [[nodiscard]] bool must_stop() const { return is_in_image && seen - begin >= kMustStop; }
   };

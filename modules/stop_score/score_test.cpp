@@ -161,6 +161,19 @@ TEST(StopScore, a_palm_that_comes_into_the_image_counts_from_then) {
   EXPECT_EQ(score.numbers()[3], 1);
 }
 
+TEST(StopScore, a_palm_that_trembles_at_the_border_may_stop_or_not) {
+  StopScore score;
+  for (int i = 0; i < 60; ++i) {
+    auto palm = straight_hand(0);
+    palm.is_in_image = i % 4 != 0;
+    score.see(i * kFrame, {palm});
+    if (i == 20) score.stop(i * kFrame);
+  }
+  EXPECT_EQ(score.numbers()[3], 0);
+  EXPECT_EQ(score.numbers()[4], 0);
+  EXPECT_EQ(score.numbers()[5], 1);
+}
+
 TEST(StopScore, a_stop_is_cleared_a_while_after_the_palm) {
   StopScore score;
   for (int i = 0; i <= 20; ++i) score.see(i * kFrame, {straight_hand(0)});
