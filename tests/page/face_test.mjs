@@ -22,7 +22,7 @@ describe("a face before the camera", { timeout: 10 * watchdog }, () => {
     folder = mkdtempSync(join(tmpdir(), "hc-face-"));
     process.env.HC_LEFT_EYE = join(folder, "half.jpg");
     writeFileSync(process.env.HC_LEFT_EYE, await halved(photograph));
-    graph = new Graph("people.toml", ["--set", "camera.rate=5"]); // beside other tests
+    graph = new Graph("people.toml", ["--set", "camera.rate=5"]); // it costs less
   });
 
   after(async () => {

@@ -194,11 +194,8 @@ class People(Head):
         self.assertEqual(set(os.listdir(self.path("people"))), {"1", "2"})
 
     def test_stops_are_counted(self):
-        line = self.score("stop", "stop_score.duration=12")
-        self.assertRegex(
-            line,
-            r"^(missed .* palms, .*; )?\d+ stops without a palm, \d+ by one at the border, in 12 s$",
-        )
+        line = self.score("stop", "stop_score.duration=12", "head_eyes.people=1")
+        self.assertRegex(line, r"^missed \d+ of [1-9]\d* palms, .*; 0 stops without a palm, ")
 
 
 class Read(Head):
