@@ -5,15 +5,10 @@
 
 #include <frames/messages.h>
 #include <hc/base/format.h>
+#include <hc/base/median.h>
 #include <vision/messages.h>
 
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The share of an object's pixels whose visibility is right.
 ///
@@ -113,7 +108,7 @@ void AugmentScore::compare_mask(const Eigen::Isometry3d& T_world_left, const cv:
 }
 
 void AugmentScore::finish() {
-  const double error = median(samples_.errors), share = median(samples_.right);
+  const double error = hc::median(samples_.errors), share = hc::median(samples_.right);
   const double worst = *std::ranges::max_element(samples_.errors);
   const double least = *std::ranges::min_element(samples_.right);
   result_.send(
