@@ -18,7 +18,17 @@
 
 namespace hc::room {
 
-/// A person, as an eye sees them. The last three are 0 for one who is behind the eye.
+void place_columns(auto& p_world, auto& column) {
+  column("x", "m", p_world.x());
+  column("y", "m", p_world.y());
+  column("z", "m", p_world.z());
+}
+void pixel_columns(auto& pixel, auto& column) {
+  column("u", "px", pixel.x());
+  column("v", "px", pixel.y());
+}
+
+/// A person, as an eye sees them. The last three are 0 behind the eye.
 struct PersonRow {
   int person = 0;                                     ///< from 1
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< between the eyes [m]
@@ -31,13 +41,10 @@ struct PersonRow {
 struct PersonColumns {
   static void visit(auto& row, auto&& column) {
     column("person", "", row.person, 1.0);
-    column("x", "m", row.p_world.x());
-    column("y", "m", row.p_world.y());
-    column("z", "m", row.p_world.z());
+    place_columns(row.p_world, column);
     column("yaw", "rad", row.yaw);
     column("speaks", "", row.speaks, 0.0, 1.0);
-    column("u", "px", row.pixel.x());
-    column("v", "px", row.pixel.y());
+    pixel_columns(row.pixel, column);
     column("width", "px", row.width, 0.0);
     column("visible", "", row.visible, 0.0, 1.0);
   }
@@ -57,11 +64,8 @@ struct JointColumns {
     column("person", "", row.person, 1.0);
     column("hand", "", row.side, 0.0, 1.0);
     column("joint", "", row.joint, 0.0, kHandJoints - 1.0);
-    column("x", "m", row.p_world.x());
-    column("y", "m", row.p_world.y());
-    column("z", "m", row.p_world.z());
-    column("u", "px", row.pixel.x());
-    column("v", "px", row.pixel.y());
+    place_columns(row.p_world, column);
+    pixel_columns(row.pixel, column);
   }
 };
 inline constexpr std::int32_t kJointColumns = 8;
@@ -74,9 +78,7 @@ struct PointedRow {
 struct PointedColumns {
   static void visit(auto& row, auto&& column) {
     column("person", "", row.person, 1.0);
-    column("x", "m", row.p_world.x());
-    column("y", "m", row.p_world.y());
-    column("z", "m", row.p_world.z());
+    place_columns(row.p_world, column);
   }
 };
 inline constexpr std::int32_t kPointedColumns = 4;

@@ -40,7 +40,7 @@ export class SeatView {
   private readonly pairing = new Pairing<Picture>(close);
   /** When each eye's last image came, or its stream was opened. */
   private readonly came: Record<Side, number> = { left: 0, right: 0 };
-  /** What was said last of images that do not come. */
+  /** The last text about missing images. */
   private silence = "";
   /** When images were shown last, or their streams were opened. */
   private shown = 0;
