@@ -70,6 +70,16 @@ TEST(FaceSearch, finds_them_in_black_and_white) {
   EXPECT_EQ(search().look(kStart, grey).size(), 5U);
 }
 
+TEST(FaceSearch, finds_hardly_a_face_that_is_upside_down) {
+  std::size_t found = 0;
+  for (int i = 0; i < 6; ++i) {
+    cv::Mat turned;
+    cv::rotate(photograph(i + 1), turned, cv::ROTATE_180);
+    found += search().look(kStart, turned).size();
+  }
+  EXPECT_LE(found, 1U) << "of 22";
+}
+
 TEST(FaceSearch, finds_nobody_where_there_is_nobody) {
   cv::Mat noise(600, 800, CV_8UC3);
   cv::RNG random(7);
