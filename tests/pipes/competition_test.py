@@ -209,8 +209,7 @@ class Stopped(Graphs):
 
         workspace = self.module(wait_focus(self.LOOK), "workspace")["pid"]
         say(1)
-        stopped = {"workspace": ["source 12"]}
-        self.assertEqual(wait_focus(None)["stopped"], stopped)
+        self.assertEqual(wait_focus(None)["stopped_by"], {"workspace": ["source 12"]})
         self.assertIn(", stopped by source 12", self.shell("hc ps"))
         self.assertIn(", stopped", self.shell("hc top --once --of " + name))
         os.kill(workspace, signal.SIGKILL)
@@ -218,9 +217,9 @@ class Stopped(Graphs):
         state = self.state(
             messages, lambda state: self.module(state, "workspace")["pid"] not in (0, workspace)
         )
-        self.assertEqual((state["stopped"], state["focus"]["workspace"]), (stopped, None))
+        self.assertEqual((state["stopped"], state["focus"]["workspace"]), (["workspace"], None))
         say(2)
-        self.assertEqual(wait_focus(self.LOOK)["stopped"], {})
+        self.assertEqual(wait_focus(self.LOOK)["stopped"], [])
         self.stop(process)
 
 

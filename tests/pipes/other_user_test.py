@@ -131,7 +131,7 @@ class OtherUser(Graphs):
             self.assertEqual(link[source]["messages"], 0, source)
         # The page's server says three times that no page is open, and no more.
         self.assertLessEqual(link["web.stop"]["messages"], 3)
-        self.assertEqual(after["stopped"], {})
+        self.assertEqual(after["stopped"], [])
         restarts = {each["name"]: each["restarts"] for each in after["modules"]}
         self.assertEqual({name for name, count in restarts.items() if count}, set(KILLED))
         _, err = self.stop(head)

@@ -173,7 +173,9 @@ std::string GraphState::stopped_in_words() const {
 std::string to_json(const GraphState& state) {
   Json json = Json::object();
   visit_graph(state, FieldWriter{json});
-  json["stopped"] = state.stopped;
+  auto& stopped = json["stopped"] = Json::array();
+  for (const auto& [workspace, sources] : state.stopped) stopped.push_back(workspace);
+  json["stopped_by"] = state.stopped;
   json["status"] = state.is_stopping ? "stopping" : "running";
   auto& focus = json["focus"] = Json::object();
   for (const auto& [workspace, number] : state.focus)
@@ -195,10 +197,10 @@ Result<GraphState> parse_graph_state(std::string_view text) {
     const auto json = Json::parse(text);
     GraphState state;
     visit_graph(state, FieldReader{json});
-    if (const auto stopped = json.value("stopped", Json::object()); stopped.is_object())
-      stopped.get_to(state.stopped);
-    else  // an older graph does not name the sources
-      for (const auto& workspace : stopped) state.stopped[workspace.get<std::string>()];
+    for (const auto& workspace : json.value("stopped", Json::array()))
+      state.stopped[workspace.get<std::string>()];
+    if (const auto sources = json.find("stopped_by"); sources != json.end())
+      sources->get_to(state.stopped);
     state.is_stopping = json.at("status") == "stopping";
     for (const auto& [workspace, mode] : json.at("focus").items())
       state.focus[workspace] = mode.is_null() ? 0 : mode.at("number").get<std::int64_t>();

@@ -54,7 +54,7 @@ TEST(State, IsOneLineOfJson) {
       to_json(some_state()),
       R"({"graph":"head","file":"graphs/head.toml","pid":12,"uptime":3.25,)"
       R"("modes":{"read":2,"track":1},"addresses":{"eyes.command":21},)"
-      R"("stopped":{"right":["web.stop","source 14"]},"status":"running","focus":{"left":{"mode":"track","number":1},"right":null},)"
+      R"("stopped":["right"],"stopped_by":{"right":["web.stop","source 14"]},"status":"running","focus":{"left":{"mode":"track","number":1},"right":null},)"
       R"("hosts":[{"name":"robot","connected":true,"detail":"","offset":3600.5,"error":0.25,)"
       R"("drift":null,"latency":0.5}],)"
       R"("modules":[{"name":"camera","program":"camera","host":"robot","group":"",)"

@@ -130,7 +130,7 @@ export function stateOf(modules: GraphModule[], links: GraphLink[], uptime = 0):
     uptime,
     status: "running",
     focus: {},
-    stopped: {},
+    stopped_by: {},
     modules,
     links,
     modes: {},

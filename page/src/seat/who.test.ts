@@ -43,10 +43,10 @@ test("a stop names its sources, known ones in words", () => {
       { name: "hands", program: "hands" },
       { name: "page", program: "/usr/lib/hypercolumn/web" },
     ],
-    stopped: { left: ["hands.stop"], right: ["page.stop", "hands.stop", "source 12"] },
+    stopped_by: { left: ["hands.stop"], right: ["page.stop", "hands.stop", "source 12"] },
   } as unknown as GraphState;
   assert.equal(stoppedBy(state), "by an open palm (hands.stop), a page (page.stop), source 12");
-  assert.equal(stoppedBy({ ...state, stopped: {} }), "");
+  assert.equal(stoppedBy({ ...state, stopped_by: {} }), "");
   assert.equal(stoppedBy(undefined), "");
 });
 

@@ -33,7 +33,7 @@ const stops: Readonly<Record<string, string>> = { hands: "an open palm", web: "a
 
 /** What stopped the robot: "by an open palm (hands.stop)"; "" if it is not known. */
 export function stoppedBy(state: GraphState | undefined): string {
-  const sources = new Set(Object.values(state?.stopped ?? {}).flat());
+  const sources = new Set(Object.values(state?.stopped_by ?? {}).flat());
   const named = [...sources].map((source) => {
     const module = state?.modules.find(({ name }) => name === moduleOf(source));
     const known = module && stops[programName(module.program)];

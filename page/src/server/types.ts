@@ -81,7 +81,7 @@ export interface GraphState {
   /** The mode in focus, by workspace. */
   readonly focus: Readonly<Record<string, Focus | null>>;
   /** The sources that have stopped the robot, by workspace. */
-  readonly stopped: Readonly<Record<string, readonly string[]>>;
+  readonly stopped_by: Readonly<Record<string, readonly string[]>>;
   readonly modules: readonly GraphModule[];
   readonly links: readonly GraphLink[];
   readonly modes: Readonly<Record<string, number>>;
