@@ -49,7 +49,7 @@ namespace {
 HWY_EXPORT(add_taps);
 
 // Read and written beyond the end: four of the widest vectors.
-constexpr std::size_t kBeyond = 4 * 64 / sizeof(float);
+constexpr std::size_t kBeyond = std::size_t{4} * 64 / sizeof(float);
 
 std::size_t area(const cv::Size& size) {
   return static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
@@ -114,7 +114,8 @@ PlaneConvolution::PlaneConvolution(const Options& options, const cv::Size& from,
             divided_up(from.height + window.top + window.bottom, down)};
   phases_down_ = std::min(down, window.height);
   phases_right_ = std::min(right, window.width);
-  const auto count = static_cast<std::size_t>(phases_down_ * phases_right_);
+  const std::size_t count =
+      static_cast<std::size_t>(phases_down_) * static_cast<std::size_t>(phases_right_);
   phases_.assign(count * area(phase_) + static_cast<std::size_t>(window.width) + kBeyond, 0);
   sums_.resize(area({phase_.width, to.height}) + kBeyond);
   for (int v = 0; v < window.height; ++v)

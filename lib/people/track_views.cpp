@@ -17,12 +17,12 @@ bool are_close(const cv::Rect2f& a, const cv::Rect2f& b) {
 }  // namespace
 
 void TrackViews::doubt_close(const std::vector<FaceTracks::Expected>& all) {
-  for (const auto& [number, box] : all) {
-    const auto found = tracks_.find(number);
+  for (const FaceTracks::Expected& one : all) {
+    const auto found = tracks_.find(one.number);
     if (found == tracks_.end()) continue;
     Views& views = found->second;
     views.is_close = std::any_of(all.begin(), all.end(), [&](const FaceTracks::Expected& other) {
-      return number != other.number && are_close(box, other.box);
+      return one.number != other.number && are_close(one.box, other.box);
     });
     if (!views.is_close) continue;
     views.is_sure = false;

@@ -64,12 +64,12 @@ cv::Point2f pixel_of(const Vector2d& place) {
 Vector2d unwarped(const Look& look, Vector2d place) {
   const double side = place.x() < 0 ? -1 : 1;
   place.x() *= side;
-  for (auto warp = look.warps.rbegin(); warp != look.warps.rend(); ++warp) {  // the last one first
-    const Vector2d from_there = place - warp->middle - warp->move;
-    const double weight = std::exp(-from_there.squaredNorm() / (2 * warp->radius * warp->radius));
-    const Vector2d was = warp->middle + from_there.cwiseQuotient(warp->enlarge);
+  std::for_each(look.warps.rbegin(), look.warps.rend(), [&](const auto& warp) {
+    const Vector2d from_there = place - warp.middle - warp.move;
+    const double weight = std::exp(-from_there.squaredNorm() / (2 * warp.radius * warp.radius));
+    const Vector2d was = warp.middle + from_there.cwiseQuotient(warp.enlarge);
     place += weight * (was - place);
-  }
+  });
   place.x() *= side;
   return place;
 }
