@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Computes the layers of a network, by OpenCV's dnn.
+// Computes the layers of a network, by OpenCV's dnn and own depthwise convolutions.
 
 #include <memory>
 #include <string>

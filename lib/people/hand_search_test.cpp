@@ -188,7 +188,7 @@ TEST(HandSearch, searches_at_times) {
   EXPECT_TRUE(times.is_due(kFirstImage, true));
   EXPECT_FALSE(times.is_due(kFirstImage + 99ms, true));
   EXPECT_TRUE(times.is_due(kFirstImage + 100ms, true));
-  EXPECT_FALSE(times.is_due(kFirstImage + 999ms, false)) << "nobody is in view";
+  EXPECT_FALSE(times.is_due(kFirstImage + 999ms, false)) << "no face is in view";
   EXPECT_TRUE(times.is_due(kFirstImage + 1100ms, false));
   EXPECT_TRUE(times.is_due(kFirstImage, true)) << "time went back";
 }

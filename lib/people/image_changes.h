@@ -12,14 +12,15 @@ namespace hc::people {
 /// Cost: 1 ms for an SVGA image.
 class ImageChanges {
  public:
-  /// Takes the next image, (height, width) of u8, RGB or grey. One of another size begins anew.
+  /// Takes the next image, (height, width) of u8, RGB or grey. An image of another size
+  /// resets everything.
   void add(const cv::Mat& image);
   /// The mean change in a part since it was searched, of the levels of grey. 0 outside.
   /// @param part  [px]
   [[nodiscard]] double change(const cv::Rect& part) const;
   /// How many images have come since a part was searched, on average over it. 0 outside.
   [[nodiscard]] double age(const cv::Rect& part) const;
-  /// Begins anew in a part, since it is searched now.
+  /// Resets a part, when it is searched.
   void forget(const cv::Rect& part);
 
  private:

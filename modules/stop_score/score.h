@@ -64,7 +64,7 @@ class StopScore {
     std::optional<double> whole_since{};  // of one that was not [s]
     bool is_up = true;                    // in the last image
     bool has_stopped = false;
-    /// Whether it is whole in an image: it begins anew when it has been for a while.
+    /// Takes whether the whole palm is in an image; after kHeld inside, its time starts again.
     void see_border(double time, bool is_whole);
     [[nodiscard]] bool is_held() const { return seen - begin >= kHeld; }
     [[nodiscard]] bool must_stop() const { return is_in_image && seen - begin >= kMustStop; }

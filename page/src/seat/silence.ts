@@ -5,7 +5,7 @@ import { moduleOf, type GraphModule, type GraphState } from "../server";
 export const waiting = "Waiting for the first image…";
 /** Images that come after a longer time are rare enough to say how old the last one is [ms]. */
 const patience = 2000;
-/** The age is told in steps, since a screen reader reads each [s]. */
+/** Steps of the age, so that a screen reader does not repeat it each second [s]. */
 const step = 5;
 
 /**
