@@ -115,8 +115,8 @@ std::array<double, 7> StopScore::numbers() const {
 
 std::string StopScore::text() const {
   const auto [middle, most, stopped, palms, wrong, border, lasted] = numbers();
-  const auto others = hc::format("{} stops without a palm, {} by one at the border, in {:.0f} s",
-                                 wrong, border, lasted);
+  auto others = hc::format("{} stops without a palm, {} by one at the border, in {:.0f} s", wrong,
+                           border, lasted);
   if (palms == 0) return others;
   return hc::format("missed {} of {} palms, stopped after {:.3f} s median, {:.3f} s at most; ",
                     palms - stopped, palms, middle, most) +
