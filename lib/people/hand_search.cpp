@@ -2,12 +2,17 @@
 #include <people/hand_search.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <people/box.h>
 #include <people/sign.h>
 
 namespace hc::people {
 namespace {
+
+/// Maximum turn of a palm whose hand may be open and up: beyond that of the sign, since a palm's
+/// points are less exact than those of a hand. [rad]
+constexpr float kMayBeUp = 1.3F;
 
 /// Where a person's palm is held up: from above the head to the elbows, an arm's length to each
 /// side. Empty if that is not in the image, or more than it.
@@ -22,7 +27,10 @@ cv::Rect reach_of(const cv::Rect2f& face, const cv::Size& image) {
 
 }  // namespace
 
-bool SearchTimes::is_due(Time time, bool is_anybody) {
+bool SearchTimes::is_due(Time time, bool is_anybody, bool is_palm) {
+  if (!is_palm) palm_.reset();
+  if (is_palm && !palm_) palm_ = time;
+  if (palm_ && std::chrono::abs(time - *palm_) < kPalm) return false;
   if (last_ && std::chrono::abs(time - *last_) < (is_anybody ? kSomebody : kNobody)) return false;
   last_ = time;
   return true;
@@ -60,13 +68,15 @@ void HandSearch::search(const cv::Mat& image, const std::vector<cv::Rect2f>& fac
   changes_.forget(place);
   for (const Palm& palm : palms_.find(image, place)) {
     if (hands.size() > most_) return;
-    const cv::Point2f middle = region_of(palm).middle;
+    const Region region = region_of(palm);
+    const bool may_be_up = std::abs(region.turn) < kMayBeUp;
+    if (hands.size() == most_ && !may_be_up) continue;
     const bool is_known = std::any_of(hands.begin(), hands.end(), [&](const auto& one) {
-      return one.hand.box().contains(middle);
+      return one.hand.box().contains(region.middle);
     });
     if (is_known) continue;
     // Once more, in the region that its points give: a palm gives another one.
-    const Hand hand = landmarks_.find(image, region_of(palm));
+    const Hand hand = landmarks_.find(image, region);
     if (hand.presence >= kHandIsThere) add({0, landmarks_.find(image, region_of(hand))}, hands);
   }
 }
@@ -81,7 +91,9 @@ std::vector<HandTrack> HandSearch::look(Time time, const cv::Mat& image,
     add({number, landmarks_.find(image, region)}, hands);
   }
   const bool is_anybody = !hands.empty() || !faces || !faces->empty();
-  if (hands.size() <= most_ && times_.is_due(time, is_anybody))
+  const bool is_palm =
+      std::ranges::any_of(hands, [](const auto& one) { return sign_of(one.hand) == Sign::Open; });
+  if (times_.is_due(time, is_anybody, is_palm) && hands.size() <= most_)
     search(image, faces.value_or(std::vector<cv::Rect2f>()), hands);
   return tracks_.update(time, hands);
 }

@@ -20,12 +20,15 @@ class SearchTimes {
  public:
   /// Between searches, while somebody may be in view, and where no face is, though a hand may be.
   static constexpr std::chrono::milliseconds kSomebody{100}, kNobody{1000};
+  /// No search, once an open palm is up: it may be a command, which must be seen in many images.
+  static constexpr std::chrono::milliseconds kPalm{700};
 
-  /// Whether to search now, which the caller then does.
-  bool is_due(Time time, bool is_anybody);
+  /// Whether it is time to search; the next time is counted from then.
+  /// @param is_palm  whether one of the hands that are followed is open and up.
+  bool is_due(Time time, bool is_anybody, bool is_palm);
 
  private:
-  std::optional<Time> last_;
+  std::optional<Time> last_, palm_;  // the last search; since when a palm is up
 };
 
 /// Follows known hands by the network of their points alone, and searches for others now and then:

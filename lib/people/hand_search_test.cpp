@@ -185,12 +185,23 @@ TEST(HandSearch, finds_nothing_in_a_wall) {
 
 TEST(HandSearch, searches_at_times) {
   SearchTimes times;
-  EXPECT_TRUE(times.is_due(kFirstImage, true));
-  EXPECT_FALSE(times.is_due(kFirstImage + 99ms, true));
-  EXPECT_TRUE(times.is_due(kFirstImage + 100ms, true));
-  EXPECT_FALSE(times.is_due(kFirstImage + 999ms, false)) << "no face is in view";
-  EXPECT_TRUE(times.is_due(kFirstImage + 1100ms, false));
-  EXPECT_TRUE(times.is_due(kFirstImage, true)) << "time went back";
+  EXPECT_TRUE(times.is_due(kFirstImage, true, false));
+  EXPECT_FALSE(times.is_due(kFirstImage + 99ms, true, false));
+  EXPECT_TRUE(times.is_due(kFirstImage + 100ms, true, false));
+  EXPECT_FALSE(times.is_due(kFirstImage + 999ms, false, false)) << "no face is in view";
+  EXPECT_TRUE(times.is_due(kFirstImage + 1100ms, false, false));
+  EXPECT_TRUE(times.is_due(kFirstImage, true, false)) << "time went back";
+}
+
+TEST(HandSearch, waits_while_a_palm_may_be_a_command) {
+  SearchTimes times;
+  EXPECT_FALSE(times.is_due(kFirstImage, true, true));
+  EXPECT_FALSE(times.is_due(kFirstImage + 699ms, true, true));
+  EXPECT_TRUE(times.is_due(kFirstImage + 700ms, true, true)) << "it has had its time";
+  EXPECT_TRUE(times.is_due(kFirstImage + 900ms, true, true));
+  EXPECT_TRUE(times.is_due(kFirstImage + 1000ms, true, false));
+  EXPECT_FALSE(times.is_due(kFirstImage + 1100ms, true, true)) << "another palm";
+  EXPECT_TRUE(times.is_due(kFirstImage + 1200ms, true, false)) << "it is down";
 }
 
 TEST_F(HandsInAPhotograph, far_from_the_camera_are_found_beside_a_face) {
