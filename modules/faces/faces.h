@@ -105,6 +105,7 @@ class Faces {
   hc::people::FaceDistances distances_;
   bool is_idle_ = true;
   hc::Message right_image_;                        // the last one
+  std::size_t next_right_ = 0;                     // face to look for in it
   hc::Time last_;                                  // left image
   std::optional<Eigen::Matrix3d> R_robot_camera_;  // then
   std::vector<hc::people::Track> seen_;            // then
