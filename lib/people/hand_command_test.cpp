@@ -63,7 +63,7 @@ TEST(HandCommand, is_no_wave_along_the_line_of_sight) {
   EXPECT_EQ(commands(Sign::Open, waves), 0);
 }
 
-TEST(HandCommand, begins_anew_after_an_image_without_a_hand) {
+TEST(HandCommand, starts_again_after_an_image_without_a_sign) {
   HandCommand command;
   EXPECT_FALSE(command.update(hc::Time(1s), Sign::None, std::nullopt));
   EXPECT_FALSE(command.update(hc::Time(1s) + 50ms, Sign::Open, upright(0)));

@@ -10,8 +10,9 @@
 
 #include <people/hand_landmarks.h>
 #include <people/hand_tracks.h>
-#include <people/image_changes.h>
 #include <people/palm_finder.h>
+#include <people/search_places.h>
+#include <people/sign.h>
 
 namespace hc::people {
 
@@ -19,23 +20,23 @@ namespace hc::people {
 class SearchTimes {
  public:
   /// Between searches, while somebody may be in view, and where no face is, though a hand may be.
-  static constexpr std::chrono::milliseconds kSomebody{100}, kNobody{1000};
-  /// No search, once an open palm is up: it may be a command, which must be seen in many images.
-  static constexpr std::chrono::milliseconds kPalm{700};
+  static constexpr std::chrono::milliseconds kWithPeople{100}, kWithoutPeople{1000};
+  /// No search for so long after a palm came up: it may be a command, which is held for
+  /// HandCommand::kHold and must be seen in many images.
+  static constexpr std::chrono::milliseconds kPalmPause{700};
 
   /// Whether it is time to search; the next time is counted from then.
   /// @param is_palm  whether one of the hands that are followed is open and up.
-  bool is_due(Time time, bool is_anybody, bool is_palm);
+  bool is_due(Time time, bool has_people, bool is_palm);
 
  private:
-  std::optional<Time> last_, palm_;  // the last search; since when a palm is up
+  std::optional<Time> last_;
+  SignHold palm_{kPalmPause};
 };
 
-/// Follows known hands by the network of their points alone, and searches for others now and then:
-/// around the face around which the image has changed most, since a palm is held up there, then
-/// around the one where it was searched longest ago, then in all of the image or one of its parts,
-/// in turn. While enough are followed it searches for one more that is open and up, since that is a
-/// command to stop, and follows it as long as it is.
+/// Follows known hands by the network of their points alone, and searches for others now and then.
+/// While enough are followed it searches for one more that is open and up, since that is a command
+/// to stop, and follows it as long as it is.
 ///
 /// Cost: 15 ms for each known hand, of one core; 26 ms for a search and 30 ms for each other hand
 /// that it sees; 1 ms for an image.
@@ -58,8 +59,6 @@ class HandSearch {
  private:
   void search(const cv::Mat& image, const std::vector<cv::Rect2f>& faces,
               std::vector<HandTracks::Sighting>& hands);
-  /// Where to search next.
-  cv::Rect next_place(const cv::Size& image, const std::vector<cv::Rect2f>& faces);
   /// Takes a hand that was found, if it is to be followed.
   void add(const HandTracks::Sighting& found, std::vector<HandTracks::Sighting>& hands) const;
 
@@ -68,8 +67,7 @@ class HandSearch {
   std::size_t most_;
   HandTracks tracks_;
   SearchTimes times_;
-  ImageChanges changes_;
-  std::size_t turn_ = 0, next_part_ = 0;
+  SearchPlaces places_;
 };
 
 }  // namespace hc::people

@@ -196,12 +196,14 @@ TEST(HandSearch, searches_at_times) {
 TEST(HandSearch, waits_while_a_palm_may_be_a_command) {
   SearchTimes times;
   EXPECT_FALSE(times.is_due(kFirstImage, true, true));
-  EXPECT_FALSE(times.is_due(kFirstImage + 699ms, true, true));
+  EXPECT_FALSE(times.is_due(kFirstImage + 300ms, true, true));
+  EXPECT_TRUE(times.is_due(kFirstImage + 400ms, true, false)) << "taken for another sign";
+  EXPECT_FALSE(times.is_due(kFirstImage + 500ms, true, true)) << "the same palm";
+  EXPECT_FALSE(times.is_due(kFirstImage + 690ms, true, true));
   EXPECT_TRUE(times.is_due(kFirstImage + 700ms, true, true)) << "it has had its time";
   EXPECT_TRUE(times.is_due(kFirstImage + 900ms, true, true));
-  EXPECT_TRUE(times.is_due(kFirstImage + 1000ms, true, false));
-  EXPECT_FALSE(times.is_due(kFirstImage + 1100ms, true, true)) << "another palm";
-  EXPECT_TRUE(times.is_due(kFirstImage + 1200ms, true, false)) << "it is down";
+  EXPECT_TRUE(times.is_due(kFirstImage + 1100ms, true, false)) << "it is down";
+  EXPECT_FALSE(times.is_due(kFirstImage + 1300ms, true, true)) << "another palm";
 }
 
 TEST_F(HandsInAPhotograph, far_from_the_camera_are_found_beside_a_face) {

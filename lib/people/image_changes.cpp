@@ -51,11 +51,12 @@ double ImageChanges::age(const cv::Rect& part) const {
   return of.empty() ? 0 : cv::mean(ages_(of))[0];
 }
 
-void ImageChanges::forget(const cv::Rect& part) {
-  const cv::Rect of = coarse(part);
-  if (of.empty()) return;
-  sum_(of) = 0;
-  ages_(of) = 0;
+void ImageChanges::forget_change(const cv::Rect& part) {
+  if (const cv::Rect of = coarse(part); !of.empty()) sum_(of) = 0;
+}
+
+void ImageChanges::forget_age(const cv::Rect& part) {
+  if (const cv::Rect of = coarse(part); !of.empty()) ages_(of) = 0;
 }
 
 }  // namespace hc::people

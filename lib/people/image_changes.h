@@ -18,10 +18,12 @@ class ImageChanges {
   /// The mean change in a part since it was searched, of the levels of grey. 0 outside.
   /// @param part  [px]
   [[nodiscard]] double change(const cv::Rect& part) const;
-  /// How many images have come since a part was searched, on average over it. 0 outside.
+  /// How many images have come since the age of a part was reset, on average over it. 0 outside.
   [[nodiscard]] double age(const cv::Rect& part) const;
-  /// Resets a part, when it is searched.
-  void forget(const cv::Rect& part);
+  /// Resets the change of a part, when it is searched.
+  void forget_change(const cv::Rect& part);
+  /// Resets the age of a part.
+  void forget_age(const cv::Rect& part);
 
  private:
   /// A part in the coarse images.

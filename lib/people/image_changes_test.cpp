@@ -26,17 +26,17 @@ TEST(ImageChanges, are_where_something_moves) {
   moved(cv::Rect(100, 300, 60, 90)) = cv::Scalar(200, 180, 160);
   changes.add(moved);
   EXPECT_GT(changes.change(kLeft), 1.3 * changes.change(kRight));
-  changes.forget(kLeft);
+  changes.forget_change(kLeft);
   EXPECT_EQ(changes.change(kLeft), 0);
   EXPECT_GT(changes.change(kRight), 0);
 }
 
-TEST(ImageChanges, tell_how_long_ago_a_part_was_searched) {
+TEST(ImageChanges, tell_how_long_ago_a_part_was_reset) {
   ImageChanges changes;
   const cv::Mat image(600, 800, CV_8UC1, cv::Scalar(90));
   for (int i = 0; i < 5; ++i) changes.add(image);
   EXPECT_EQ(changes.age(kLeft), 4);
-  changes.forget(kLeft);
+  changes.forget_age(kLeft);
   changes.add(image);
   EXPECT_EQ(changes.age(kLeft), 1);
   EXPECT_EQ(changes.age(kRight), 5);
@@ -44,7 +44,7 @@ TEST(ImageChanges, tell_how_long_ago_a_part_was_searched) {
   EXPECT_EQ(changes.change(kRight), 0);
 }
 
-TEST(ImageChanges, of_other_images_begin_anew) {
+TEST(ImageChanges, of_another_size_start_again) {
   cv::RNG chance(1);
   ImageChanges changes;
   changes.add(noisy(chance));
