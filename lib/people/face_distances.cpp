@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hc::people {
 namespace {
@@ -40,6 +41,27 @@ std::optional<float> distance_by_eyes(const Face& left, const std::vector<Face>&
     found = pair.focal * pair.baseline / shift;
   }
   return found;
+}
+
+std::vector<std::size_t> FaceDistances::due(Time time, const std::vector<Track>& seen) {
+  const auto passed = [&](const auto& looked) { return std::chrono::abs(time - looked.second); };
+  std::erase_if(looked_, [&](const auto& each) { return passed(each) > kKept; });
+  std::vector<std::pair<Time, std::size_t>> all;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const auto looked = looked_.find(seen[i].number);
+    if (looked == looked_.end())
+      all.emplace_back(Time::min(), i);
+    else if (seconds(passed(*looked)) >= kSmoothing)
+      all.emplace_back(looked->second, i);
+  }
+  std::ranges::sort(all);
+  all.resize(std::min(all.size(), (seen.size() + 3) / 4));
+  std::vector<std::size_t> places;
+  for (const auto& [looked, place] : all) {
+    looked_[seen[place].number] = time;
+    places.push_back(place);
+  }
+  return places;
 }
 
 void FaceDistances::add(int track, Time time, float distance) {

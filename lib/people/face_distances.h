@@ -8,6 +8,7 @@
 
 #include <hc/base/time.h>
 #include <people/face.h>
+#include <people/face_tracks.h>
 
 namespace hc::people {
 
@@ -28,12 +29,17 @@ cv::Rect2f expected_in_right(const Face& left, const FacePair& pair);
 std::optional<float> distance_by_eyes(const Face& left, const std::vector<Face>& right,
                                       const FacePair& pair);
 
-/// Smoothed distances of tracks.
+/// Smoothed distances of tracks. To look for a face in the right image takes as long as in the left
+/// one, so it is not done in each.
 class FaceDistances {
  public:
   /// Time constant. [s]
   static constexpr double kSmoothing = 0.2;
 
+  /// The tracks to look for in the right image of a time, by their places in `seen`: those for
+  /// which that was not done within kSmoothing, longest ago first, a quarter of all at most, or
+  /// one.
+  std::vector<std::size_t> due(Time time, const std::vector<Track>& seen);
   /// Takes a distance by both eyes.
   void add(int track, Time time, float distance);
   /// The distance of a track now; nothing if both eyes have not seen it for a second.
@@ -45,6 +51,7 @@ class FaceDistances {
     float distance = 0;
   };
   std::map<int, Known> known_;
+  std::map<int, Time> looked_;  // when a track was due last
 };
 
 }  // namespace hc::people

@@ -63,4 +63,23 @@ TEST(FaceDistances, are_smoothed_and_kept_for_a_second) {
   EXPECT_FALSE(distances.find(1, now + 4s));
 }
 
+TEST(FaceDistances, are_due_in_turn) {
+  hc::people::FaceDistances distances;
+  const hc::Time now(1'700'000'000s);
+  const auto tracks = [](int count) {
+    std::vector<hc::people::Track> made(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) made[static_cast<std::size_t>(i)].number = i + 1;
+    return made;
+  };
+  using Places = std::vector<std::size_t>;
+  EXPECT_EQ(distances.due(now, {}), Places());
+  EXPECT_EQ(distances.due(now, tracks(3)), Places{0});
+  EXPECT_EQ(distances.due(now + 50ms, tracks(3)), Places{1});
+  EXPECT_EQ(distances.due(now + 100ms, tracks(3)), Places{2});
+  EXPECT_EQ(distances.due(now + 150ms, tracks(3)), Places()) << "each was within 0.2 s";
+  EXPECT_EQ(distances.due(now + 300ms, tracks(3)), Places{0}) << "longest ago";
+  EXPECT_EQ(distances.due(now + 350ms, tracks(8)), (Places{3, 4})) << "a quarter, new ones first";
+  EXPECT_EQ(distances.due(now - 10s, tracks(1)), Places{0}) << "time went back";
+}
+
 }  // namespace

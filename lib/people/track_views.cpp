@@ -8,21 +8,25 @@ namespace hc::people {
 namespace {
 
 /// Whether two faces are so close that a search may take one for the other.
-bool are_close(const cv::Rect2f& a, const cv::Rect2f& b) {
+/// @param widths  of the larger one.
+bool are_close(const cv::Rect2f& a, const cv::Rect2f& b, float widths) {
   const cv::Point2f apart = (a.tl() + a.br() - b.tl() - b.br()) / 2;
-  const float width = std::max(a.width, b.width);
-  return apart.dot(apart) < 2.25F * width * width;  // one and a half widths
+  const float most = widths * std::max(a.width, b.width);
+  return apart.dot(apart) < most * most;
 }
 
 }  // namespace
 
-void TrackViews::doubt_close(const std::vector<FaceTracks::Expected>& all) {
+void TrackViews::doubt_close(const std::vector<FaceTracks::Expected>& all, double passed) {
+  constexpr float kClose = 1.5F, kApproach = 13;  // [widths of a face], [1/s]: 2 m/s
+  const bool is_rare = passed > seconds(kGap);
+  const float widths = kClose + (is_rare ? kApproach * static_cast<float>(passed) : 0);
   for (const FaceTracks::Expected& one : all) {
     const auto found = tracks_.find(one.number);
     if (found == tracks_.end()) continue;
     Views& views = found->second;
     views.is_close = std::any_of(all.begin(), all.end(), [&](const FaceTracks::Expected& other) {
-      return one.number != other.number && are_close(one.box, other.box);
+      return one.number != other.number && are_close(one.box, other.box, widths);
     });
     if (!views.is_close) continue;
     views.is_sure = false;
@@ -32,14 +36,19 @@ void TrackViews::doubt_close(const std::vector<FaceTracks::Expected>& all) {
 
 std::optional<std::size_t> TrackViews::due(Time time, const std::vector<Track>& seen,
                                            const std::vector<FaceTracks::Expected>& all) {
+  const Time before = std::exchange(last_, time).value_or(time);
   for (const Track& track : seen) {
-    Views& views = tracks_[track.number];
-    if (std::chrono::abs(time - std::exchange(views.seen, time)) > kGap) views.is_sure = false;
+    const auto [found, is_new] = tracks_.try_emplace(track.number);
+    Views& views = found->second;
+    const Time last_seen = std::exchange(views.seen, time);
+    if (is_new || last_seen == before || std::chrono::abs(time - last_seen) <= kGap) continue;
+    views.is_sure = false;
+    views.may_be_another = true;
   }
   std::erase_if(tracks_, [&](const auto& each) {
     return std::ranges::find(all, each.first, &FaceTracks::Expected::number) == all.end();
   });
-  doubt_close(all);
+  doubt_close(all, seconds(std::chrono::abs(time - before)));
   // Few views first, then long ago.
   const auto order = [&](std::size_t place) {
     const Views& views = tracks_.at(seen[place].number);

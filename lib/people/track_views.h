@@ -29,7 +29,8 @@ class TrackViews {
   /// Maximum distance of a view from the mean of the others of its track. One that is farther, of a
   /// track that is sure, is left out once.
   static constexpr auto kApart = static_cast<float>(kSamePerson);
-  /// A track that was not seen for longer may go on with another person.
+  /// A track that is not seen in the images of a longer time may go on with another person; where
+  /// images are that rare, one that may have been passed by another face in between.
   static constexpr std::chrono::milliseconds kGap{300};
 
   /// The track to describe now, by its place in `seen`; nothing if all are known well enough.
@@ -55,9 +56,11 @@ class TrackViews {
     bool is_close = false, is_sure = false, was_apart = false;
     bool may_be_another = false;  // than at first
   };
-  void doubt_close(const std::vector<FaceTracks::Expected>& all);
+  /// @param passed  since the last image, in which faces may have moved unseen. [s]
+  void doubt_close(const std::vector<FaceTracks::Expected>& all, double passed);
 
   std::map<int, Views> tracks_;
+  std::optional<Time> last_;  // image
 };
 
 }  // namespace hc::people

@@ -83,6 +83,15 @@ TEST_F(TrackViewsTest, are_new_until_there_are_enough_or_they_may_be_anothers) {
   begin_again();
   look(2, 400, 1, 0);
   EXPECT_FALSE(views_.is_new(1) || views_.is_new(2)) << "another person's view";
+  begin_again();
+  now_ += 400ms;
+  look(1, 900, 0, 1);
+  EXPECT_TRUE(views_.is_new(1) && views_.is_new(2)) << "images are rare";
+  begin_again();
+  const auto hidden = expected({track(1, 100), track(2, 400)});
+  for (int i = 0; i < 2; ++i) static_cast<void>(views_.due(now_ += 200ms, {}, hidden));
+  look(1, 400, 0, 1);
+  EXPECT_FALSE(views_.is_new(1) || views_.is_new(2)) << "they were hidden";
 }
 
 TEST_F(TrackViewsTest, faces_that_were_close_are_looked_at_again) {
@@ -131,10 +140,22 @@ TEST_F(TrackViewsTest, one_view_apart_changes_nothing_and_two_begin_again) {
 
 TEST_F(TrackViewsTest, a_track_that_was_lost_may_be_another_persons) {
   look(20, 400, 0, 1);
-  now_ += 400ms;
+  const auto hidden = expected({track(1, 100)});
+  for (int i = 0; i < 2; ++i) static_cast<void>(views_.due(now_ += 200ms, {}, hidden));
   const std::vector<Track> seen{track(1, 100)};
   EXPECT_TRUE(views_.due(now_, seen, expected(seen)));
   EXPECT_FALSE(views_.embedding(1));
+}
+
+TEST_F(TrackViewsTest,
+       where_images_are_rare_a_face_that_another_may_have_passed_is_looked_at_again) {
+  for (const bool is_near : {false, true}) {
+    views_ = {};
+    look(20, 900, 0, 1);
+    now_ += 400ms;
+    look(1, is_near ? 400 : 900, 0, 1);
+    EXPECT_EQ(views_.embedding(1).has_value(), !is_near);
+  }
 }
 
 TEST_F(TrackViewsTest, end_with_their_track) {

@@ -37,10 +37,10 @@ Faces::Faces(hc::Module& module) : module_(module) {
   module.on(cameras_, [this](const hc::Message& message) {
     mount_.take(hc::value_or_drop(hc::pose_of(message)));
   });
-  module.on(name_, [this](const auto& message) { ask(message.text()); });
+  module.on(name_, [this](const auto& message) { take_request(message.text()); });
   module.every(std::chrono::seconds(1), [this] {
     read_folder();
-    learn_asked();
+    answer_requests();
     forget();
   });
   module.on_end([this] {
@@ -71,7 +71,7 @@ void Faces::read_folder() {
 
 void Faces::forget() {
   if (!std::exchange(is_idle_, true)) return;
-  for (const Asked& asked : std::exchange(asked_, {})) refuse(asked, "no image comes");
+  for (const NameRequest& request : std::exchange(requests_, {})) refuse(request, "no image comes");
   views_ = {};
   seen_.clear();
   right_image_ = {};
@@ -85,7 +85,7 @@ void Faces::look(const hc::Message& message) {
   last_ = time;
   seen_ = networks_->search.look(time, image, static_cast<float>(*score_), turn);
   describe(time, image, seen_);
-  learn_asked();
+  answer_requests();
   send(message.header, seen_);
   look_right(right_image_);
 }
@@ -116,11 +116,8 @@ void Faces::look_right(const hc::Message& message) {
   if (message.header.empty() || module_.time_of(message.header) != last_) return;
   const cv::Mat image = hc::value_or_drop(hc::as_mat(message));
   const auto pair = pair_of(intrinsics_.of(image.cols, image.rows));
-  // Each face in one of a few images, since they are smoothed, and a search takes as long as in the
-  // left image.
-  constexpr std::size_t kImages = 4;
-  for (std::size_t i = 0; i < (seen_.size() + kImages - 1) / kImages; ++i) {
-    const Track& track = seen_[next_right_++ % seen_.size()];
+  for (const std::size_t place : distances_.due(last_, seen_)) {
+    const Track& track = seen_[place];
     const auto box = hc::people::expected_in_right(track.face, pair);
     const auto found = networks_->search.look_around(image, box);
     if (const auto distance = hc::people::distance_by_eyes(track.face, found, pair))
@@ -160,41 +157,42 @@ int Faces::person(int track) const {
   return found ? found->number : 0;
 }
 
-void Faces::ask(std::string_view text) {
+void Faces::take_request(std::string_view text) {
   const auto named = hc::people::numbered_name(text);
   if (!named) throw hc::BadMessage("it is not \"TRACK NAME\"");
   if (!hc::people::is_person_name(named->name))
     throw hc::BadMessage("it has no name of 1 to 64 bytes");
-  const Asked asked{named->number, std::string(named->name), module_.monotonic() + kPatience};
-  for (const Asked& other : asked_)
-    if (other.track == asked.track && other.name == asked.name) return;  // it waits already
-  if (asked_.size() == kMostAsked)
-    refuse(asked, "too many names wait: try again");
-  else if (!learn(asked))
-    asked_.push_back(asked);
+  const NameRequest request{named->number, std::string(named->name),
+                            module_.monotonic() + kRequestLife};
+  for (const NameRequest& other : requests_)
+    if (other.track == request.track && other.name == request.name) return;  // it waits already
+  if (requests_.size() == kMostRequests)
+    refuse(request, "too many names wait: try again");
+  else if (!learn(request))
+    requests_.push_back(request);
 }
 
-void Faces::learn_asked() {
-  std::erase_if(asked_, [this](const Asked& asked) { return learn(asked); });
+void Faces::answer_requests() {
+  std::erase_if(requests_, [this](const NameRequest& request) { return learn(request); });
 }
 
-void Faces::refuse(const Asked& asked, const std::string& why) {
-  module_.log(hc::format("{} was not learned: {}", asked.name, why), hc::Level::Warning);
+void Faces::refuse(const NameRequest& request, const std::string& why) {
+  module_.log(hc::format("{} was not learned: {}", request.name, why), hc::Level::Warning);
 }
 
-bool Faces::learn(const Asked& asked) {
-  const auto& [track, name, until] = asked;
+bool Faces::learn(const NameRequest& request) {
+  const auto& [track, name, until] = request;
   if (!views_.embedding(track) && networks_->search.follows(track, last_) && views_.is_new(track) &&
       module_.monotonic() < until)
     return false;
   // A person asked for it, so each answer is logged.
-  if (const auto why = reason_against(asked)) {
-    refuse(asked, *why);
+  if (const auto why = reason_against(request)) {
+    refuse(request, *why);
     return true;
   }
   const auto& views = views_.views(track);
   if (const auto learned = folder_->learn(name, views); !learned) {
-    refuse(asked, learned.error().detail);
+    refuse(request, learned.error().detail);
     return true;
   }
   module_.log(hc::format("learned {} from {} views", name, views.size()));
@@ -202,8 +200,8 @@ bool Faces::learn(const Asked& asked) {
   return true;
 }
 
-std::optional<std::string> Faces::reason_against(const Asked& asked) const {
-  const auto& [track, name, until] = asked;
+std::optional<std::string> Faces::reason_against(const NameRequest& request) const {
+  const auto& [track, name, until] = request;
   if (!networks_->search.follows(track, last_))
     return hc::format("no face has track {} now: try again", track);
   if (!views_.embedding(track))

@@ -27,14 +27,14 @@ class Faces {
     hc::people::FaceSearch search;
     hc::people::Identifier identifier;
   };
-  /// A name that somebody gave to a track.
-  struct Asked {
+  /// A name that somebody gave to a track, until it is learned or refused.
+  struct NameRequest {
     int track;
     std::string name;
     hc::MonotonicTime until;
   };
-  static constexpr std::chrono::milliseconds kPatience{10'000};  // with such a request
-  static constexpr std::size_t kMostAsked = 16;
+  static constexpr std::chrono::milliseconds kRequestLife{10'000};
+  static constexpr std::size_t kMostRequests = 16;
 
   void start();
   /// Looks at a left image, once it is known how the head was turned then.
@@ -47,13 +47,13 @@ class Faces {
   void describe(hc::Time time, const cv::Mat& image, const std::vector<hc::people::Track>& seen);
   void send(const hc::Header& image, const std::vector<hc::people::Track>& seen);
   /// Takes a request for a name, which waits until it is certain whose face the track shows.
-  void ask(std::string_view text);
-  void learn_asked();
-  void refuse(const Asked& asked, const std::string& why);
+  void take_request(std::string_view text);
+  void answer_requests();
+  void refuse(const NameRequest& request, const std::string& why);
   /// @returns whether the request has been answered; otherwise it waits.
-  bool learn(const Asked& asked);
+  bool learn(const NameRequest& request);
   /// Why a track's person does not get this name; nothing: they do.
-  [[nodiscard]] std::optional<std::string> reason_against(const Asked& asked) const;
+  [[nodiscard]] std::optional<std::string> reason_against(const NameRequest& request) const;
   void read_folder();
   /// Forgets everybody where no image has come since the last call.
   void forget();
@@ -105,9 +105,8 @@ class Faces {
   hc::people::FaceDistances distances_;
   bool is_idle_ = true;
   hc::Message right_image_;                        // the last one
-  std::size_t next_right_ = 0;                     // face to look for in it
   hc::Time last_;                                  // left image
   std::optional<Eigen::Matrix3d> R_robot_camera_;  // then
   std::vector<hc::people::Track> seen_;            // then
-  std::vector<Asked> asked_;                       // not answered yet
+  std::vector<NameRequest> requests_;              // not answered yet
 };
