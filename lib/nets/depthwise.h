@@ -26,6 +26,8 @@ class PlaneConvolution {
   };
 
   PlaneConvolution(const Options& options, const cv::Size& from, const cv::Size& to);
+  PlaneConvolution(const PlaneConvolution&) = delete;  // taps_ points into phases_
+  PlaneConvolution& operator=(const PlaneConvolution&) = delete;
 
   /// @param from  a channel of the image, row by row.
   /// @param weights  of its window, row by row.

@@ -58,8 +58,8 @@ struct Layers {
   std::vector<int> outputs;
 };
 
-/// Maximum number of numbers in all constants, in all results of layers, and in all weights of
-/// layers, which may share constants.
+/// Maximum number of numbers in all constants, in all results of layers, in all weights of layers,
+/// which may share constants, and in an image with its padding.
 inline constexpr long long kMostNumbers = 1LL << 26;
 
 /// The number of elements.

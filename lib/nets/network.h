@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Computes the layers of a network, by OpenCV's dnn and own depthwise convolutions.
+// Computes the layers of a network, by OpenCV's dnn and our own depthwise convolutions.
 
 #include <memory>
 #include <string>
@@ -35,8 +35,8 @@ class Network {
   /// Layers may be those of any file, since all shapes are checked first.
   ///
   /// Errors: Malformed (a shape does not follow from those before it), Unsupported (a layer cannot
-  /// be computed with these), TooLarge (more than kMostMultiplications, or weights than
-  /// kMostNumbers).
+  /// be computed with these), TooLarge (more than kMostMultiplications, or kMostNumbers;
+  /// not enough memory).
   /// Cost: computes it once.
   static Result<std::unique_ptr<Network>> make(const Layers& layers);
 

@@ -172,6 +172,16 @@ TEST_F(OneLayer, one_whose_padding_is_too_large_is_refused) {
   EXPECT_EQ(refused.error().text(), "TooLarge: more than 67108864 numbers with the padding");
 }
 
+TEST_F(OneLayer, one_that_takes_too_long_is_refused) {
+  // A window as wide as the image, which all the same is computed at each of its columns.
+  const int weights = constant({1, 64, 64, 1}, 1);
+  constexpr int kHigh = 1 << 19;
+  const auto refused =
+      run({1, kHigh, 64, 1}, {Kind::DepthwiseConvolution, {weights}}, {1, kHigh - 63, 1, 1});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().text(), "TooLarge: more than 20000000000 multiplications");
+}
+
 TEST_F(OneLayer, a_pool_takes_the_largest) {
   Layer pool{Kind::MaxPool, {}};
   pool.window_height = pool.window_width = pool.stride_down = pool.stride_right = 2;

@@ -224,10 +224,11 @@ class Check {
       return malformed("with weights of " + text(of) + " for " + text(shape(0)));
     HC_TRY(numbers(1, size_of(of)));
     if (layer_->inputs.size() > 2) HC_TRY(numbers(2, out));
-    // Of a depthwise one, sums are computed in the padding, too.
+    // A depthwise one computes sums for all columns, also where the window extends beyond them.
     const Window window = window_of(*layer_, shape(0), of);
-    const int padding = is_deep ? (window.left + window.right) / layer_->stride_right + 1 : 0;
-    HC_TRY(multiply(size_of(of) * made[0] * (made[1] + padding)));
+    const int right = layer_->stride_right;
+    const int columns = (shape(0)[2] + window.left + window.right + right - 1) / right;
+    HC_TRY(multiply(size_of(of) * made[0] * (is_deep ? columns : made[1])));
     return is({1, made[0], made[1], out});
   }
 
