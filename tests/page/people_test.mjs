@@ -104,7 +104,7 @@ describe("people on the page", { timeout: 10 * watchdog }, () => {
     const name = page.getByLabel("Name:");
     await name.fill("../Bob");
     await name.press("Enter");
-    await page.locator(".status-line", { hasText: "A name has at most 64 bytes" }).waitFor();
+    await page.locator(".status-line", { hasText: "This name is too long, begins with a dot, or has a" }).waitFor();
     await name.fill("Zoë van der Berg");
     await name.press("Enter");
     await heard("name 8 Zoë van der Berg");
@@ -180,8 +180,21 @@ describe("people on the page", { timeout: 10 * watchdog }, () => {
     await setShow("false");
     await person(7).waitFor({ state: "detached" });
     await page.locator(".seen-hand").waitFor({ state: "detached" });
-    await page.locator(".seat-people", { hasText: "Nobody is seen." }).waitFor();
+    await page.locator(".seat-people", { hasText: "No face is seen." }).waitFor();
     await setShow("true");
+    await person(7).waitFor({ state: "attached" });
+  });
+
+  test("a module that finds faces and hangs is late", async () => {
+    const seen = graph.pid("seen");
+    process.kill(seen, "SIGSTOP");
+    try {
+      await page
+        .locator(".seat-people", { hasText: "seen is late: no faces for some seconds." })
+        .waitFor();
+    } finally {
+      process.kill(seen, "SIGCONT");
+    }
     await person(7).waitFor({ state: "attached" });
   });
 });

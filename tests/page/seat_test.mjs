@@ -100,10 +100,13 @@ describe("the seat", { timeout: 10 * watchdog }, () => {
     await page.locator(".seat-view:not([data-old])").waitFor();
     const eyes = graph.pid("head_eyes");
     process.kill(eyes, "SIGSTOP");
-    const says =
-      /^The last image is \d+ s old\. Module head_eyes: stalled \(stopped by a signal\)\.$/;
-    await page.locator(".seat-view[data-old] .seat-problem", { hasText: says }).waitFor();
-    process.kill(eyes, "SIGCONT");
+    try {
+      const says =
+        /^The last image is \d+ s old\. Module head_eyes: stalled \(stopped by a signal\)\.$/;
+      await page.locator(".seat-view[data-old] .seat-problem", { hasText: says }).waitFor();
+    } finally {
+      process.kill(eyes, "SIGCONT");
+    }
     await page
       .locator(".seat-view:not([data-old]) .seat-problem:empty")
       .waitFor({ state: "attached" });

@@ -82,6 +82,8 @@ export function moduleNamed(name: string, other: Partial<GraphModule> = {}): Gra
     pid: 1,
     status: "running",
     detail: "",
+    last_line: "",
+    last_level: "info",
     restarts: 0,
     exit: null,
     cpu: 0,

@@ -117,7 +117,7 @@ function noteText({ doc, min, max, default: usual, fixed }: ParameterDescription
     doc ?? "",
     range,
     usual !== undefined && usual !== "" ? `default ${String(usual)}` : "",
-    fixed ? "fixed: set it in the graph file" : "",
+    fixed ? "fixed: hc graph set restarts the module with another" : "",
   ];
   return notes.filter((note) => note !== "").join("; ");
 }

@@ -103,10 +103,15 @@ export class People {
     };
   }
 
+  /** Whether the module sends nothing, as when it gets no processor. */
+  get isLate(): boolean {
+    return this.newest === undefined || performance.now() - this.newest.at >= patience;
+  }
+
   /** Who is seen now. */
   seen(): Person[] {
     const { newest } = this;
-    return newest && performance.now() - newest.at < patience ? this.peopleIn(newest.rows) : [];
+    return newest && !this.isLate ? this.peopleIn(newest.rows) : [];
   }
 
   close(): void {

@@ -228,9 +228,7 @@ class SeatPanel {
     if (person) return this.persons.click(person);
     if (!this.seat.isHeld) return this.host.say("Take the seat first, then point.");
     if (!this.has("target"))
-      return this.host.say(
-        "There is no face here, and no output target of the page is linked, to turn to a pixel.",
-      );
+      return this.host.say("No face is known here, and nothing in this graph turns to a pixel.");
     const pixel = this.view.pixelAt(event.clientX, event.clientY);
     if (!pixel) return this.host.say("Point at an unprocessed camera image.");
     this.seat.lookAt(pixel.x, pixel.y, pixel.coord, pixel.time);

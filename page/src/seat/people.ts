@@ -12,10 +12,10 @@ const answerTime = 12_000;
 const lostTime = 3000;
 
 export class SeatPeople {
-  private readonly nobody = h("p.muted.small", "Nobody is seen.");
+  private readonly none = h("p.muted.small");
   private readonly caption = h("span.muted.small", "People seen:");
   readonly list = h("div.seat-people.wrap", { role: "group", "aria-label": "People seen" }, [
-    this.nobody,
+    this.none,
     this.caption,
   ]);
   private readonly buttons = new Map<number, HTMLButtonElement>(); // by track
@@ -91,6 +91,11 @@ export class SeatPeople {
     const { held } = this.seat;
     this.letGo(seen);
     this.list.hidden = !this.people.findsFaces;
+    const { finder, isLate } = this.people;
+    setText(
+      this.none,
+      isLate ? `${finder} is late: no faces for some seconds.` : "No face is seen.",
+    );
     const shown = seen.map(({ track, name, reason }) => ({ track, name, reason }));
     const key = JSON.stringify([shown, held, this.seat.isHeld, this.track]);
     if (key !== this.key) this.draw(seen);
@@ -118,14 +123,15 @@ export class SeatPeople {
       each.disabled = !this.seat.isHeld;
       each.setAttribute("aria-expanded", String(this.track === track));
     }
-    this.nobody.hidden = seen.length > 0;
+    this.none.hidden = seen.length > 0;
     this.caption.hidden = seen.length === 0;
   }
 
   private addButton(track: number): HTMLButtonElement {
     const press = (): void => {
       const person = this.people.seen().find((each) => each.track === track);
-      if (this.track === track) this.shut();
+      if (person && this.seat.held === track) this.release();
+      else if (this.track === track) this.shut();
       else if (person) this.open(person);
     };
     const title = "Name this person, or hold on to them";
@@ -160,7 +166,7 @@ export class SeatPeople {
     if (!this.has("name")) return;
     if (name === "") return this.say("Type a name.");
     if (!isName(name))
-      return this.say("A name has at most 64 bytes, and neither “/” nor a dot at its beginning.");
+      return this.say("This name is too long, begins with a dot, or has a “/” or a tab in it.");
     if (!this.seat.name(this.track, name)) return;
     this.sentName = performance.now();
     this.say(`Asked to learn this person as ${name}.`);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the seat says while no images come. Pure.
+// The text of the seat while no images come. Pure.
 import { moduleOf, type GraphModule, type GraphState } from "../server";
 
 export const waiting = "Waiting for the first image…";
@@ -28,17 +28,30 @@ export function silenceText(
   return reason ? `${text} ${reason}` : text;
 }
 
-/** Which module does not run: the one that sends the images, or one before it. */
+/**
+ * The module that does not run or complains: the one that sends the images, or one before it. One
+ * that ended may have done its work, so others come first.
+ */
 function reasonOf(state: GraphState, sender: string): string {
   const names = new Set([sender]);
-  for (const name of names) {
-    const module = state.modules.find((each) => each.name === name);
-    if (module && module.status !== "running") return conditionOf(module);
+  for (const name of names)
     for (const { from, to } of state.links) if (moduleOf(to) === name) names.add(moduleOf(from));
-  }
-  return "";
+  const modules = [...names].flatMap((name) => state.modules.filter((each) => each.name === name));
+  const found =
+    modules.find(({ status }) => status !== "running" && status !== "ended") ??
+    modules.find((each) => each.status === "running" && complaintOf(each)) ??
+    modules.find(({ status }) => status === "ended");
+  return found ? conditionOf(found) : "";
 }
 
-function conditionOf({ name, status, detail }: GraphModule): string {
-  return `Module ${name}: ${status}${detail ? ` (${detail})` : ""}.`;
+/** The last line of its log, if it warns. */
+function complaintOf({ last_level: level, last_line: line }: GraphModule): string {
+  return level === "warning" || level === "error" ? line : "";
+}
+
+function conditionOf(module: GraphModule): string {
+  const { name, status, detail } = module;
+  const complaint = complaintOf(module);
+  if (status === "running") return `Module ${name}: ${complaint}.`;
+  return `Module ${name}: ${status}${detail ? ` (${detail})` : ""}${complaint && `: ${complaint}`}.`;
 }

@@ -206,7 +206,7 @@ export class SeatView {
       const depth = pair.coding && { coding: pair.coding, image, range };
       const taken = (picture: Picture): void => this.take(side, picture, wanted.length === 1);
       const problem = (text: string): void => {
-        this.problem.textContent = text || (this.pictures[side] ? "" : waiting);
+        this.problem.textContent = text || (this.pictures[side] ? "" : this.silence);
       };
       this.eyes.set(side, new Eye(this.server, port, this.width(), depth, taken, problem));
     }

@@ -31,7 +31,7 @@ export function taskOf(state: GraphState, web: string, output: DriveOutput): num
 /** Sources of stops that a person knows by another name, by program. */
 const stops: Readonly<Record<string, string>> = { hands: "an open palm", web: "a page" };
 
-/** What stopped the robot: "by an open palm (hands.stop)"; "" if it is not known. */
+/** The sources of the stop: "by an open palm (hands.stop)"; "" if it is not known. */
 export function stoppedBy(state: GraphState | undefined): string {
   const sources = new Set(Object.values(state?.stopped_by ?? {}).flat());
   const named = [...sources].map((source) => {

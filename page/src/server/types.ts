@@ -28,6 +28,9 @@ export interface GraphModule {
   readonly workspace: string;
   readonly in_focus: boolean;
   readonly in_workspace: boolean;
+  /** Of its log. */
+  readonly last_line: string;
+  readonly last_level: Level;
   readonly parameters: Readonly<Record<string, string>>;
 }
 
@@ -62,10 +65,12 @@ export interface Focus {
   readonly number: number;
 }
 
+export type Level = "info" | "warning" | "error" | "result";
+
 /** A line of the graph's log (G46). */
 export interface LogLine {
   readonly module: string;
-  readonly level: "info" | "warning" | "error" | "result";
+  readonly level: Level;
   readonly text: string;
   /** When the server got it [ms since 1970]. */
   readonly at: number;
