@@ -51,8 +51,8 @@ void StopScore::see_palm(double time, const ShownHand& shown) {
       palms_, [&](const Palm& palm) { return palm.is_up && palm.whose == whose; });
   if (known != palms_.end()) {
     if ((wrist - known->at).norm() <= kStill) {
-      known->seen = time;
       known->see_border(time, shown.is_in_image);
+      known->seen = time;
       return;
     }
     known->is_up = false;
@@ -61,7 +61,7 @@ void StopScore::see_palm(double time, const ShownHand& shown) {
 }
 
 void StopScore::Palm::see_border(double time, bool is_whole) {
-  if (is_whole && is_in_image) return;
+  if (must_stop() || (is_whole && is_in_image)) return;
   is_in_image = false;
   if (!is_whole) return whole_since.reset();
   if (!whole_since) whole_since = time;

@@ -25,7 +25,7 @@ bool is_palm_up(const hc::room::TrueHand& hand);
 /// Collects a run. A palm counts from the first image in which it is in sight, open, up, and where
 /// it then stays; one that stays for less than kHeld is no command, and one that is held when the
 /// robot is stopped already stops nothing. One that is not whole in the image may stop the robot or
-/// not: neither counts.
+/// not: such a stop is counted apart.
 class StopScore {
  public:
   /// How far a palm that is held still moves at most [m].
@@ -60,11 +60,12 @@ class StopScore {
     std::pair<int, int> whose;            // person, and side
     double begin = 0, seen = 0;           // [s]
     Eigen::Vector3d at;                   // its wrist [m]
-    bool is_in_image = true;              // whole; once it is not, for kHeld at least
+    bool is_in_image = true;              // whole; again kHeld after it was not
     std::optional<double> whole_since{};  // of one that was not [s]
     bool is_up = true;                    // in the last image
     bool has_stopped = false;
-    /// Takes whether the whole palm is in an image; after kHeld inside, its time starts again.
+    /// Takes whether the whole palm is in an image; after kHeld inside, its time starts again. One
+    /// that must have stopped the robot already is not excused.
     void see_border(double time, bool is_whole);
     [[nodiscard]] bool is_held() const { return seen - begin >= kHeld; }
     [[nodiscard]] bool must_stop() const { return is_in_image && seen - begin >= kMustStop; }

@@ -174,6 +174,17 @@ TEST(StopScore, a_palm_that_trembles_at_the_border_may_stop_or_not) {
   EXPECT_EQ(score.numbers()[5], 1);
 }
 
+TEST(StopScore, a_palm_that_stopped_nothing_is_missed_wherever_it_goes_then) {
+  StopScore score;
+  auto palm = straight_hand(0);
+  for (int i = 0; i < 40; ++i) score.see(i * kFrame, {palm});
+  palm.is_in_image = false;
+  score.see(40 * kFrame, {palm});
+  for (int i = 41; i < 80; ++i) score.see(i * kFrame, {});
+  EXPECT_EQ(score.numbers()[2], 0);
+  EXPECT_EQ(score.numbers()[3], 1);
+}
+
 TEST(StopScore, a_stop_is_cleared_a_while_after_the_palm) {
   StopScore score;
   for (int i = 0; i <= 20; ++i) score.see(i * kFrame, {straight_hand(0)});
