@@ -255,8 +255,8 @@ class OpencvNetwork final : public Network {
       shapes_.push_back(layers.tensors[static_cast<std::size_t>(output)].shape);
   }
 
-  /// Computes it once, since that is when OpenCV checks its layers: run() fails
-  /// only without memory after it.
+  /// Computes it once, since that is when OpenCV checks its layers: run() fails only without memory
+  /// after it.
   Status try_out() {
     const auto outputs = forward(cv::Mat::zeros(input_[0], input_[1], CV_32FC(input_[2])));
     for (std::size_t i = 0; i < shapes_.size(); ++i)

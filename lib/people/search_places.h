@@ -12,8 +12,8 @@
 namespace hc::people {
 
 /// Chooses where to search next, in turn: around the face around which the image has changed most,
-/// since a palm that is raised changes it; around the one where that was longest ago; and in all of
-/// the image or one of its parts.
+/// since a palm that is raised changes it; around the face that was chosen longest ago; and in all
+/// of the image or one of its parts.
 class SearchPlaces {
  public:
   /// Takes the next image. @see ImageChanges::add()
@@ -23,7 +23,8 @@ class SearchPlaces {
   cv::Rect next(const cv::Size& image, const std::vector<cv::Rect2f>& faces);
 
  private:
-  ImageChanges changes_;  // since searches around faces: in a part, far hands are too small
+  // Since searches around faces: far hands are too small in the image and its parts.
+  ImageChanges changes_;
   std::size_t turn_ = 0, next_part_ = 0;
 };
 
