@@ -29,16 +29,15 @@ cv::Rect2f expected_in_right(const Face& left, const FacePair& pair);
 std::optional<float> distance_by_eyes(const Face& left, const std::vector<Face>& right,
                                       const FacePair& pair);
 
-/// Smoothed distances of tracks. To look for a face in the right image takes as long as in the left
-/// one, so it is not done in each.
+/// Smoothed distances of tracks. A search for a face in the right image takes as long as in the
+/// left one, so not each image is searched.
 class FaceDistances {
  public:
   /// Time constant. [s]
   static constexpr double kSmoothing = 0.2;
 
-  /// The tracks to look for in the right image of a time, by their places in `seen`: those for
-  /// which that was not done within kSmoothing, longest ago first, a quarter of all at most, or
-  /// one.
+  /// The tracks to look for in the right image of a time, by their places in `seen`: each once in
+  /// kSmoothing, the longest ago first, and in an image a quarter of all at most, or one.
   std::vector<std::size_t> due(Time time, const std::vector<Track>& seen);
   /// Takes a distance by both eyes.
   void add(int track, Time time, float distance);

@@ -21,8 +21,8 @@ class SearchTimes {
  public:
   /// Between searches, while somebody may be in view, and where no face is, though a hand may be.
   static constexpr std::chrono::milliseconds kWithPeople{100}, kWithoutPeople{1000};
-  /// No search for so long after a palm came up: it may be a command, which is held for
-  /// HandCommand::kHold and must be seen in many images.
+  /// A pause of searches after a palm came up. It may be a command: HandCommand::kHold, in many
+  /// images.
   static constexpr std::chrono::milliseconds kPalmPause{700};
 
   /// Whether it is time to search; the next time is counted from then.

@@ -25,12 +25,14 @@ void TrackViews::doubt_close(const std::vector<FaceTracks::Expected>& all, doubl
     const auto found = tracks_.find(one.number);
     if (found == tracks_.end()) continue;
     Views& views = found->second;
-    views.is_close = std::any_of(all.begin(), all.end(), [&](const FaceTracks::Expected& other) {
-      return one.number != other.number && are_close(one.box, other.box, widths);
-    });
-    if (!views.is_close) continue;
-    views.is_sure = false;
-    views.may_be_another = true;
+    const auto is_any_within = [&](float most) {
+      return std::any_of(all.begin(), all.end(), [&](const FaceTracks::Expected& other) {
+        return one.number != other.number && are_close(one.box, other.box, most);
+      });
+    };
+    views.is_close = is_any_within(widths);
+    views.is_sure &= !views.is_close;
+    views.may_be_another |= is_any_within(kClose);
   }
 }
 
@@ -43,7 +45,6 @@ std::optional<std::size_t> TrackViews::due(Time time, const std::vector<Track>& 
     const Time last_seen = std::exchange(views.seen, time);
     if (is_new || last_seen == before || std::chrono::abs(time - last_seen) <= kGap) continue;
     views.is_sure = false;
-    views.may_be_another = true;
   }
   std::erase_if(tracks_, [&](const auto& each) {
     return std::ranges::find(all, each.first, &FaceTracks::Expected::number) == all.end();

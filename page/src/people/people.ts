@@ -64,6 +64,7 @@ export class People {
   private readonly attended = new Recent<Attended & { readonly time: bigint }>();
   private names = new Map<number, string>();
   private newest?: { readonly rows: Rows<Face>; readonly at: number };
+  private opened = -Infinity; // by performance.now(), as newest [ms]
   private isClosed = false;
   private readonly changes = new Signal<void>();
   /** Something new is known. */
@@ -105,7 +106,7 @@ export class People {
 
   /** Whether the module sends nothing, as when it gets no processor. */
   get isLate(): boolean {
-    return this.newest === undefined || performance.now() - this.newest.at >= patience;
+    return performance.now() - (this.newest?.at ?? this.opened) >= patience;
   }
 
   /** Who is seen now. */
@@ -150,6 +151,7 @@ export class People {
     if (JSON.stringify(ports) === JSON.stringify(this.ports)) return;
     this.shut();
     this.ports = ports;
+    this.opened = performance.now();
     this.read(ports.faces, (message) => {
       const rows = { ...timeOf(message), rows: facesOf(message) };
       this.faces.push(rows);
