@@ -39,10 +39,10 @@ describe("the page", { timeout: 10 * watchdog }, () => {
   test("text in the graph has at least 10 px, also when all parts are open", async () => {
     await page.setViewportSize({ width: 1280, height: 800 });
     await show("watch");
-    await page.locator(".node").first().waitFor();
-    assert.ok((await smallestText()) >= 10);
     const closed = page.locator('.node[aria-expanded="false"]');
-    assert.ok((await closed.count()) >= 4);
+    await closed.nth(3).waitFor();
+    // It is fitted into its window before it is painted, which may be after it is built.
+    await until("the graph is fitted", async () => (await smallestText()) >= 10);
     while ((await closed.count()) > 0) await closed.first().press("Enter");
     assert.ok((await smallestText()) >= 10);
     await page.setViewportSize({ width: 1000, height: 720 });
