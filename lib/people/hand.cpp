@@ -15,6 +15,35 @@ cv::Rect2f Hand::box() const {
   return {least, most};
 }
 
+float bend(const Hand& hand, Hand::Point knuckle) {
+  const auto& p = hand.world;
+  const auto at = static_cast<std::size_t>(knuckle);
+  const auto first = p[at + 1] - p[at], last = p[at + 3] - p[at + 2];
+  return std::atan2(static_cast<float>(cv::norm(first.cross(last))), first.dot(last));
+}
+
+bool is_from_side(const Hand& hand) {
+  constexpr double kNear = 0.25;  // of the palm's length; 0.67 from the front
+  const auto& p = hand.points;
+  return cv::norm(p[Hand::Index] - p[Hand::Little]) <
+         kNear * cv::norm(p[Hand::Middle] - p[Hand::Wrist]);
+}
+
+Hand with_index_finger(const Hand& hand) {
+  const auto is_straight = [&](Hand::Point knuckle) { return bend(hand, knuckle) < kStraight; };
+  if (!is_from_side(hand) || !is_straight(Hand::Little) || is_straight(Hand::Index) ||
+      is_straight(Hand::Middle) || is_straight(Hand::Ring))
+    return hand;
+  Hand reversed = hand;
+  constexpr std::size_t kFinger = Hand::Middle - Hand::Index, kLast = Hand::Index + Hand::Little;
+  for (std::size_t from = Hand::Index; from <= Hand::Little; from += kFinger)
+    for (std::size_t i = 0; i < kFinger; ++i) {
+      reversed.points[kLast - from + i] = hand.points[from + i];
+      reversed.world[kLast - from + i] = hand.world[from + i];
+    }
+  return reversed;
+}
+
 Region region_of(const Hand& hand) {
   constexpr float kLarger = 2.0F, kAhead = 0.1F;
   // What moves least while fingers bend.

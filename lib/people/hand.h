@@ -48,6 +48,19 @@ struct Hand {
   [[nodiscard]] cv::Rect2f box() const;
 };
 
+/// By how much a finger is bent, from its first to its last bone, 0 for a straight one.
+/// @param knuckle  Hand::Index, Middle, Ring or Little. [rad, 0 … π]
+float bend(const Hand& hand, Hand::Point knuckle);
+
+constexpr float kStraight = 1.2F;  ///< maximum bend() of a straight finger [rad]
+
+/// Whether a hand is seen from its side, so that one finger covers another in the image.
+bool is_from_side(const Hand& hand);
+
+/// A hand that points. Seen from its side, a network may take the index finger for the little one:
+/// if that one alone is straight, their order is reversed. Others are as they were.
+Hand with_index_finger(const Hand& hand);
+
 /// Where to look for the points of a hand that had these in the last image.
 /// Source: MediaPipe, hand_landmark_landmarks_to_roi.pbtxt, hand_landmarks_to_rect_calculator.cc.
 Region region_of(const Hand& hand);

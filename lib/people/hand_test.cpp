@@ -37,5 +37,26 @@ TEST(Hand, region_turns_with_the_hand) {
   }
 }
 
+TEST(Hand, bend_is_the_angle_between_the_first_and_the_last_bone) {
+  const Hand hand = made_hand({.index = 0.3F, .little = 2});
+  EXPECT_NEAR(bend(hand, Hand::Index), 0.3F, 1e-5F);
+  EXPECT_NEAR(bend(hand, Hand::Middle), 0, 1e-5F);
+  EXPECT_NEAR(bend(hand, Hand::Little), 2, 1e-5F);
+}
+
+TEST(Hand, the_finger_that_points_is_the_index_finger_where_it_is_seen_from_its_side) {
+  Pose pose{.index = 2, .middle = 2.1F, .ring = 2.2F, .is_from_side = true};
+  const Hand taken = made_hand(pose), told = with_index_finger(taken);
+  EXPECT_EQ(told.points[Hand::IndexTip], taken.points[Hand::LittleTip]);
+  EXPECT_EQ(told.points[Hand::Index], taken.points[Hand::Little]);
+  EXPECT_EQ(told.points[Hand::MiddleTip], taken.points[Hand::RingTip]);
+  EXPECT_EQ(told.world[Hand::LittleTip], taken.world[Hand::IndexTip]);
+  EXPECT_EQ(told.points[Hand::ThumbTip], taken.points[Hand::ThumbTip]);
+  EXPECT_EQ(with_index_finger(told).points, told.points);
+  pose.is_from_side = false;
+  const Hand front = made_hand(pose);
+  EXPECT_EQ(with_index_finger(front).points, front.points) << "the little finger alone";
+}
+
 }  // namespace
 }  // namespace hc::people

@@ -7,7 +7,7 @@
 namespace hc::people {
 namespace {
 
-constexpr float kStraight = 1.2F, kBent = 1.5F;  // limits of bend() [rad]
+constexpr float kBent = 1.5F;     // minimum bend() of a bent finger [rad]
 constexpr float kApart = 0.8F;    // between fingers that point and those that do not [rad]
 constexpr float kUpwards = 0.9F;  // maximum angle from the image's vertical [rad]
 
@@ -17,6 +17,13 @@ float angle(const cv::Point3f& a, const cv::Point3f& b) {
 
 bool is_up(const cv::Point3f& direction) {
   return angle(direction, {0, -1, 0}) < kUpwards;
+}
+
+/// Whether the index and the middle finger are spread.
+bool is_spread(const Hand& hand) {
+  constexpr float kSpread = 0.25F;  // [rad]
+  const auto& p = hand.world;
+  return angle(p[Hand::IndexTip] - p[Hand::Index], p[Hand::MiddleTip] - p[Hand::Middle]) > kSpread;
 }
 
 /// Whether the thumb is stretched away from the hand.
@@ -32,17 +39,13 @@ bool is_thumb_out(const Hand& hand) {
 
 }  // namespace
 
-float bend(const Hand& hand, Hand::Point knuckle) {
-  const auto& p = hand.world;
-  const auto at = static_cast<std::size_t>(knuckle);
-  return angle(p[at + 1] - p[at], p[at + 3] - p[at + 2]);
-}
-
 Sign sign_of(const Hand& hand) {
   std::array<float, 4> bends{};  // from the index to the little finger
   std::size_t finger = 0;
   for (const auto knuckle : {Hand::Index, Hand::Middle, Hand::Ring, Hand::Little})
     bends[finger++] = bend(hand, knuckle);
+  // The index finger, which covers the last one, may be taken for that one too.
+  const std::size_t told = is_from_side(hand) ? bends.size() - 1 : bends.size();
   const auto are = [&](std::size_t begin, std::size_t end, const auto& which) {
     return std::all_of(bends.begin() + static_cast<std::ptrdiff_t>(begin),
                        bends.begin() + static_cast<std::ptrdiff_t>(end), which);
@@ -52,10 +55,10 @@ Sign sign_of(const Hand& hand) {
     const float most =
         *std::max_element(bends.begin(), bends.begin() + static_cast<std::ptrdiff_t>(count));
     float others = 0;
-    for (std::size_t i = count; i < bends.size(); ++i)
-      others += bends[i] / static_cast<float>(bends.size() - count);
+    for (std::size_t i = count; i < told; ++i)
+      others += bends[i] / static_cast<float>(told - count);
     return most < kStraight && others - most > kApart &&
-           are(count, bends.size(), [](float by) { return by >= kStraight; });
+           are(count, told, [](float by) { return by >= kStraight; });
   };
   const auto& p = hand.world;
   if (are(0, bends.size(), [](float by) { return by < kStraight; }))
@@ -63,7 +66,7 @@ Sign sign_of(const Hand& hand) {
                ? Sign::Open
                : Sign::None;
   if (points_with(1)) return Sign::Point;
-  if (points_with(2)) return Sign::Victory;
+  if (points_with(2)) return is_spread(hand) ? Sign::Victory : Sign::Point;
   if (!are(0, bends.size(), [](float by) { return by > kBent; })) return Sign::None;
   if (!is_thumb_out(hand)) return Sign::Fist;
   return is_up(p[Hand::ThumbTip] - p[Hand::Thumb + 1]) ? Sign::ThumbUp : Sign::None;
@@ -79,7 +82,7 @@ std::optional<Sign> SignHold::update(Time time, Sign sign) {
   } else {
     if (sign != other_.sign || other_.last < held_.last) other_ = {sign, time, time};
     other_.last = time;
-    if (time - held_.last <= kGap) return std::nullopt;
+    if (time - held_.last <= kGap || other_.since == time) return std::nullopt;
     held_ = other_;
     is_told_ = false;
   }

@@ -14,14 +14,10 @@ enum class Sign {
   None,
   Open,     ///< all fingers straight and up: stop
   Fist,     ///< all fingers bent
-  Point,    ///< the index finger alone
-  Victory,  ///< the index and the middle finger
+  Point,    ///< the index finger alone, or with the middle finger beside it
+  Victory,  ///< the index and the middle finger, apart
   ThumbUp,
 };
-
-/// By how much a finger is bent, from its first to its last bone, 0 for a straight one.
-/// @param knuckle  Hand::Index, Middle, Ring or Little. [rad, 0 … π]
-float bend(const Hand& hand, Hand::Point knuckle);
 
 /// The sign of a hand, by its points in space. A camera that is not upright sees other signs.
 Sign sign_of(const Hand& hand);
@@ -32,7 +28,7 @@ Sign sign_of(const Hand& hand);
 class SignHold {
  public:
   static constexpr std::chrono::milliseconds kHold{300};
-  /// How long a sign may be mistaken for another in between.
+  /// How long a sign may be mistaken for another in between; in one image always.
   static constexpr std::chrono::milliseconds kGap{150};
   /// Maximum time between two images.
   static constexpr std::chrono::milliseconds kSilence{1000};
