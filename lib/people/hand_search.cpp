@@ -17,10 +17,17 @@ constexpr float kMaxTurn = 1.3F;
 
 bool SearchTimes::is_due(Time time, bool has_people, bool is_palm) {
   palm_.update(time, is_palm ? Sign::Open : Sign::None);
-  if (is_palm && palm_.held() == Sign::None) return false;
+  is_command_ = is_palm && palm_.held() == Sign::None;
+  if (is_command_) return false;
   if (last_ && std::chrono::abs(time - *last_) < (has_people ? kWithPeople : kWithoutPeople))
     return false;
   last_ = time;
+  return true;
+}
+
+bool SearchTimes::are_others_due(Time time) {
+  if (is_command_ && others_ && std::chrono::abs(time - *others_) < kOthers) return false;
+  others_ = time;
   return true;
 }
 
@@ -51,16 +58,22 @@ std::vector<HandTrack> HandSearch::look(Time time, const cv::Mat& image,
   if (image.empty()) return {};
   places_.add(image);
   std::vector<HandTracks::Sighting> hands;
+  const bool looks_at_all = times_.are_others_due(time);
   for (const auto& [number, region] : tracks_.expected(time)) {
     if (hands.size() > most_) break;
+    if (!looks_at_all && !open_.contains(number)) continue;
     add({number, landmarks_.find(image, region)}, hands);
   }
   const bool has_people = !hands.empty() || !faces || !faces->empty();
-  const bool is_palm =
-      std::ranges::any_of(hands, [](const auto& one) { return sign_of(one.hand) == Sign::Open; });
+  const auto is_open = [](const auto& one) { return sign_of(one.hand) == Sign::Open; };
+  const bool is_palm = std::ranges::any_of(hands, is_open);
   if (times_.is_due(time, has_people, is_palm) && hands.size() <= most_)
     search(image, faces.value_or(std::vector<cv::Rect2f>()), hands);
-  return tracks_.update(time, hands);
+  auto tracks = tracks_.update(time, hands);
+  open_.clear();
+  for (const HandTrack& track : tracks)
+    if (is_open(track)) open_.insert(track.number);
+  return tracks;
 }
 
 }  // namespace hc::people

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include <opencv2/core/mat.hpp>
@@ -21,6 +22,8 @@ class SearchTimes {
  public:
   /// Between searches, while somebody may be in view, and where no face is, though a hand may be.
   static constexpr std::chrono::milliseconds kWithPeople{100}, kWithoutPeople{1000};
+  /// Between looks at the other hands while a palm may be a command.
+  static constexpr std::chrono::milliseconds kOthers{150};
   /// A pause of searches after a palm came up. It may be a command: HandCommand::kHold, in many
   /// images.
   static constexpr std::chrono::milliseconds kPalmPause{700};
@@ -28,13 +31,18 @@ class SearchTimes {
   /// Whether it is time to search; the next time is counted from then.
   /// @param is_palm  whether one of the hands that are followed is open and up.
   bool is_due(Time time, bool has_people, bool is_palm);
+  /// Whether it is time to look at hands that are not open, too; the next time is counted from
+  /// then.
+  bool are_others_due(Time time);
 
  private:
-  std::optional<Time> last_;
+  std::optional<Time> last_, others_;
+  bool is_command_ = false;  // a palm, in the last image
   SignHold palm_{kPalmPause};
 };
 
 /// Follows known hands by the network of their points alone, and searches for others now and then.
+/// While a palm may be a command it has the time of the others, which are not in each image then.
 /// While enough are followed it searches for one more that is open and up, since that is a command
 /// to stop, and follows it as long as it is.
 ///
@@ -66,6 +74,7 @@ class HandSearch {
   HandLandmarks landmarks_;
   std::size_t most_;
   HandTracks tracks_;
+  std::set<int> open_;  // numbers of tracks, in the last image
   SearchTimes times_;
   SearchPlaces places_;
 };

@@ -207,6 +207,23 @@ TEST(HandSearch, waits_while_a_palm_may_be_a_command) {
   EXPECT_FALSE(times.is_due(kFirstImage + 1300ms, true, true)) << "another palm";
 }
 
+TEST(HandSearch, looks_at_other_hands_less_often_while_a_palm_may_be_a_command) {
+  SearchTimes times;
+  Time time = kFirstImage;
+  /// Looks at other hands in images 50 ms apart, in each of which there is a palm or not.
+  const auto looks = [&](int images, bool is_palm) {
+    int looks = 0;
+    for (int i = 0; i < images; ++i, time += 50ms) {
+      looks += times.are_others_due(time) ? 1 : 0;
+      times.is_due(time, true, is_palm);
+    }
+    return looks;
+  };
+  EXPECT_EQ(looks(10, false), 10);
+  EXPECT_EQ(looks(13, true), 5) << "the first one, before the palm is seen, and each third";
+  EXPECT_EQ(looks(10, true), 8) << "from 700 ms";
+}
+
 TEST_F(HandsInAPhotograph, far_from_the_camera_are_found_beside_a_face) {
   // As far away as a person at 3 m: neither the whole image nor a part shows the hand large enough.
   cv::Mat far, image(600, 800, CV_8UC3, cv::Scalar(120, 110, 100));
