@@ -29,19 +29,23 @@ bool is_from_side(const Hand& hand) {
          kNear * cv::norm(p[Hand::Middle] - p[Hand::Wrist]);
 }
 
-Hand with_index_finger(const Hand& hand) {
-  const auto is_straight = [&](Hand::Point knuckle) { return bend(hand, knuckle) < kStraight; };
-  if (!is_from_side(hand) || !is_straight(Hand::Little) || is_straight(Hand::Index) ||
-      is_straight(Hand::Middle) || is_straight(Hand::Ring))
-    return hand;
-  Hand reversed = hand;
+Hand with_fingers_reversed(const Hand& hand) {
   constexpr std::size_t kFinger = Hand::Middle - Hand::Index, kLast = Hand::Index + Hand::Little;
+  Hand reversed = hand;
   for (std::size_t from = Hand::Index; from <= Hand::Little; from += kFinger)
     for (std::size_t i = 0; i < kFinger; ++i) {
       reversed.points[kLast - from + i] = hand.points[from + i];
       reversed.world[kLast - from + i] = hand.world[from + i];
     }
   return reversed;
+}
+
+Hand with_index_finger(const Hand& hand) {
+  const auto is_straight = [&](Hand::Point knuckle) { return bend(hand, knuckle) < kStraight; };
+  const bool is_little = is_from_side(hand) && is_straight(Hand::Little) &&
+                         !is_straight(Hand::Index) && !is_straight(Hand::Middle) &&
+                         !is_straight(Hand::Ring);
+  return is_little ? with_fingers_reversed(hand) : hand;
 }
 
 Region region_of(const Hand& hand) {

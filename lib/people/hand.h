@@ -57,8 +57,11 @@ constexpr float kStraight = 1.2F;  ///< maximum bend() of a straight finger [rad
 /// Whether a hand is seen from its side, so that one finger covers another in the image.
 bool is_from_side(const Hand& hand);
 
-/// A hand that points. Seen from its side, a network may take the index finger for the little one:
-/// if that one alone is straight, their order is reversed. Others are as they were.
+/// The hand with its fingers in the other order: the little finger is the index finger.
+Hand with_fingers_reversed(const Hand& hand);
+
+/// A hand that points. From its side, a network may take the index finger for the little one: if
+/// that one alone is straight, the order of the fingers is reversed. Other hands are as they were.
 Hand with_index_finger(const Hand& hand);
 
 /// Where to look for the points of a hand that had these in the last image.

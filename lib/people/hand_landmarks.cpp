@@ -74,7 +74,7 @@ Hand HandLandmarks::find(const cv::Mat& image, const Region& region) {
   hand.presence = outputs[1].at<float>(0);
   // The network was trained with mirrored images, as a person sees them who looks at the screen.
   hand.side = outputs[2].at<float>(0) > 0.5F ? Hand::Side::Right : Hand::Side::Left;
-  return is_hand(hand, image.size()) ? with_index_finger(hand) : Hand();
+  return is_hand(hand, image.size()) ? hand : Hand();
 }
 
 }  // namespace hc::people

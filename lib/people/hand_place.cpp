@@ -22,6 +22,19 @@ Eigen::Vector3d at(const cv::Point2f& pixel, double z, const vision::Pinhole& ca
           z * (static_cast<double>(pixel.y) - camera.cy) / camera.fy, z};
 }
 
+/// By how much points of both rectified eyes differ in height, and in disparity from the middle
+/// one. [px], summed
+float misfit(const Hand& left, const Hand& right) {
+  std::vector<float> disparities;
+  for (std::size_t i = 0; i < Hand::kPoints; ++i)
+    disparities.push_back(left.points[i].x - right.points[i].x);
+  const float middle = median(disparities);
+  float sum = 0;
+  for (std::size_t i = 0; i < Hand::kPoints; ++i)
+    sum += std::abs(disparities[i] - middle) + std::abs(left.points[i].y - right.points[i].y);
+  return sum;
+}
+
 }  // namespace
 
 std::optional<Joints> joints_of(const Hand& hand, const vision::Pinhole& camera) {
@@ -83,10 +96,14 @@ std::optional<double> depth_in(const cv::Mat& depth, const Hand& hand) {
   return median(std::move(known));
 }
 
-std::optional<Joints> joints_by_eyes(const Hand& left, const Hand& right,
+std::optional<Joints> joints_by_eyes(const Hand& left, const Hand& seen_by_right,
                                      const vision::Pinhole& camera, double baseline) {
   constexpr float kApart = 0.1F;   // maximum difference of height, of the hand's size
   constexpr double kDepth = 0.12;  // maximum distance of a joint from the middle one, in depth [m]
+  // Seen from its side, a hand may have its fingers in another order in each eye.
+  const Hand reversed = with_fingers_reversed(seen_by_right);
+  const Hand& right =
+      misfit(left, reversed) < misfit(left, seen_by_right) ? reversed : seen_by_right;
   std::vector<float> disparities, heights;
   for (std::size_t i = 0; i < Hand::kPoints; ++i) {
     const cv::Point2f by = left.points[i] - right.points[i];

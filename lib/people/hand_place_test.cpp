@@ -62,6 +62,14 @@ TEST(HandPlace, that_both_eyes_see_is_triangulated) {
   expect_near(*joints, hand.joints, 1e-4);
 }
 
+TEST(HandPlace, is_the_same_where_the_right_eye_saw_the_fingers_in_the_other_order) {
+  const Placed hand = placed({0.1, -0.05, 0.8});
+  const auto joints =
+      joints_by_eyes(hand.left, with_fingers_reversed(hand.right), kCamera, kBaseline);
+  ASSERT_TRUE(joints);
+  expect_near(*joints, hand.joints, 1e-4);
+}
+
 TEST(HandPlace, of_a_joint_that_was_mistaken_stays_near_the_others) {
   Placed hand = placed({0, 0, 0.8});
   hand.right.points[Hand::IndexTip].x = hand.left.points[Hand::IndexTip].x + 5;

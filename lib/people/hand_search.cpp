@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <people/hand_command.h>
 #include <people/sign.h>
 
 namespace hc::people {
@@ -18,7 +19,7 @@ constexpr float kMaxTurn = 1.3F;
 bool SearchTimes::is_due(Time time, bool has_people, bool is_palm) {
   palm_.update(time, is_palm ? Sign::Open : Sign::None);
   is_command_ = is_palm && palm_.held() == Sign::None;
-  if (is_command_) return false;
+  if (is_command_ || skips_others_) return false;
   if (last_ && std::chrono::abs(time - *last_) < (has_people ? kWithPeople : kWithoutPeople))
     return false;
   last_ = time;
@@ -26,15 +27,16 @@ bool SearchTimes::is_due(Time time, bool has_people, bool is_palm) {
 }
 
 bool SearchTimes::are_others_due(Time time) {
-  if (is_command_ && others_ && std::chrono::abs(time - *others_) < kOthers) return false;
-  others_ = time;
-  return true;
+  skips_others_ = is_command_ && others_ && std::chrono::abs(time - *others_) < kOthers;
+  if (!skips_others_) others_ = time;
+  return !skips_others_;
 }
 
 void HandSearch::add(const HandTracks::Sighting& found,
                      std::vector<HandTracks::Sighting>& hands) const {
   if (found.hand.presence < kHandIsThere) return;
-  if (hands.size() < most_ || sign_of(found.hand) == Sign::Open) hands.push_back(found);
+  if (hands.size() < most_ || sign_of(found.hand) == Sign::Open)
+    hands.push_back({found.number, with_index_finger(found.hand)});
 }
 
 void HandSearch::search(const cv::Mat& image, const std::vector<cv::Rect2f>& faces,
@@ -59,6 +61,9 @@ std::vector<HandTrack> HandSearch::look(Time time, const cv::Mat& image,
   places_.add(image);
   std::vector<HandTracks::Sighting> hands;
   const bool looks_at_all = times_.are_others_due(time);
+  std::erase_if(open_, [&](const auto& each) {
+    return std::chrono::abs(time - each.second) > HandCommand::kUnseen;
+  });
   for (const auto& [number, region] : tracks_.expected(time)) {
     if (hands.size() > most_) break;
     if (!looks_at_all && !open_.contains(number)) continue;
@@ -70,9 +75,8 @@ std::vector<HandTrack> HandSearch::look(Time time, const cv::Mat& image,
   if (times_.is_due(time, has_people, is_palm) && hands.size() <= most_)
     search(image, faces.value_or(std::vector<cv::Rect2f>()), hands);
   auto tracks = tracks_.update(time, hands);
-  open_.clear();
   for (const HandTrack& track : tracks)
-    if (is_open(track)) open_.insert(track.number);
+    if (is_open(track)) open_[track.number] = time;
   return tracks;
 }
 

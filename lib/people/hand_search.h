@@ -3,8 +3,8 @@
 // Finds and follows the hands in the images of a camera.
 
 #include <chrono>
+#include <map>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include <opencv2/core/mat.hpp>
@@ -22,7 +22,8 @@ class SearchTimes {
  public:
   /// Between searches, while somebody may be in view, and where no face is, though a hand may be.
   static constexpr std::chrono::milliseconds kWithPeople{100}, kWithoutPeople{1000};
-  /// Between looks at the other hands while a palm may be a command.
+  /// Between looks at the other hands while a palm may be a command. Shorter than
+  /// HandCommand::kUnseen, as one of them may become another palm.
   static constexpr std::chrono::milliseconds kOthers{150};
   /// A pause of searches after a palm came up. It may be a command: HandCommand::kHold, in many
   /// images.
@@ -32,17 +33,19 @@ class SearchTimes {
   /// @param is_palm  whether one of the hands that are followed is open and up.
   bool is_due(Time time, bool has_people, bool is_palm);
   /// Whether it is time to look at hands that are not open, too; the next time is counted from
-  /// then.
+  /// then. Asked before is_due(), which waits for an image in which all were looked at.
   bool are_others_due(Time time);
 
  private:
   std::optional<Time> last_, others_;
   bool is_command_ = false;  // a palm, in the last image
+  bool skips_others_ = false;
   SignHold palm_{kPalmPause};
 };
 
 /// Follows known hands by the network of their points alone, and searches for others now and then.
-/// While a palm may be a command it has the time of the others, which are not in each image then.
+/// While a palm may be a command, other hands are looked at less often, and are missing from the
+/// images in between.
 /// While enough are followed it searches for one more that is open and up, since that is a command
 /// to stop, and follows it as long as it is.
 ///
@@ -74,7 +77,7 @@ class HandSearch {
   HandLandmarks landmarks_;
   std::size_t most_;
   HandTracks tracks_;
-  std::set<int> open_;  // numbers of tracks, in the last image
+  std::map<int, Time> open_;  // when tracks were last open and up
   SearchTimes times_;
   SearchPlaces places_;
 };

@@ -54,6 +54,20 @@ class HandsInAPhotograph : public testing::Test {
     cv::cvtColor(bgr, image_, cv::COLOR_BGR2RGB);
   }
 
+  static constexpr float kAside = 1.5F;
+  /// The hand with its fingers up, or turned from there, in a square image.
+  [[nodiscard]] cv::Mat tile(float turn) const {
+    constexpr float kTile = 240, kScale = 3;
+    const float by = turn - kAside;
+    const float cos = kScale * std::cos(by), sin = kScale * std::sin(by);
+    const cv::Point2f from = region_.middle;
+    const cv::Matx23f turned(cos, -sin, kTile / 2 - cos * from.x + sin * from.y, sin, cos,
+                             kTile / 2 - sin * from.x - cos * from.y);
+    cv::Mat made;
+    cv::warpAffine(image_, made, turned, {static_cast<int>(kTile), static_cast<int>(kTile)});
+    return made;
+  }
+
   /// The hand before the player, found and looked at again.
   Hand hand(const cv::Mat& image, Region region) {
     for (int i = 0; i < 3; ++i) region = region_of(landmarks_.find(image, region));
@@ -144,18 +158,6 @@ TEST_F(HandsInAPhotograph, are_found_and_followed) {
 }
 
 TEST_F(HandsInAPhotograph, are_followed_beside_enough_others_while_they_are_up) {
-  constexpr float kTile = 240, kScale = 3, kAside = 1.5F;
-  /// The hand with its fingers up, or turned from there.
-  const auto tile = [&](float turn) {
-    const float by = turn - kAside;
-    const float cos = kScale * std::cos(by), sin = kScale * std::sin(by);
-    const cv::Point2f from = region_.middle;
-    const cv::Matx23f turned(cos, -sin, kTile / 2 - cos * from.x + sin * from.y, sin, cos,
-                             kTile / 2 - sin * from.x - cos * from.y);
-    cv::Mat made;
-    cv::warpAffine(image_, made, turned, {static_cast<int>(kTile), static_cast<int>(kTile)});
-    return made;
-  };
   HandSearch search(made_palms(), made_landmarks(), 1);
   Time time = kFirstImage;
   const auto look = [&](float turn) {
@@ -202,26 +204,61 @@ TEST(HandSearch, waits_while_a_palm_may_be_a_command) {
   EXPECT_FALSE(times.is_due(kFirstImage + 690ms, true, true));
   EXPECT_TRUE(times.is_due(kFirstImage + 700ms, true, true)) << "it has had its time";
   EXPECT_TRUE(times.is_due(kFirstImage + 900ms, true, true));
-  EXPECT_TRUE(times.is_due(kFirstImage + 1100ms, true, false)) << "taken for another sign";
-  EXPECT_TRUE(times.is_due(kFirstImage + 1200ms, true, false)) << "it is down";
+  EXPECT_TRUE(times.is_due(kFirstImage + 1100ms, true, false)) << "it is down";
   EXPECT_FALSE(times.is_due(kFirstImage + 1300ms, true, true)) << "another palm";
+}
+
+TEST_F(HandsInAPhotograph, are_looked_at_less_often_while_a_palm_comes_up) {
+  HandSearch search(made_palms(), made_landmarks(), 2);
+  Time time = kFirstImage;
+  std::vector<std::size_t> open, others;  // hands in each image
+  const auto look = [&](float turn, int images) {
+    cv::Mat both;
+    cv::hconcat(tile(kAside), tile(turn), both);
+    for (int i = 0; i < images; ++i) {
+      const auto tracks = search.look(time += 50ms, both);
+      open.push_back(static_cast<std::size_t>(std::ranges::count_if(
+          tracks, [](const HandTrack& track) { return sign_of(track.hand) == Sign::Open; })));
+      others.push_back(tracks.size() - open.back());
+    }
+  };
+  look(kAside, 40);
+  EXPECT_EQ(open.back(), 0U);
+  EXPECT_EQ(others.back(), 2U);
+  look(0, 40);
+  const auto up = std::ranges::find(open, 1U);
+  ASSERT_LT(up, open.end() - 20);
+  EXPECT_EQ(std::count(up, open.end(), 1U), open.end() - up) << "the palm is in each image";
+  const auto first = others.begin() + (up - open.begin());
+  EXPECT_EQ(std::count(first + 1, first + 13, 1U), 4) << "the other one in each third";
+  EXPECT_EQ(std::count(first + 15, others.end(), 1U), others.end() - first - 15) << "in each again";
 }
 
 TEST(HandSearch, looks_at_other_hands_less_often_while_a_palm_may_be_a_command) {
   SearchTimes times;
   Time time = kFirstImage;
-  /// Looks at other hands in images 50 ms apart, in each of which there is a palm or not.
+  /// In how many images, 50 ms apart, other hands are looked at, if there is a palm or not.
   const auto looks = [&](int images, bool is_palm) {
-    int looks = 0;
+    int count = 0;
     for (int i = 0; i < images; ++i, time += 50ms) {
-      looks += times.are_others_due(time) ? 1 : 0;
+      count += times.are_others_due(time) ? 1 : 0;
       times.is_due(time, true, is_palm);
     }
-    return looks;
+    return count;
   };
   EXPECT_EQ(looks(10, false), 10);
   EXPECT_EQ(looks(13, true), 5) << "the first one, before the palm is seen, and each third";
   EXPECT_EQ(looks(10, true), 8) << "from 700 ms";
+}
+
+TEST(HandSearch, waits_for_an_image_in_which_all_hands_are_looked_at) {
+  SearchTimes times;
+  EXPECT_TRUE(times.are_others_due(kFirstImage));
+  EXPECT_FALSE(times.is_due(kFirstImage, true, true));
+  EXPECT_FALSE(times.are_others_due(kFirstImage + 50ms));
+  EXPECT_FALSE(times.is_due(kFirstImage + 50ms, true, false)) << "the palm is lost";
+  EXPECT_TRUE(times.are_others_due(kFirstImage + 100ms));
+  EXPECT_TRUE(times.is_due(kFirstImage + 100ms, true, false));
 }
 
 TEST_F(HandsInAPhotograph, far_from_the_camera_are_found_beside_a_face) {

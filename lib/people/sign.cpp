@@ -21,7 +21,7 @@ bool is_up(const cv::Point3f& direction) {
 
 /// Whether the index and the middle finger are spread.
 bool is_spread(const Hand& hand) {
-  constexpr float kSpread = 0.25F;  // [rad]
+  constexpr float kSpread = 0.28F;  // simulated persons spread them by 0.30 to 0.39 [rad]
   const auto& p = hand.world;
   return angle(p[Hand::IndexTip] - p[Hand::Index], p[Hand::MiddleTip] - p[Hand::Middle]) > kSpread;
 }
@@ -44,8 +44,9 @@ Sign sign_of(const Hand& hand) {
   std::size_t finger = 0;
   for (const auto knuckle : {Hand::Index, Hand::Middle, Hand::Ring, Hand::Little})
     bends[finger++] = bend(hand, knuckle);
-  // The index finger, which covers the last one, may be taken for that one too.
-  const std::size_t told = is_from_side(hand) ? bends.size() - 1 : bends.size();
+  // From the side, the network may take the index finger for the little one too: that one does not
+  // count.
+  const std::size_t counted = is_from_side(hand) ? bends.size() - 1 : bends.size();
   const auto are = [&](std::size_t begin, std::size_t end, const auto& which) {
     return std::all_of(bends.begin() + static_cast<std::ptrdiff_t>(begin),
                        bends.begin() + static_cast<std::ptrdiff_t>(end), which);
@@ -55,10 +56,10 @@ Sign sign_of(const Hand& hand) {
     const float most =
         *std::max_element(bends.begin(), bends.begin() + static_cast<std::ptrdiff_t>(count));
     float others = 0;
-    for (std::size_t i = count; i < told; ++i)
-      others += bends[i] / static_cast<float>(told - count);
+    for (std::size_t i = count; i < counted; ++i)
+      others += bends[i] / static_cast<float>(counted - count);
     return most < kStraight && others - most > kApart &&
-           are(count, told, [](float by) { return by >= kStraight; });
+           are(count, counted, [](float by) { return by >= kStraight; });
   };
   const auto& p = hand.world;
   if (are(0, bends.size(), [](float by) { return by < kStraight; }))
@@ -82,7 +83,7 @@ std::optional<Sign> SignHold::update(Time time, Sign sign) {
   } else {
     if (sign != other_.sign || other_.last < held_.last) other_ = {sign, time, time};
     other_.last = time;
-    if (time - held_.last <= kGap || other_.since == time) return std::nullopt;
+    if (time - held_.last <= gap_) return std::nullopt;
     held_ = other_;
     is_told_ = false;
   }

@@ -28,12 +28,13 @@ Sign sign_of(const Hand& hand);
 class SignHold {
  public:
   static constexpr std::chrono::milliseconds kHold{300};
-  /// How long a sign may be mistaken for another in between; in one image always.
-  static constexpr std::chrono::milliseconds kGap{150};
+  /// How long a sign may be mistaken for another in between; where it commands nothing, longer.
+  static constexpr std::chrono::milliseconds kGap{150}, kLongGap{300};
   /// Maximum time between two images.
   static constexpr std::chrono::milliseconds kSilence{1000};
 
-  explicit SignHold(std::chrono::milliseconds hold = kHold) : hold_(hold) {}
+  explicit SignHold(std::chrono::milliseconds hold = kHold, std::chrono::milliseconds gap = kGap)
+      : hold_(hold), gap_(gap) {}
 
   /// Takes the sign in an image.
   /// @returns a sign, once, that was held for so long.
@@ -46,7 +47,7 @@ class SignHold {
     Sign sign = Sign::None;
     Time since{}, last{};
   };
-  std::chrono::milliseconds hold_;
+  std::chrono::milliseconds hold_, gap_;
   Seen held_, other_;  // the sign, and what it was taken for since
   bool is_told_ = false;
 };

@@ -34,7 +34,7 @@ class Hands {
   /// Where to look for it along the ray as long as it is not in the image. [m]
   static constexpr double kAhead = 1.5;
   struct Holding {
-    hc::people::SignHold hold;
+    hc::people::SignHold hold{hc::people::SignHold::kHold, hc::people::SignHold::kLongGap};
     hc::people::HandCommand command;
     hc::Time seen;
   };

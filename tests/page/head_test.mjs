@@ -58,7 +58,8 @@ describe("the page", { timeout: 10 * watchdog }, () => {
         await page.getByLabel("all links").check();
         await until("more links are drawn", async () => (await lines.count()) > few);
       }
-      await page.locator(".edge-age:not(:empty)").nth(10).waitFor();
+      const aged = page.locator(".edge-age:not(:empty)").filter({ visible: true });
+      await aged.nth(all ? few / 2 : 10).waitFor();
       const covered = await page.evaluate(() => {
         const areas = (selector) =>
           [...document.querySelectorAll(selector)]

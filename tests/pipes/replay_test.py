@@ -240,13 +240,14 @@ class Replay(Graphs):
         self.assertIn("host robot: ", self.err)
 
     def replay_task(self, task, settings, outputs, options="", kept="kept", ends=True):
-        """Records a task of the head and replays it, without its device."""
+        """Records a task of the head, until it ends or has sent enough, and replays it, without its
+        device."""
         graph = str(ROOT / "graphs" / ("score_%s.toml" % task))
         graph += "".join(" --set " + setting for setting in settings)
         run = "exec hc run --record %s --quiet %s" % (kept, graph)
         if ends:
             self.shell(run)
-        else:  # it scores a time, in which a busy computer may do nothing
+        else:  # its score takes a fixed time, in which a busy computer may send nothing
             name = "replay_%s_%d" % (task, os.getpid())
             process = self.start(run + " --as " + name)
             self.addCleanup(self.end_well, process)
@@ -304,10 +305,9 @@ class Replay(Graphs):
     def test_telepresence(self):
         self.replay_task(
             "telepresence",
-            ["follow_score.duration=1e6"],
-            ["workspace.focus", "telepresence.bid", "telepresence.command"],
+            ["follow_score.settle=1", "follow_score.duration=2"],
+            ["workspace.focus", "telepresence.bid", "telepresence.command", "follow_score.score"],
             " --except fake_head_tracker",  # whose packets go to a port of the recorded graph
-            ends=False,
         )
 
     def test_the_eyes_continue_when_the_neck_falls_silent(self):
