@@ -41,8 +41,7 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     await show("watch");
     const closed = page.locator('.node[aria-expanded="false"]');
     await closed.nth(3).waitFor();
-    // It is fitted into its window before it is painted, which may be after it is built.
-    await until("the graph is fitted", async () => (await smallestText()) >= 10);
+    await fitted();
     while ((await closed.count()) > 0) await closed.first().press("Enter");
     assert.ok((await smallestText()) >= 10);
     await page.setViewportSize({ width: 1000, height: 720 });
@@ -59,7 +58,8 @@ describe("the page", { timeout: 10 * watchdog }, () => {
         await until("more links are drawn", async () => (await lines.count()) > few);
       }
       const aged = page.locator(".edge-age:not(:empty)").filter({ visible: true });
-      await aged.nth(all ? few / 2 : 10).waitFor();
+      await aged.nth(all ? Math.floor(few / 2) : 10).waitFor();
+      await fitted();
       const covered = await page.evaluate(() => {
         const areas = (selector) =>
           [...document.querySelectorAll(selector)]
@@ -363,6 +363,11 @@ function smallestText() {
           .map((text) => parseFloat(getComputedStyle(text).fontSize) * text.getScreenCTM().a),
       ),
     );
+}
+
+/** The graph is fitted into its window before it is painted, which may be after it is built. */
+function fitted() {
+  return until("the graph is fitted", async () => (await smallestText()) >= 10);
 }
 
 async function noFocus() {
