@@ -44,10 +44,9 @@ class SearchTimes {
 };
 
 /// Follows known hands by the network of their points alone, and searches for others now and then.
-/// While a palm may be a command, other hands are looked at less often, and are missing from the
-/// images in between.
 /// While enough are followed it searches for one more that is open and up, since that is a command
-/// to stop, and follows it as long as it is.
+/// to stop, and follows it as long as it is. While a palm may be a command, other hands are looked
+/// at less often, and are missing from the images in between.
 ///
 /// Cost: 15 ms for each known hand, of one core; 26 ms for a search and 30 ms for each other hand
 /// that it sees; 1 ms for an image.
