@@ -14,7 +14,9 @@
 #include <hc/base/format.h>
 #include <nets/depthwise.h>
 #include <nets/face_api.h>
+#include <nets/pointwise.h>
 #include <nets/shapes.h>
+#include <nets/tails.h>
 #include <nets/tflite.h>
 #include <nets/weights.h>
 
@@ -54,13 +56,19 @@ cv::Mat row(const std::vector<float>& numbers) {
 /// Builds OpenCV's layers from ours, whose shapes are right.
 class Builder {
  public:
-  explicit Builder(const Layers& layers) : layers_(layers), places_(layers.tensors.size()) {
+  explicit Builder(const Layers& layers)
+      : layers_(layers),
+        tails_(layers),
+        is_built_(layers.layers.size()),
+        places_(layers.tensors.size()) {
     places_[static_cast<std::size_t>(layers.input)] = 0;  // OpenCV's layer 0 is the input
     register_depthwise();
+    register_pointwise();
   }
 
   cv::dnn::Net build() {
-    for (const Layer& layer : layers_.layers) add(layer);
+    for (std::size_t i = 0; i < layers_.layers.size(); ++i)
+      if (!is_built_[i]) add(layers_.layers[i]);
     // An output by its own name, in OpenCV's order of axes for images.
     for (const int output : layers_.outputs) names_.push_back(net_.getLayer(place(output))->name);
     return net_;
@@ -113,6 +121,7 @@ class Builder {
   }
 
   void add(const Layer& layer) {
+    if (is_pointwise(layer)) return add_pointwise(layer);
     int made = make(layer);
     if (layer.kind != Kind::DepthwiseConvolution) {  // it has its activation itself
       if (layer.activation == Kind::Relu) made = put("ReLU", made);
@@ -199,6 +208,40 @@ class Builder {
     return from;
   }
 
+  /// Whether a convolution has a window and strides of one pixel, of not too many channels: some
+  /// pixels of all of them are copied.
+  [[nodiscard]] bool is_pointwise(const Layer& layer) const {
+    constexpr int kMostChannels = 4096;
+    if (layer.kind != Kind::Convolution || layer.stride_down != 1 || layer.stride_right != 1)
+      return false;
+    const Shape& of = tensor(layer.inputs[1]).shape;
+    return of[1] == 1 && of[2] == 1 && of[3] <= kMostChannels;
+  }
+
+  /// With what follows it, as far as it can be computed together.
+  void add_pointwise(const Layer& layer) {
+    const Tail tail = tails_.after(
+        layer, [&](int number) { return places_[static_cast<std::size_t>(number)].has_value(); });
+    for (const std::size_t each : tail.layers) is_built_[each] = true;
+    const Tensor& of = tensor(layer.inputs[1]);
+    const auto channels = static_cast<std::size_t>(of.shape[0]);
+    PointwiseConvolution::Activation activation{
+        tail.slopes ? tensor(*tail.slopes).numbers
+                    : std::vector<float>(channels, tail.activation ? 0.0F : 1.0F)};
+    if (tail.activation == Kind::Relu6) activation.max = 6;
+    auto params = pointwise_params(cv::Mat(of.numbers, true).reshape(1, of.shape[0]),
+                                   bias(layer, channels), activation);
+    std::vector<int> from{place(layer.inputs[0])};
+    if (tail.plus) from.push_back(place(*tail.plus));
+    places_[static_cast<std::size_t>(tail.output)] = put(kPointwise, params, from);
+  }
+
+  /// The bias of a convolution, or zeros.
+  [[nodiscard]] cv::Mat bias(const Layer& layer, std::size_t channels) const {
+    return row(layer.inputs.size() > 2 ? tensor(layer.inputs[2]).numbers
+                                       : std::vector<float>(channels));
+  }
+
   /// With its activation.
   int depthwise(const Layer& layer, int from, const Shape& shape, const Shape& to) {
     const Tensor& of = tensor(layer.inputs[1]);
@@ -207,9 +250,7 @@ class Builder {
     if (layer.activation) options.min = 0;
     if (layer.activation == Kind::Relu6) options.max = 6;
     auto params = depthwise_params(options, {to[2], to[1]});
-    const std::vector<float> none(static_cast<std::size_t>(shape[3]));
-    params.blobs = {weights(of, {3, 0, 1, 2}),
-                    row(layer.inputs.size() > 2 ? tensor(layer.inputs[2]).numbers : none)};
+    params.blobs = {weights(of, {3, 0, 1, 2}), bias(layer, static_cast<std::size_t>(shape[3]))};
     return put(kDepthwise, params, from);
   }
 
@@ -226,6 +267,8 @@ class Builder {
   }
 
   const Layers& layers_;
+  const Tails tails_;
+  std::vector<bool> is_built_;              // with the convolution before it
   std::vector<std::optional<int>> places_;  // of tensors that are computed: OpenCV's layers
   cv::dnn::Net net_;
   std::vector<std::string> names_;
