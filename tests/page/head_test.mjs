@@ -187,9 +187,12 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     await page.keyboard.press("Enter");
     const margin = page.getByLabel("margin", { exact: true });
     const value = () => graph.module("workspace").parameters.margin;
-    await margin.fill("0.15");
-    await margin.press("Enter");
-    await until("the parameter arrives", () => value() === "0.15");
+    // A page that is so slow that the server takes it for lost says so, and loses the command.
+    await until("the parameter arrives", async () => {
+      await margin.fill("0.15");
+      await margin.press("Enter");
+      return value() === "0.15";
+    });
     await margin.fill("-1");
     await margin.press("Enter");
     await page.locator('[data-parameter="margin"] .problem', { hasText: /\S/ }).waitFor();
@@ -252,35 +255,37 @@ describe("the page", { timeout: 10 * watchdog }, () => {
     assert.ok(page.url().endsWith("#seat|graph,show=tables"));
   });
 
-  test("nothing moves while the focus changes twenty times", async () => {
-    const observers = await Promise.all(
-      ["watch", "build"].map(async (view) => {
-        const observer = await context.newPage();
-        await observer.goto(`${origin}/#${view}`);
-        return observer;
-      }),
-    );
-    await takeSeat("drive");
-    const all = [page, ...observers];
-    for (const each of all) {
-      await each.locator(".waiting").first().waitFor({ state: "detached" });
-      await each.evaluate(() => {
+  for (const [view, changes] of [
+    ["drive", 20],
+    ["watch", 6],
+    ["build", 6],
+  ]) {
+    test(`nothing moves in ${view} while the focus changes`, async () => {
+      await takeSeat("drive");
+      const observer = view === "drive" ? page : await context.newPage();
+      if (observer !== page) await page.setViewportSize({ width: 360, height: 640 }); // little to draw
+      if (observer !== page) await observer.goto(`${origin}/#${view}`);
+      await observer.locator(".bar .focus:not(:empty)").waitFor();
+      await observer.locator(".waiting").first().waitFor({ state: "detached" });
+      await observer.evaluate(() => {
         window.shifts = [];
         new PerformanceObserver((list) => {
           for (const { value, sources } of list.getEntries())
             window.shifts.push(`${value} ${sources.map(({ node }) => node?.className)}`);
         }).observe({ type: "layout-shift" });
       });
-    }
-    for (let i = 0; i < 20; i++) {
-      const task = ["read", "track", "point"][i % 3];
-      // Not by the mouse: a shift soon after a person's input does not count.
-      await page.locator(`[data-task="${task}"]`).dispatchEvent("click");
-      for (const each of all) await each.locator(".bar .focus", { hasText: task }).waitFor();
-    }
-    for (const each of all) assert.deepEqual(await each.evaluate(() => window.shifts), []);
-    await Promise.all(observers.map((each) => each.close()));
-  });
+      for (let i = 0; i < changes; i++) {
+        const task = ["read", "track", "point"][i % 3];
+        // Not by the mouse: a shift soon after a person's input does not count.
+        await page.locator(`[data-task="${task}"]`).dispatchEvent("click");
+        await observer.locator(".bar .focus", { hasText: task }).waitFor();
+      }
+      assert.deepEqual(await observer.evaluate(() => window.shifts), []);
+      if (observer === page) return;
+      await observer.close();
+      await page.setViewportSize({ width: 1000, height: 720 });
+    });
+  }
 
   for (const theme of ["light", "dark"]) {
     for (const [panels, ready] of [
