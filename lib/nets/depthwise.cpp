@@ -32,10 +32,11 @@ void add_taps(const float* const* taps, const float* weights, std::size_t count,
       c = hn::Add(c, hn::Mul(weight, hn::LoadU(d, tap + 2 * lanes)));
       e = hn::Add(e, hn::Mul(weight, hn::LoadU(d, tap + 3 * lanes)));
     }
-    hn::StoreU(hn::Min(hn::Max(a, low), high), d, to + i);
-    hn::StoreU(hn::Min(hn::Max(b, low), high), d, to + i + lanes);
-    hn::StoreU(hn::Min(hn::Max(c, low), high), d, to + i + 2 * lanes);
-    hn::StoreU(hn::Min(hn::Max(e, low), high), d, to + i + 3 * lanes);
+    // In this order they keep what is not a number.
+    hn::StoreU(hn::Min(high, hn::Max(low, a)), d, to + i);
+    hn::StoreU(hn::Min(high, hn::Max(low, b)), d, to + i + lanes);
+    hn::StoreU(hn::Min(high, hn::Max(low, c)), d, to + i + 2 * lanes);
+    hn::StoreU(hn::Min(high, hn::Max(low, e)), d, to + i + 3 * lanes);
   }
 }
 
@@ -79,7 +80,12 @@ class DepthwiseLayer final : public cv::dnn::Layer {
   bool getMemoryShapes(const std::vector<cv::dnn::MatShape>& inputs, int /*outputs*/,
                        std::vector<cv::dnn::MatShape>& outputs,
                        std::vector<cv::dnn::MatShape>& /*internals*/) const override {
-    outputs = {{inputs[0][0], inputs[0][1], to_.height, to_.width}};
+    // OpenCV's shapes may differ from those of the file, as its pools compute them by floats.
+    const auto& [window, down, right, min, max] = options_;
+    CV_Assert(inputs[0].size() == 4 && inputs[0][0] == 1 && inputs[0][1] == blobs[0].size[0]);
+    CV_Assert((inputs[0][2] + window.top + window.bottom - window.height) / down + 1 == to_.height);
+    CV_Assert((inputs[0][3] + window.left + window.right - window.width) / right + 1 == to_.width);
+    outputs = {{1, inputs[0][1], to_.height, to_.width}};
     return false;
   }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -74,6 +75,16 @@ TEST_P(DepthwiseOf, is_the_plain_one_bit_by_bit) {
     ASSERT_EQ(found, plain(options, from, to, image, weights, 0.25F))
         << window.height << 'x' << window.width << " of " << from;
   }
+}
+
+TEST_P(DepthwiseOf, keeps_what_is_not_a_number) {
+  Options options;
+  options.min = 0;
+  options.max = 6;
+  const float from = NAN, weight = 1;
+  float found = 0;
+  PlaneConvolution(options, {1, 1}, {1, 1}).convolve(&from, {&weight, 1}, 0, &found);
+  EXPECT_TRUE(std::isnan(found));
 }
 
 INSTANTIATE_TEST_SUITE_P(Vectors, DepthwiseOf, each_kind_of_vectors(), name_of_vectors);

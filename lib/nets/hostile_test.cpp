@@ -135,6 +135,27 @@ TEST(Hostile, layers_that_share_their_weights_have_a_limit) {
             "TooLarge: layers with more than 67108864 weights");
 }
 
+TEST(Hostile, an_image_that_opencv_computes_smaller_is_refused) {
+  // OpenCV computes the size of a pool by floats, which have 24 bits.
+  constexpr int kHigh = (1 << 24) + 6, kPooled = (kHigh - 1) / 3 + 1;
+  for (const Kind kind : {Kind::Convolution, Kind::DepthwiseConvolution}) {
+    Layers layers;
+    layers.tensors = {{"image", {1, kHigh, 1, 1}, {}, {}},   {"pool", {1, kPooled, 1, 1}, {}, {}},
+                      {"other", {1, kPooled, 1, 1}, {}, {}}, {"sum", {1, kPooled, 1, 1}, {}, {}},
+                      {"last", {1, kPooled, 1, 1}, {}, {}},  {"mean", {1, 1}, {}, {}},
+                      {"weight", {1, 1, 1, 1}, {1}, {}},     {"axes", {2}, {}, {1, 2}}};
+    hc::nets::Layer pool{Kind::MaxPool, {0}, 1}, stride{Kind::Convolution, {0, 6}, 2};
+    pool.stride_down = stride.stride_down = 3;
+    layers.layers = {pool, stride, {Kind::Convolution, {2, 6}, 3}, {Kind::Add, {3, 1}, 4}};
+    if (kind == Kind::DepthwiseConvolution) layers.layers = {pool, {kind, {1, 6}, 4}};
+    layers.layers.push_back({Kind::Mean, {4, 7}, 5});
+    layers.outputs = {5};
+    const auto refused = Network::make(layers);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Code::Unsupported) << refused.error().text();
+  }
+}
+
 TEST(Hostile, a_pool_that_would_take_minutes_is_refused) {
   Layers layers;
   layers.tensors = {{"image", {1, 4096, 4096, 1}, {}, {}}, {"pool", {1, 4096, 4096, 1}, {}, {}}};

@@ -14,9 +14,9 @@
 #include <hc/base/format.h>
 #include <nets/depthwise.h>
 #include <nets/face_api.h>
+#include <nets/fusion.h>
 #include <nets/pointwise.h>
 #include <nets/shapes.h>
-#include <nets/tails.h>
 #include <nets/tflite.h>
 #include <nets/weights.h>
 
@@ -58,8 +58,8 @@ class Builder {
  public:
   explicit Builder(const Layers& layers)
       : layers_(layers),
-        tails_(layers),
-        is_built_(layers.layers.size()),
+        fusion_(layers),
+        is_fused_(layers.layers.size()),
         places_(layers.tensors.size()) {
     places_[static_cast<std::size_t>(layers.input)] = 0;  // OpenCV's layer 0 is the input
     register_depthwise();
@@ -68,7 +68,7 @@ class Builder {
 
   cv::dnn::Net build() {
     for (std::size_t i = 0; i < layers_.layers.size(); ++i)
-      if (!is_built_[i]) add(layers_.layers[i]);
+      if (!is_fused_[i]) add(i);
     // An output by its own name, in OpenCV's order of axes for images.
     for (const int output : layers_.outputs) names_.push_back(net_.getLayer(place(output))->name);
     return net_;
@@ -120,8 +120,9 @@ class Builder {
     return from;
   }
 
-  void add(const Layer& layer) {
-    if (is_pointwise(layer)) return add_pointwise(layer);
+  void add(std::size_t number) {
+    const Layer& layer = layers_.layers[number];
+    if (is_pointwise(layer)) return add_pointwise(layer, fusion_.of(number));
     int made = make(layer);
     if (layer.kind != Kind::DepthwiseConvolution) {  // it has its activation itself
       if (layer.activation == Kind::Relu) made = put("ReLU", made);
@@ -208,8 +209,8 @@ class Builder {
     return from;
   }
 
-  /// Whether a convolution has a window and strides of one pixel, of not too many channels: some
-  /// pixels of all of them are copied.
+  /// Whether we compute a convolution ourselves: its window and strides are of one pixel, and its
+  /// channels so few that a block of pixels of all of them is small.
   [[nodiscard]] bool is_pointwise(const Layer& layer) const {
     constexpr int kMostChannels = 4096;
     if (layer.kind != Kind::Convolution || layer.stride_down != 1 || layer.stride_right != 1)
@@ -218,22 +219,19 @@ class Builder {
     return of[1] == 1 && of[2] == 1 && of[3] <= kMostChannels;
   }
 
-  /// With what follows it, as far as it can be computed together.
-  void add_pointwise(const Layer& layer) {
-    const Tail tail = tails_.after(
-        layer, [&](int number) { return places_[static_cast<std::size_t>(number)].has_value(); });
-    for (const std::size_t each : tail.layers) is_built_[each] = true;
+  void add_pointwise(const Layer& layer, const Fused& fused) {
+    for (const std::size_t each : fused.layers) is_fused_[each] = true;
     const Tensor& of = tensor(layer.inputs[1]);
     const auto channels = static_cast<std::size_t>(of.shape[0]);
     PointwiseConvolution::Activation activation{
-        tail.slopes ? tensor(*tail.slopes).numbers
-                    : std::vector<float>(channels, tail.activation ? 0.0F : 1.0F)};
-    if (tail.activation == Kind::Relu6) activation.max = 6;
+        fused.slopes ? tensor(*fused.slopes).numbers
+                     : std::vector<float>(channels, fused.activation ? 0.0F : 1.0F)};
+    if (fused.activation == Kind::Relu6) activation.max = 6;
     auto params = pointwise_params(cv::Mat(of.numbers, true).reshape(1, of.shape[0]),
                                    bias(layer, channels), activation);
     std::vector<int> from{place(layer.inputs[0])};
-    if (tail.plus) from.push_back(place(*tail.plus));
-    places_[static_cast<std::size_t>(tail.output)] = put(kPointwise, params, from);
+    if (fused.addend) from.push_back(place(*fused.addend));
+    places_[static_cast<std::size_t>(fused.output)] = put(kPointwise, params, from);
   }
 
   /// The bias of a convolution, or zeros.
@@ -267,8 +265,8 @@ class Builder {
   }
 
   const Layers& layers_;
-  const Tails tails_;
-  std::vector<bool> is_built_;              // with the convolution before it
+  const Fusion fusion_;
+  std::vector<bool> is_fused_;              // into a convolution before it
   std::vector<std::optional<int>> places_;  // of tensors that are computed: OpenCV's layers
   cv::dnn::Net net_;
   std::vector<std::string> names_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Computes the layers of a network, by OpenCV's dnn and our own depthwise convolutions.
+// Computes the layers of a network, by OpenCV's dnn and our own pointwise and depthwise
+// convolutions.
 
 #include <memory>
 #include <string>

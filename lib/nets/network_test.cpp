@@ -162,6 +162,83 @@ TEST_F(OneLayer, a_depthwise_convolution_adds_its_bias_and_is_activated) {
   }
 }
 
+/// A pointwise convolution is followed by a sum, an activation, or both, which are fused.
+class Fused : public OneLayer, public ::testing::WithParamInterface<std::optional<Kind>> {
+ protected:
+  static constexpr int kChannels = 5;
+  const Shape shape{1, 9, 13, kChannels};
+
+  void SetUp() override {
+    weights = constant({kChannels, 1, 1, kChannels}, 1);
+    slopes = constant({1, 1, kChannels}, 2);
+    layers.input = computed(shape);
+  }
+  int follow(Kind kind, std::vector<int> inputs) {
+    const int made = computed(shape);
+    layers.layers.push_back({kind, std::move(inputs), made});
+    return made;
+  }
+  /// The result of a convolution, plus the image if it is added.
+  [[nodiscard]] float expected(std::size_t pixel, std::size_t channel, bool is_added) {
+    float sum = is_added ? image[pixel * kChannels + channel] : 0;
+    for (std::size_t k = 0; k < kChannels; ++k)
+      sum += numbers(weights)[channel * kChannels + k] * image[pixel * kChannels + k];
+    if (!GetParam()) return sum;
+    if (sum < 0) return GetParam() == Kind::Prelu ? sum * numbers(slopes)[channel] : 0;
+    return GetParam() == Kind::Relu6 ? std::min(sum, 6.F) : sum;
+  }
+
+  int weights = 0, slopes = 0;
+};
+
+TEST_P(Fused, are_a_sum_and_an_activation) {
+  for (const bool is_first : {false, true})
+    for (const bool is_added : {false, true}) {
+      layers = {};
+      SetUp();
+      int last = follow(Kind::Convolution, {layers.input, weights});
+      if (is_added && is_first) last = follow(Kind::Add, {layers.input, last});
+      if (is_added && !is_first) last = follow(Kind::Add, {last, layers.input});
+      if (GetParam() == Kind::Prelu)
+        last = follow(Kind::Prelu, {last, slopes});
+      else if (GetParam())
+        last = follow(*GetParam(), {last});
+      const int size = static_cast<int>(hc::nets::size_of(shape));
+      layers.outputs = {computed({1, size})};
+      layers.layers.push_back({Kind::Reshape, {last}, layers.outputs[0]});
+      const auto network = Network::make(layers);
+      ASSERT_TRUE(network) << network.error().text();
+      image = some(size, 0);
+      for (float& number : image) number *= 5;  // sums beyond 6
+      const auto result =
+          (*network)->run(cv::Mat(shape[1], shape[2], CV_32FC(kChannels), image.data()))[0];
+      for (int i = 0; i < size; ++i)
+        ASSERT_NEAR(result.at<float>(i),
+                    expected(static_cast<std::size_t>(i / kChannels),
+                             static_cast<std::size_t>(i % kChannels), is_added),
+                    1e-4)
+            << i << (is_added ? " added" : "");
+    }
+}
+INSTANTIATE_TEST_SUITE_P(All, Fused,
+                         ::testing::Values(std::nullopt, Kind::Relu, Kind::Relu6, Kind::Prelu));
+
+TEST_F(OneLayer, one_with_another_activation_or_two_is_refused) {
+  const Shape shape{1, 4, 5, 2};
+  for (const auto& [kind, activation] : {std::pair(Kind::Convolution, Kind::Logistic),
+                                         {Kind::Convolution, Kind::Prelu},
+                                         {Kind::Relu, Kind::Relu6}}) {
+    layers = {};
+    const int weights = constant({2, 1, 1, 2}, 1);
+    Layer layer{kind, {}};
+    if (kind == Kind::Convolution) layer.inputs = {weights};
+    layer.activation = activation;
+    const auto refused = run(shape, layer, shape);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, hc::Code::Malformed);
+  }
+}
+
 TEST_F(OneLayer, one_whose_padding_is_too_large_is_refused) {
   const int weights = constant({1, 1, 64, 1}, 1);
   Layer convolution{Kind::DepthwiseConvolution, {weights}};

@@ -20,46 +20,40 @@ using V = hn::Vec<D>;
 
 /// Copies `count` pixels of each channel beside each other, and zeros after them.
 void pack(const float* from, std::size_t size, std::size_t channels, std::size_t count,
-          float* panel) {
+          float* block) {
   const std::size_t lanes = hn::Lanes(D());
-  for (std::size_t k = 0; k < channels; ++k, from += size, panel += 2 * lanes) {
+  for (std::size_t k = 0; k < channels; ++k, from += size, block += 2 * lanes) {
     if (count == 2 * lanes) {
-      hn::StoreU(hn::LoadU(D(), from), D(), panel);
-      hn::StoreU(hn::LoadU(D(), from + lanes), D(), panel + lanes);
+      hn::StoreU(hn::LoadU(D(), from), D(), block);
+      hn::StoreU(hn::LoadU(D(), from + lanes), D(), block + lanes);
     } else {
-      std::fill(std::copy_n(from, count, panel), panel + 2 * lanes, 0.0F);
+      std::fill(std::copy_n(from, count, block), block + 2 * lanes, 0.0F);
     }
   }
 }
 
-/// Where the two vectors of pixels of a channel go, what is added to them, or null, and then how
-/// they are activated.
-struct Row {
-  const float* plus;
-  float* to;
-  float slope, max;
-};
-
-HWY_INLINE V activated(V sum, const Row& row, std::size_t at) {
-  if (row.plus) sum = hn::Add(sum, hn::LoadU(D(), row.plus + at));
-  return hn::IfThenElse(hn::Lt(sum, hn::Zero(D())), hn::Mul(sum, hn::Set(D(), row.slope)),
-                        hn::Min(sum, hn::Set(D(), row.max)));
-}
-HWY_INLINE void finish(V first, V second, const Row& row) {
-  hn::StoreU(activated(first, row, 0), D(), row.to);
-  hn::StoreU(activated(second, row, hn::Lanes(D())), D(), row.to + hn::Lanes(D()));
+/// Stores the activation of a sum, to which a vector is added unless it is null.
+HWY_INLINE void store(V sum, const float* addend, float slope, float max, float* to) {
+  const D d;
+  if (addend) sum = hn::Add(sum, hn::LoadU(d, addend));
+  // Min() in this order keeps what is not a number.
+  hn::StoreU(hn::IfThenElse(hn::Lt(sum, hn::Zero(d)), hn::Mul(sum, hn::Set(d, slope)),
+                            hn::Min(hn::Set(d, max), sum)),
+             d, to);
 }
 
-/// Four channels of the result, for the pixels of a panel.
-void multiply(const float* weights, const float* bias, std::size_t channels, const float* panel,
-              const Row* rows) {
+/// Four channels of the result from `first` on, for the two vectors of pixels in a block.
+/// @param addend  or null. Like the results, its channels are `step` apart.
+void multiply(const PointwiseConvolution::Packed& by, std::size_t first, const float* block,
+              const float* addend, float* to, std::size_t step) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
+  const float *weights = by.weights.data() + first * by.in, *bias = by.bias.data() + first;
   V a = hn::Set(d, bias[0]), b = hn::Set(d, bias[1]), c = hn::Set(d, bias[2]),
     e = hn::Set(d, bias[3]);
   V a2 = a, b2 = b, c2 = c, e2 = e;
-  for (std::size_t k = 0; k < channels; ++k, panel += 2 * lanes, weights += 4) {
-    const V x = hn::LoadU(d, panel), x2 = hn::LoadU(d, panel + lanes);
+  for (std::size_t k = 0; k < by.in; ++k, block += 2 * lanes, weights += 4) {
+    const V x = hn::LoadU(d, block), x2 = hn::LoadU(d, block + lanes);
     const V u = hn::Set(d, weights[0]), v = hn::Set(d, weights[1]), w = hn::Set(d, weights[2]),
             z = hn::Set(d, weights[3]);
     // Not fused, since not every processor can.
@@ -72,40 +66,43 @@ void multiply(const float* weights, const float* bias, std::size_t channels, con
     e = hn::Add(e, hn::Mul(z, x));
     e2 = hn::Add(e2, hn::Mul(z, x2));
   }
-  finish(a, a2, rows[0]);
-  finish(b, b2, rows[1]);
-  finish(c, c2, rows[2]);
-  finish(e, e2, rows[3]);
+  const float* slopes = by.slopes.data() + first;
+  const auto at = [&](std::size_t channel) { return addend ? addend + channel * step : nullptr; };
+  const auto after = [&](const float* vector) { return vector ? vector + lanes : nullptr; };
+  store(a, at(0), slopes[0], by.max, to);
+  store(a2, after(at(0)), slopes[0], by.max, to + lanes);
+  store(b, at(1), slopes[1], by.max, to + step);
+  store(b2, after(at(1)), slopes[1], by.max, to + step + lanes);
+  store(c, at(2), slopes[2], by.max, to + 2 * step);
+  store(c2, after(at(2)), slopes[2], by.max, to + 2 * step + lanes);
+  store(e, at(3), slopes[3], by.max, to + 3 * step);
+  store(e2, after(at(3)), slopes[3], by.max, to + 3 * step + lanes);
 }
 
-/// Of the pixels from `begin` to before `end`. @see PointwiseConvolution
-void convolve(const float* weights, const float* bias, const float* slopes, float max,
-              std::size_t in, std::size_t out, const PointwiseConvolution::Planes& planes,
+/// The pixels from `begin` to before `end`. @see PointwiseConvolution
+void convolve(const PointwiseConvolution::Packed& by, const PointwiseConvolution::Planes& planes,
               std::size_t begin, std::size_t end) {
+  static_assert(PointwiseConvolution::kStep % (2 * hn::MaxLanes(D())) == 0);
   const std::size_t width = 2 * hn::Lanes(D());
-  std::vector<float> panel(width * in), plus(4 * width), results(4 * width);
+  std::vector<float> block(width * by.in), addend(4 * width), result(4 * width);
   for (std::size_t at = begin; at < end; at += width) {
     const std::size_t count = std::min(width, end - at);
-    pack(planes.from + at, planes.size, in, count, panel.data());
-    for (std::size_t first = 0; first < out; first += 4) {
-      const std::size_t channels = std::min<std::size_t>(4, out - first);
-      // What is not whole goes by way of memory of its own.
-      const bool is_whole = count == width && channels == 4;
-      Row rows[4];
-      for (std::size_t k = 0; k < 4; ++k) {
-        const std::size_t place = (first + k) * planes.size + at;
-        rows[k] = {planes.plus ? plus.data() + k * width : nullptr, results.data() + k * width,
-                   k < channels ? slopes[first + k] : 0, max};
-        if (is_whole)
-          rows[k] = {planes.plus ? planes.plus + place : nullptr, planes.to + place,
-                     slopes[first + k], max};
-        else if (planes.plus && k < channels)
-          std::copy_n(planes.plus + place, count, plus.data() + k * width);
+    pack(planes.from + at, planes.size, by.in, count, block.data());
+    for (std::size_t first = 0; first < by.out; first += 4) {
+      const std::size_t channels = std::min<std::size_t>(4, by.out - first);
+      const std::size_t place = first * planes.size + at;
+      if (count == width && channels == 4) {
+        multiply(by, first, block.data(), planes.addend ? planes.addend + place : nullptr,
+                 planes.to + place, planes.size);
+        continue;
       }
-      multiply(weights + first * in, bias + first, in, panel.data(), rows);
-      for (std::size_t k = 0; k < channels && !is_whole; ++k)
-        std::copy_n(results.data() + k * width, count,
-                    planes.to + (first + k) * planes.size + at);
+      // What is not whole is computed in memory of its own.
+      for (std::size_t k = 0; k < channels && planes.addend; ++k)
+        std::copy_n(planes.addend + place + k * planes.size, count, addend.data() + k * width);
+      multiply(by, first, block.data(), planes.addend ? addend.data() : nullptr, result.data(),
+               width);
+      for (std::size_t k = 0; k < channels; ++k)
+        std::copy_n(result.data() + k * width, count, planes.to + place + k * planes.size);
     }
   }
 }
@@ -118,9 +115,6 @@ namespace hc::nets {
 namespace {
 
 HWY_EXPORT(convolve);
-
-/// Pixels that a thread takes at once: so many that its panels are whole.
-constexpr std::size_t kStep = 64;
 
 /// The layer in OpenCV's network.
 class PointwiseLayer final : public cv::dnn::Layer {
@@ -137,7 +131,10 @@ class PointwiseLayer final : public cv::dnn::Layer {
   bool getMemoryShapes(const std::vector<cv::dnn::MatShape>& inputs, int /*outputs*/,
                        std::vector<cv::dnn::MatShape>& outputs,
                        std::vector<cv::dnn::MatShape>& /*internals*/) const override {
-    outputs = {{inputs[0][0], blobs[0].rows, inputs[0][2], inputs[0][3]}};
+    // OpenCV's shapes may differ from those of the file, as its pools compute them by floats.
+    CV_Assert(inputs[0].size() == 4 && inputs[0][0] == 1 && inputs[0][1] == blobs[0].cols);
+    outputs = {{1, blobs[0].rows, inputs[0][2], inputs[0][3]}};
+    CV_Assert(inputs.size() == 1 || inputs[1] == outputs[0]);
     return false;
   }
 
@@ -151,6 +148,7 @@ class PointwiseLayer final : public cv::dnn::Layer {
     const PointwiseConvolution::Planes planes{from[0].ptr<float>(),
                                               from.size() > 1 ? from[1].ptr<float>() : nullptr,
                                               to[0].ptr<float>(), size};
+    constexpr auto kStep = PointwiseConvolution::kStep;
     const auto steps = static_cast<int>((size + kStep - 1) / kStep);
     cv::parallel_for_({0, steps}, [&](const cv::Range& range) {
       convolution_.convolve(planes, static_cast<std::size_t>(range.start) * kStep,
@@ -166,23 +164,26 @@ class PointwiseLayer final : public cv::dnn::Layer {
 
 PointwiseConvolution::PointwiseConvolution(const cv::Mat& weights, std::vector<float> bias,
                                            Activation activation)
-    : in_(static_cast<std::size_t>(weights.cols)),
-      out_(static_cast<std::size_t>(weights.rows)),
-      weights_((out_ + 3) / 4 * 4 * in_),
-      bias_(std::move(bias)),
-      activation_(std::move(activation)) {
-  bias_.resize((out_ + 3) / 4 * 4);
-  for (std::size_t row = 0; row < out_; ++row)
-    for (std::size_t k = 0; k < in_; ++k)
-      weights_[(row / 4 * in_ + k) * 4 + row % 4] =
+    : packed_{static_cast<std::size_t>(weights.cols),
+              static_cast<std::size_t>(weights.rows),
+              {},
+              std::move(bias),
+              std::move(activation.slopes),
+              activation.max} {
+  auto& [in, out, packed, biases, slopes, max] = packed_;
+  const std::size_t rows = (out + 3) / 4 * 4;
+  packed.resize(rows * in);
+  biases.resize(rows);
+  slopes.resize(rows);
+  for (std::size_t row = 0; row < out; ++row)
+    for (std::size_t k = 0; k < in; ++k)
+      packed[(row / 4 * in + k) * 4 + row % 4] =
           weights.at<float>(static_cast<int>(row), static_cast<int>(k));
 }
 
 void PointwiseConvolution::convolve(const Planes& planes, std::size_t begin,
                                     std::size_t end) const {
-  HWY_DYNAMIC_DISPATCH(convolve)
-  (weights_.data(), bias_.data(), activation_.slopes.data(), activation_.max, in_, out_, planes,
-   begin, end);
+  HWY_DYNAMIC_DISPATCH(convolve)(packed_, planes, begin, end);
 }
 
 cv::dnn::LayerParams pointwise_params(const cv::Mat& weights, const cv::Mat& bias,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Convolutions with a window of one pixel: OpenCV's dnn took half of the time of the network that
-// finds faces for them, and a fifth for the sums of images and activations after them.
+// Convolutions with a window of one pixel: OpenCV's dnn spent half of the time of the network that
+// finds faces on them, and a fifth on the sums and activations after them.
 
 #include <cstddef>
 #include <limits>
@@ -15,18 +15,21 @@ namespace hc::nets {
 /// by bit, on every processor, of finite numbers. Pure.
 class PointwiseConvolution {
  public:
-  /// What becomes of the sums.
+  /// Applied to each sum: negative ones are multiplied by the slope of their channel (0 is ReLU, 1
+  /// changes nothing), others limited to the maximum.
   struct Activation {
-    std::vector<float> slopes;  ///< of negative ones, by channel; 0: ReLU, 1: as they are
+    std::vector<float> slopes;
     float max = std::numeric_limits<float>::infinity();
   };
   /// Images, one channel after the other.
   struct Planes {
     const float* from;
-    const float* plus;  ///< added to the result before its activation, or null
+    const float* addend;  ///< added to the result before its activation, or null
     float* to;
     std::size_t size;  ///< of each channel [px]
   };
+  /// Where a part of the pixels had best begin.
+  static constexpr std::size_t kStep = 64;
 
   /// @param weights  (out, in)
   /// @param bias  of each channel of the result
@@ -35,11 +38,16 @@ class PointwiseConvolution {
   /// Computes the pixels from `begin` to before `end`.
   void convolve(const Planes& planes, std::size_t begin, std::size_t end) const;
 
+  /// By channels of the result, filled up to a multiple of four.
+  struct Packed {
+    std::size_t in, out;
+    std::vector<float> weights;  ///< (out / 4, in, 4)
+    std::vector<float> bias, slopes;
+    float max;
+  };
+
  private:
-  std::size_t in_, out_;
-  std::vector<float> weights_;  // four channels of the result together, (out / 4, in, 4)
-  std::vector<float> bias_;     // up to a multiple of four
-  Activation activation_;
+  Packed packed_;
 };
 
 /// The type of OpenCV's layer. Its blobs are weights (out, in), bias and slopes; its inputs the

@@ -23,10 +23,10 @@ TEST_P(PointwiseOf, is_the_plain_one_bit_by_bit) {
     const int in = i % 20 == 0 ? 1 : rng.uniform(1, 70), out = rng.uniform(1, 20);
     const auto size = static_cast<std::size_t>(i % 20 == 1 ? 1 : rng.uniform(1, 200));
     cv::Mat weights(out, in, CV_32F), from(in, static_cast<int>(size), CV_32F),
-        plus(out, from.cols, CV_32F), found(out, from.cols, CV_32F, cv::Scalar(NAN));
+        addend(out, from.cols, CV_32F), found(out + 1, from.cols, CV_32F, cv::Scalar(NAN));
     rng.fill(weights, cv::RNG::UNIFORM, -1, 1);
     rng.fill(from, cv::RNG::UNIFORM, -2, 2);
-    rng.fill(plus, cv::RNG::UNIFORM, -2, 2);
+    rng.fill(addend, cv::RNG::UNIFORM, -2, 2);
     std::vector<float> bias(static_cast<std::size_t>(out));
     rng.fill(bias, cv::RNG::UNIFORM, -1, 1);
     PointwiseConvolution::Activation activation{std::vector<float>(bias.size(), 1)};
@@ -35,22 +35,40 @@ TEST_P(PointwiseOf, is_the_plain_one_bit_by_bit) {
     const bool is_added = i % 2 == 0;
 
     const PointwiseConvolution convolution(weights, bias, activation);
-    // In two parts, as two threads compute it.
-    const std::size_t half = size / 2;
-    for (const auto& [begin, end] : {std::pair(half, size), std::pair(std::size_t{0}, half)})
-      convolution.convolve({from.ptr<float>(), is_added ? plus.ptr<float>() : nullptr,
-                            found.ptr<float>(), size},
-                           begin, end);
+    // In two parts, as two threads compute it; the rest is as it was.
+    const int half = from.cols / 2;
+    for (const cv::Range& part : {cv::Range(half, from.cols), cv::Range(0, half)}) {
+      const cv::Mat before = found.clone();
+      convolution.convolve(
+          {from.ptr<float>(), is_added ? addend.ptr<float>() : nullptr, found.ptr<float>(), size},
+          static_cast<std::size_t>(part.start), static_cast<std::size_t>(part.end));
+      for (int y = 0; y <= out; ++y)
+        for (int x = 0; x < found.cols; ++x) {
+          if (y < out && part.start <= x && x < part.end) continue;
+          const float now = found.at<float>(y, x), then = before.at<float>(y, x);
+          ASSERT_TRUE(now == then || (std::isnan(now) && std::isnan(then))) << y << ' ' << x;
+        }
+    }
 
     for (int y = 0; y < out; ++y)
       for (int x = 0; x < found.cols; ++x) {
         const auto channel = static_cast<std::size_t>(y);
         float sum = bias[channel];
         for (int k = 0; k < in; ++k) sum += weights.at<float>(y, k) * from.at<float>(k, x);
-        if (is_added) sum += plus.at<float>(y, x);
+        if (is_added) sum += addend.at<float>(y, x);
         sum = sum < 0 ? sum * activation.slopes[channel] : std::min(sum, activation.max);
         ASSERT_EQ(found.at<float>(y, x), sum) << in << " to " << out << " channels, pixel " << x;
       }
+  }
+}
+
+TEST_P(PointwiseOf, keeps_what_is_not_a_number) {
+  const cv::Mat weights(1, 1, CV_32F, cv::Scalar(1));
+  const float from = NAN;
+  for (const float slope : {0.F, 1.F}) {
+    float found = 0;
+    PointwiseConvolution(weights, {0}, {{slope}, 6}).convolve({&from, nullptr, &found, 1}, 0, 1);
+    EXPECT_TRUE(std::isnan(found)) << slope;
   }
 }
 

@@ -67,6 +67,10 @@ Count inputs_of(Kind kind) {
   }
 }
 
+bool is_activation(Kind kind) {
+  return kind == Kind::Relu || kind == Kind::Relu6 || kind == Kind::Prelu;
+}
+
 /// Checks the layers, one after the other.
 class Check {
  public:
@@ -136,6 +140,9 @@ class Check {
     if (is_computed(layer_->output) || tensor(layer_->output).is_constant())
       return malformed("computed twice");
     if (tensor(layer_->output).shape.empty()) return malformed("a result without extents");
+    if (layer_->activation && (is_activation(layer_->kind) || *layer_->activation == Kind::Prelu ||
+                               !is_activation(*layer_->activation)))
+      return malformed("its activation is neither ReLU nor ReLU6, or its second one");
     return check_shape();
   }
 

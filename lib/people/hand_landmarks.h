@@ -17,7 +17,7 @@ namespace hc::people {
 ///     Hand hand = landmarks->find(image, region_of(palm));
 ///     if (hand.presence >= kHandIsThere) … region_of(hand) in the next image
 ///
-/// Cost: 12 ms of one core.
+/// Cost: 15 ms of one core.
 class HandLandmarks {
  public:
   /// @param network  hand_landmark_lite.
