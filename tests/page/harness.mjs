@@ -25,8 +25,8 @@ const build = process.env.HC_BUILD ?? join(root, "build");
 const hc = join(build, "bin/hc");
 
 /** Waits for an event that gives no notice; gives what the condition gave. */
-export async function until(what, condition) {
-  const end = performance.now() + watchdog;
+export async function until(what, condition, timeout = watchdog) {
+  const end = performance.now() + timeout;
   for (;;) {
     const result = await condition();
     if (result) return result;
