@@ -14,7 +14,7 @@ namespace hc::people {
 /// Follows known faces by the small network, around where they are expected, and searches for
 /// others by the large one: in all parts of the first image, and then in one after the other.
 ///
-/// Cost: 4 ms of a core for each known face, and 14 ms for a part.
+/// Cost: 5 ms of a core for each known face, and 15 ms for a part.
 class FaceSearch {
  public:
   /// How often a part is searched, while there are no faces and while some are followed. After a

@@ -48,7 +48,7 @@ class SearchTimes {
 /// to stop, and follows it as long as it is. While a palm may be a command, other hands are looked
 /// at less often, and are missing from the images in between.
 ///
-/// Cost: 15 ms for each known hand, of one core; 20 ms for a search and 30 ms for each other hand
+/// Cost: 15 ms for each known hand, of one core; 23 ms for a search and 30 ms for each other hand
 /// that it sees; 1 ms for an image.
 class HandSearch {
  public:
