@@ -2,7 +2,8 @@
 #include <nets/depthwise.h>
 
 #include <algorithm>
-#include <mutex>
+
+#include <nets/own_layer.h>
 
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
@@ -72,9 +73,6 @@ class DepthwiseLayer final : public cv::dnn::Layer {
     options_.min = params.get<float>("min");
     options_.max = params.get<float>("max");
     to_ = {whole("width"), whole("height")};
-  }
-  static cv::Ptr<Layer> create(cv::dnn::LayerParams& params) {
-    return cv::makePtr<DepthwiseLayer>(params);
   }
 
   bool getMemoryShapes(const std::vector<cv::dnn::MatShape>& inputs, int /*outputs*/,
@@ -189,9 +187,7 @@ cv::dnn::LayerParams depthwise_params(const PlaneConvolution::Options& options,
 }
 
 void register_depthwise() {
-  static std::once_flag once;
-  std::call_once(once,
-                 [] { cv::dnn::LayerFactory::registerLayer(kDepthwise, DepthwiseLayer::create); });
+  register_layer<DepthwiseLayer>(kDepthwise);
 }
 
 }  // namespace hc::nets

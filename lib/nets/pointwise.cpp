@@ -2,8 +2,9 @@
 #include <nets/pointwise.h>
 
 #include <algorithm>
-#include <mutex>
 #include <utility>
+
+#include <nets/own_layer.h>
 
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
@@ -124,9 +125,6 @@ class PointwiseLayer final : public cv::dnn::Layer {
         convolution_(blobs[0], {blobs[1].begin<float>(), blobs[1].end<float>()},
                      {{blobs[2].begin<float>(), blobs[2].end<float>()}, params.get<float>("max")}) {
   }
-  static cv::Ptr<Layer> create(cv::dnn::LayerParams& params) {
-    return cv::makePtr<PointwiseLayer>(params);
-  }
 
   bool getMemoryShapes(const std::vector<cv::dnn::MatShape>& inputs, int /*outputs*/,
                        std::vector<cv::dnn::MatShape>& outputs,
@@ -195,9 +193,7 @@ cv::dnn::LayerParams pointwise_params(const cv::Mat& weights, const cv::Mat& bia
 }
 
 void register_pointwise() {
-  static std::once_flag once;
-  std::call_once(once,
-                 [] { cv::dnn::LayerFactory::registerLayer(kPointwise, PointwiseLayer::create); });
+  register_layer<PointwiseLayer>(kPointwise);
 }
 
 }  // namespace hc::nets
