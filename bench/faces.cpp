@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // faces [--found] [LIST]: how many faces are found in photographs, and how sure it is whose they
 // are, as Markdown: in photographs of Debian's packages (bench/photographs.txt), which are never
-// copied, and of the simulated persons from many sides. --found prints the faces that are found.
+// copied, in simulated rooms without people, and of the simulated persons from many sides. --found
+// prints the faces that are found.
 
 #include <algorithm>
 #include <chrono>
@@ -20,6 +21,8 @@
 #include <people/embedding.h>
 #include <people/face_search.h>
 #include <people/gallery.h>
+#include <room/ball.h>
+#include <room/chance.h>
 #include <room/people.h>
 #include <room/scenery.h>
 #include <opencv2/imgcodecs.hpp>
@@ -210,6 +213,26 @@ std::vector<View> simulated_views(Sight& sight, int& missed) {
   return views;
 }
 
+/// How many faces are found in images of rooms without people.
+std::size_t faces_in_empty_rooms(Sight& sight, std::uint64_t rooms, int images) {
+  const auto renderer = bench::make_renderer();
+  std::size_t found = 0;
+  for (std::uint64_t seed = 1; seed <= rooms; ++seed) {
+    hc::room::World world(*renderer, seed, "", 0);
+    hc::room::Ball ball({.seed = seed});
+    hc::room::Chance chance(seed);
+    for (int i = 0; i < images; ++i) {
+      const auto at = ball.at(0.37 * i).position;
+      // The ball is near the middle.
+      const bench::Gaze gaze{.pan = std::atan2(at.y(), at.x()) + 0.6 * (chance.next() - 0.5),
+                             .tilt = 0.3 + 0.5 * (chance.next() - 0.5),
+                             .image = static_cast<std::uint64_t>(i)};
+      found += sight.find(bench::look(*renderer, world, at, gaze)[0].image).size();
+    }
+  }
+  return found;
+}
+
 /// Distances of pairs of one person, and of two.
 struct Pairs {
   std::vector<float> same, other;
@@ -287,6 +310,9 @@ int main(int argc, char** argv) {
       "%d; %d others were found.\n\n",
       found.images, found.all_wide, double(kLeastWidth), found.wide, found.all_small, found.small,
       found.wrong);
+  constexpr int kRooms = 10, kImages = 100;
+  std::printf("%d images of rooms without people: %zu faces were found.\n\n", kRooms * kImages,
+              faces_in_empty_rooms(sight, kRooms, kImages));
   int missed = 0;
   const auto simulated = simulated_views(sight, missed);
   std::printf("%zu views of the simulated persons, and %d in which none was found.\n\n",

@@ -11,9 +11,11 @@ namespace {
 
 constexpr float kSameFace = 0.3F;  // least overlap
 
-bool overlaps_any(const Face& face, const std::vector<Face>& others) {
-  return std::any_of(others.begin(), others.end(),
-                     [&](const Face& other) { return overlap(face.box, other.box) > kSameFace; });
+FaceTracks::Sighting* same_face(const Face& face, std::vector<FaceTracks::Sighting>& faces) {
+  const auto found = std::ranges::find_if(faces, [&](const FaceTracks::Sighting& other) {
+    return overlap(face.box, other.face.box) > kSameFace;
+  });
+  return found == faces.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -35,19 +37,38 @@ bool FaceSearch::follows(int track, Time time) const {
   return std::ranges::count(expected(time), track, &FaceTracks::Expected::number) > 0;
 }
 
-void FaceSearch::follow(Time time, const cv::Mat& image, float least, std::vector<Face>& faces) {
+std::vector<FaceSearch::Sighting> FaceSearch::followed(Time time, const cv::Mat& image,
+                                                       float least) {
   auto boxes = tracks_.expected(time);
   if (boxes.size() > kMostFollowed) boxes.resize(kMostFollowed);
+  std::vector<Face> faces;
   for (const auto& [number, box] : boxes) {
     const auto found = look_around(image, box, least);
     faces.insert(faces.end(), found.begin(), found.end());
   }
+  std::vector<Sighting> all;
+  for (const Face& face : merged(std::move(faces))) all.push_back({face, false});
+  return all;
 }
 
-Face FaceSearch::refined(const cv::Mat& image, const Face& face) {
+FaceSearch::Sighting FaceSearch::refined(const cv::Mat& image, const Face& face) {
   for (const Face& near : look_around(image, face.box))
-    if (overlap(near.box, face.box) > kSameFace) return near;
-  return face;
+    if (overlap(near.box, face.box) > kSameFace) return {near, near.score >= kSure};
+  return {face, false};
+}
+
+void FaceSearch::add(const cv::Mat& image, const Face& face, std::vector<Sighting>& faces) {
+  auto* same = same_face(face, faces);
+  if (same != nullptr && same->face.score >= kSure) {
+    same->is_sure = true;
+    return;
+  }
+  const Sighting seen = refined(image, face);
+  if (same == nullptr) same = same_face(seen.face, faces);
+  if (same == nullptr)
+    faces.push_back(seen);
+  else
+    same->is_sure = same->is_sure || seen.is_sure;
 }
 
 std::vector<Track> FaceSearch::look(Time time, const cv::Mat& image, float least,
@@ -55,15 +76,14 @@ std::vector<Track> FaceSearch::look(Time time, const cv::Mat& image, float least
   if (image.empty()) return {};
   tracks_.turn(turn);
   const auto parts = parts_of(image.size());
-  std::vector<Face> faces;
-  follow(time, image, least, faces);
+  auto faces = followed(time, image, least);
   const auto period = faces.empty() ? kSearch : kSweep;
   const auto due = static_cast<std::size_t>(std::chrono::abs(time - swept_) / period);
   if (due > 0) swept_ = time;
   for (std::size_t i = 0; i < std::min(due, parts.size()); ++i)
     for (const Face& face : wide_.find(image, parts[next_part_++ % parts.size()], least))
-      if (!overlaps_any(face, faces)) faces.push_back(refined(image, face));
-  return tracks_.update(time, merged(std::move(faces)));
+      add(image, face, faces);
+  return tracks_.update(time, faces);
 }
 
 }  // namespace hc::people

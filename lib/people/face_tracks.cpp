@@ -67,7 +67,7 @@ void FaceTracks::Following::correct(Time time, const Face& face) {
   misses = 0;
 }
 
-std::vector<Track> FaceTracks::update(Time time, const std::vector<Face>& faces) {
+std::vector<Track> FaceTracks::update(Time time, const std::vector<Sighting>& faces) {
   std::erase_if(all_, [&](const Following& one) { return one.is_over(time); });
   for (Following& one : all_) ++one.misses;
   struct Pair {
@@ -77,7 +77,7 @@ std::vector<Track> FaceTracks::update(Time time, const std::vector<Face>& faces)
   std::vector<Pair> pairs;
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (std::size_t t = 0; t < all_.size(); ++t)
-      if (const auto cost = all_[t].cost(time, faces[f])) pairs.push_back({*cost, f, t});
+      if (const auto cost = all_[t].cost(time, faces[f].face)) pairs.push_back({*cost, f, t});
   std::sort(pairs.begin(), pairs.end(),
             [](const Pair& a, const Pair& b) { return a.cost < b.cost; });
   std::vector<int> of_face(faces.size(), -1);
@@ -89,12 +89,15 @@ std::vector<Track> FaceTracks::update(Time time, const std::vector<Face>& faces)
   }
   std::vector<Track> seen;
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    if (of_face[f] < 0) {
+    const auto& [face, is_sure] = faces[f];
+    if (of_face[f] >= 0) {
+      all_[static_cast<std::size_t>(of_face[f])].correct(time, face);
+    } else if (is_sure) {
       of_face[f] = static_cast<int>(all_.size());
-      all_.push_back({{++last_, faces[f], time}, place_of(faces[f]), {}, {}});
+      all_.push_back({{++last_, face, time}, place_of(face), {}, {}});
       all_.back().p = {kNoise * kNoise, 0, kFirstSpeed * kFirstSpeed};
     } else {
-      all_[static_cast<std::size_t>(of_face[f])].correct(time, faces[f]);
+      continue;
     }
     seen.push_back(all_[static_cast<std::size_t>(of_face[f])].track);
   }

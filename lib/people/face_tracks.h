@@ -33,6 +33,11 @@ class FaceTracks {
     int number = 0;
     cv::Rect2f box;
   };
+  /// A face in an image. Of one that is not sure, only a track that goes on is made.
+  struct Sighting {
+    Face face;
+    bool is_sure = true;
+  };
 
   static constexpr std::chrono::milliseconds kLife{1000}, kLongest{5000};
   static constexpr int kMisses = 3;
@@ -41,7 +46,7 @@ class FaceTracks {
   static constexpr float kGate = 3, kWidestGate = 2, kLeastOverlap = 0.3F;
 
   /// @returns the tracks that are seen in this image, in the order of `faces`.
-  std::vector<Track> update(Time time, const std::vector<Face>& faces);
+  std::vector<Track> update(Time time, const std::vector<Sighting>& faces);
 
   /// Moves all tracks as the image has moved since the last one, by the camera's turn.
   /// @param H  of pixels from the last image to this one.

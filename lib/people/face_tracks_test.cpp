@@ -23,10 +23,12 @@ Face face_at(float x, float width = 60) {
 class FaceTracksTest : public testing::Test {
  protected:
   /// The numbers of the tracks of faces in the next image.
-  std::vector<int> look(const std::vector<Face>& faces) {
+  std::vector<int> look(const std::vector<Face>& faces, bool are_sure = true) {
     now_ += kPeriod;
+    std::vector<FaceTracks::Sighting> sightings;
+    for (const Face& face : faces) sightings.push_back({face, are_sure});
     std::vector<int> numbers;
-    for (const auto& track : tracks_.update(now_, faces)) numbers.push_back(track.number);
+    for (const auto& track : tracks_.update(now_, sightings)) numbers.push_back(track.number);
     return numbers;
   }
   FaceTracks tracks_;
@@ -37,6 +39,13 @@ TEST_F(FaceTracksTest, number_faces_in_the_order_of_the_image) {
   EXPECT_EQ(look({face_at(100), face_at(300)}), (std::vector<int>{1, 2}));
   EXPECT_EQ(look({face_at(302), face_at(101), face_at(500)}), (std::vector<int>{2, 1, 3}));
   EXPECT_TRUE(look({}).empty());
+}
+
+TEST_F(FaceTracksTest, begin_with_a_sure_face_and_go_on_with_any) {
+  EXPECT_TRUE(look({face_at(100)}, false).empty());
+  EXPECT_TRUE(tracks_.expected(now_).empty());
+  EXPECT_EQ(look({face_at(100)}), std::vector<int>{1});
+  EXPECT_EQ(look({face_at(400), face_at(102)}, false), std::vector<int>{1});
 }
 
 TEST_F(FaceTracksTest, follow_a_face_that_moves_by_its_width_in_three_images) {
