@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How layers of our own come into OpenCV's networks.
+// Registers our own layers with OpenCV.
 
 #include <mutex>
 
@@ -8,7 +8,7 @@
 
 namespace hc::nets {
 
-/// Registers a layer with OpenCV, so that networks have it by its type. May be called again.
+/// Registers a layer with OpenCV, so that networks can name it by its type. May be called again.
 /// @tparam OwnLayer  a cv::dnn::Layer that is made from its parameters.
 template <typename OwnLayer>
 void register_layer(const char* type) {

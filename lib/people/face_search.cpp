@@ -47,28 +47,28 @@ std::vector<FaceSearch::Sighting> FaceSearch::followed(Time time, const cv::Mat&
     faces.insert(faces.end(), found.begin(), found.end());
   }
   std::vector<Sighting> all;
-  for (const Face& face : merged(std::move(faces))) all.push_back({face, false});
+  for (const Face& face : merged(std::move(faces))) all.push_back({face});
   return all;
 }
 
-FaceSearch::Sighting FaceSearch::refined(const cv::Mat& image, const Face& face) {
-  for (const Face& near : look_around(image, face.box))
-    if (overlap(near.box, face.box) > kSameFace) return {near, near.score >= kSure};
-  return {face, false};
+std::optional<Face> FaceSearch::refined(const cv::Mat& image, const Face& face, float least) {
+  for (const Face& near : look_around(image, face.box, least))
+    if (overlap(near.box, face.box) > kSameFace) return near;
+  return std::nullopt;
 }
 
-void FaceSearch::add(const cv::Mat& image, const Face& face, std::vector<Sighting>& faces) {
+void FaceSearch::add(const cv::Mat& image, const Face& face, float least,
+                     std::vector<Sighting>& faces) {
+  const float sure = std::max(kSure, least);
   auto* same = same_face(face, faces);
-  if (same != nullptr && same->face.score >= kSure) {
-    same->is_sure = true;
-    return;
+  if (same == nullptr || same->face.score < sure) {
+    const auto near = refined(image, face, least);
+    if (!near) return;
+    if (same == nullptr) same = same_face(*near, faces);
+    if (same == nullptr) same = &faces.emplace_back(Sighting{*near});
+    if (near->score > same->face.score) same->face = *near;
   }
-  const Sighting seen = refined(image, face);
-  if (same == nullptr) same = same_face(seen.face, faces);
-  if (same == nullptr)
-    faces.push_back(seen);
-  else
-    same->is_sure = same->is_sure || seen.is_sure;
+  same->may_be_new = same->may_be_new || same->face.score >= sure;
 }
 
 std::vector<Track> FaceSearch::look(Time time, const cv::Mat& image, float least,
@@ -80,9 +80,11 @@ std::vector<Track> FaceSearch::look(Time time, const cv::Mat& image, float least
   const auto period = faces.empty() ? kSearch : kSweep;
   const auto due = static_cast<std::size_t>(std::chrono::abs(time - swept_) / period);
   if (due > 0) swept_ = time;
-  for (std::size_t i = 0; i < std::min(due, parts.size()); ++i)
-    for (const Face& face : wide_.find(image, parts[next_part_++ % parts.size()], least))
-      add(image, face, faces);
+  for (std::size_t i = 0; i < std::min(due, parts.size()); ++i) {
+    auto found = wide_.find(image, parts[next_part_++ % parts.size()], least);
+    if (found.size() > kMostFound) found.resize(kMostFound);
+    for (const Face& face : found) add(image, face, least, faces);
+  }
   return tracks_.update(time, faces);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 // Finds and follows the faces in the images of a camera.
 
+#include <optional>
 #include <vector>
 
 #include <opencv2/core/mat.hpp>
@@ -12,27 +13,28 @@
 namespace hc::people {
 
 /// Follows known faces by the small network, around where they are expected, and searches for
-/// others by the large one: in all parts of the first image, and then in one after the other. A new
-/// face is one only if the small network is sure of it, too: in one of 80 images of rooms without
-/// people the large one alone sees a face.
+/// others by the large one: in all parts of the first image, and then in one after the other. A
+/// face counts where the small network sees it, and a new one only if both are sure: the large one
+/// alone sees a face in one of 60 images of rooms without people.
 ///
-/// Cost: 5 ms of a core for each known face, and 15 ms for a part.
+/// Cost: 5 ms of a core for each known face, 15 ms for a part, and 5 ms for each face there that is
+/// not known.
 class FaceSearch {
  public:
   /// How often a part is searched, while there are no faces and while some are followed. After a
   /// longer time without images, as many parts as would have been.
   static constexpr std::chrono::milliseconds kSearch{150}, kSweep{200};
-  static constexpr std::size_t kMostFollowed = 8;
-  /// Least score of a new face by the small network. In 3,000 images of rooms without people it
-  /// gave 0.61 at most to what the large one took for a face, in photographs 0.75 at least to
-  /// faces.
+  /// Faces that are followed, and faces that are taken from a part, the best ones.
+  static constexpr std::size_t kMostFollowed = 8, kMostFound = 16;
+  /// Least score of a new face by the small network. That of the large one's false faces is 0.56 at
+  /// most, that of faces in photographs 0.75 at least. Source: bench/faces.
   static constexpr float kSure = 0.65F;
 
   /// @param wide  with face_detection_full_range. @param near  with face_detection_short_range.
   FaceSearch(FaceFinder wide, FaceFinder near) : wide_(std::move(wide)), near_(std::move(near)) {}
 
   /// The faces of the next image, (height, width) of u8, RGB or grey, of any size.
-  /// @param least  of their scores.
+  /// @param least  of the scores by both networks.
   /// @param turn  of the camera since the last image. @see FaceTracks::turn()
   std::vector<Track> look(Time time, const cv::Mat& image, float least = 0.5F,
                           const cv::Matx33f& turn = cv::Matx33f::eye());
@@ -49,10 +51,12 @@ class FaceSearch {
   using Sighting = FaceTracks::Sighting;
 
   std::vector<Sighting> followed(Time time, const cv::Mat& image, float least);
-  /// A face of the large network as the small one sees it, whose points are more precise.
-  Sighting refined(const cv::Mat& image, const Face& face);
-  /// Adds a face of the large network.
-  void add(const cv::Mat& image, const Face& face, std::vector<Sighting>& faces);
+  /// A face of the large network as the small one sees it, whose points are more precise, if it
+  /// does.
+  std::optional<Face> refined(const cv::Mat& image, const Face& face, float least);
+  /// Adds a face of the large network, or finds it among those added; it may be new if both are
+  /// sure.
+  void add(const cv::Mat& image, const Face& face, float least, std::vector<Sighting>& faces);
 
   FaceFinder wide_, near_;
   FaceTracks tracks_;

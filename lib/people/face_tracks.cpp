@@ -89,10 +89,10 @@ std::vector<Track> FaceTracks::update(Time time, const std::vector<Sighting>& fa
   }
   std::vector<Track> seen;
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    const auto& [face, is_sure] = faces[f];
+    const auto& [face, may_be_new] = faces[f];
     if (of_face[f] >= 0) {
       all_[static_cast<std::size_t>(of_face[f])].correct(time, face);
-    } else if (is_sure) {
+    } else if (may_be_new) {
       of_face[f] = static_cast<int>(all_.size());
       all_.push_back({{++last_, face, time}, place_of(face), {}, {}});
       all_.back().p = {kNoise * kNoise, 0, kFirstSpeed * kFirstSpeed};

@@ -33,10 +33,10 @@ class FaceTracks {
     int number = 0;
     cv::Rect2f box;
   };
-  /// A face in an image. Of one that is not sure, only a track that goes on is made.
+  /// A face in an image. One that may not be new continues a track or is left out.
   struct Sighting {
     Face face;
-    bool is_sure = true;
+    bool may_be_new = false;
   };
 
   static constexpr std::chrono::milliseconds kLife{1000}, kLongest{5000};
@@ -45,7 +45,7 @@ class FaceTracks {
   /// less overlap with its box, is another one.
   static constexpr float kGate = 3, kWidestGate = 2, kLeastOverlap = 0.3F;
 
-  /// @returns the tracks that are seen in this image, in the order of `faces`.
+  /// @returns the tracks of these faces, in their order, without those left out.
   std::vector<Track> update(Time time, const std::vector<Sighting>& faces);
 
   /// Moves all tracks as the image has moved since the last one, by the camera's turn.

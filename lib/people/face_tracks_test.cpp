@@ -23,10 +23,10 @@ Face face_at(float x, float width = 60) {
 class FaceTracksTest : public testing::Test {
  protected:
   /// The numbers of the tracks of faces in the next image.
-  std::vector<int> look(const std::vector<Face>& faces, bool are_sure = true) {
+  std::vector<int> look(const std::vector<Face>& faces, bool may_be_new = true) {
     now_ += kPeriod;
     std::vector<FaceTracks::Sighting> sightings;
-    for (const Face& face : faces) sightings.push_back({face, are_sure});
+    for (const Face& face : faces) sightings.push_back({face, may_be_new});
     std::vector<int> numbers;
     for (const auto& track : tracks_.update(now_, sightings)) numbers.push_back(track.number);
     return numbers;
@@ -41,7 +41,7 @@ TEST_F(FaceTracksTest, number_faces_in_the_order_of_the_image) {
   EXPECT_TRUE(look({}).empty());
 }
 
-TEST_F(FaceTracksTest, begin_with_a_sure_face_and_go_on_with_any) {
+TEST_F(FaceTracksTest, begin_with_a_face_that_may_be_new_and_go_on_with_any) {
   EXPECT_TRUE(look({face_at(100)}, false).empty());
   EXPECT_TRUE(tracks_.expected(now_).empty());
   EXPECT_EQ(look({face_at(100)}), std::vector<int>{1});

@@ -66,7 +66,8 @@ class BadMessages(Safety):
             head.wait(head.is_whole, "all run after bad messages into " + end)
             self.note_ended(ended, where=end)
             self.note("memory", self.gained(name, memory), end)
-            self.note("commanded", len(head.line.positions(begun)), end)
+            where = "%s, focus %s" % (end, head.focused.changes(begun))
+            self.note("commanded", len(head.line.positions(begun)), where)
         self.hold()
 
 
