@@ -51,11 +51,9 @@ class FaceSearch {
   using Sighting = FaceTracks::Sighting;
 
   std::vector<Sighting> followed(Time time, const cv::Mat& image, float least);
-  /// A face of the large network as the small one sees it, whose points are more precise, if it
-  /// does.
+  /// The same face by the small network, whose points are more precise; nothing if it sees none.
   std::optional<Face> refined(const cv::Mat& image, const Face& face, float least);
-  /// Adds a face of the large network, or finds it among those added; it may be new if both are
-  /// sure.
+  /// Adds a face of the large network, unless it is known. It may be new if both are sure.
   void add(const cv::Mat& image, const Face& face, float least, std::vector<Sighting>& faces);
 
   FaceFinder wide_, near_;

@@ -33,7 +33,7 @@ class FaceTracks {
     int number = 0;
     cv::Rect2f box;
   };
-  /// A face in an image. One that may not be new continues a track or is left out.
+  /// A face in an image. It continues a track, or begins one if `may_be_new`.
   struct Sighting {
     Face face;
     bool may_be_new = false;
@@ -45,7 +45,7 @@ class FaceTracks {
   /// less overlap with its box, is another one.
   static constexpr float kGate = 3, kWidestGate = 2, kLeastOverlap = 0.3F;
 
-  /// @returns the tracks of these faces, in their order, without those left out.
+  /// @returns the tracks seen in this image, in the order of their faces.
   std::vector<Track> update(Time time, const std::vector<Sighting>& faces);
 
   /// Moves all tracks as the image has moved since the last one, by the camera's turn.
