@@ -11,6 +11,7 @@
 
 #include <graphics/camera.h>
 #include <graphics/renderer.h>
+#include <room/head.h>
 #include <room/sensor.h>
 #include <room/world.h>
 #include <opencv2/core.hpp>
@@ -40,27 +41,16 @@ struct Gaze {
   std::uint64_t image = 1;                      ///< its number, for the noise
 };
 
-/// T_world_eye, optical.
-inline Eigen::Isometry3d eye_of(const Gaze& gaze, bool is_right) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translate(Eigen::Vector3d(0, 0, hc::room::kHeadHeight));
-  T.rotate(Eigen::AngleAxisd(gaze.pan, Eigen::Vector3d::UnitZ()) *
-           Eigen::AngleAxisd(gaze.tilt, Eigen::Vector3d::UnitY()));
-  T.translate(Eigen::Vector3d(0.06, is_right ? -kBaseline / 2 : kBaseline / 2, 0.05));
-  Eigen::Matrix3d optical;
-  optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  T.rotate(optical);
-  return T;
-}
-
 /// Both eyes' images of a room, with a camera's noise of 2 of 255; the left one first.
 inline std::array<Eye, 2> look(hc::graphics::Renderer& renderer, hc::room::World& world,
                                const Eigen::Vector3d& ball, const Gaze& gaze) {
   std::array<Eye, 2> eyes;
+  const auto head = hc::room::Head::nominal();
+  const Eigen::Isometry3d T_world_head = hc::room::head_pose(gaze.pan, gaze.tilt);
   const auto& items = world.items(ball);
   for (const std::size_t i : {0U, 1U}) {
     Eye& eye = eyes.at(i);
-    eye.T_world_eye = eye_of(gaze, i == 1);
+    eye.T_world_eye = T_world_head * (i == 0 ? head.left_eye : head.right_eye);
     must(renderer.draw(items, kCamera, eye.T_world_eye, world.light(), eye.image, &eye.truth));
     hc::room::Sensor(gaze.seeds.at(i)).apply(eye.image, 0, 2, gaze.image);
   }

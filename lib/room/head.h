@@ -4,7 +4,19 @@
 
 #include <Eigen/Geometry>
 
+#include <room/scenery.h>
+
 namespace hc::room {
+
+/// T_world_head of a head at kHeadHeight.
+///
+/// @param pan  > 0: left [rad].
+/// @param tilt  > 0: down [rad].
+inline Eigen::Isometry3d head_pose(double pan, double tilt) {
+  using Eigen::AngleAxisd, Eigen::Vector3d;
+  return Eigen::Translation3d(0, 0, kHeadHeight) * AngleAxisd(pan, Vector3d::UnitZ()) *
+         Eigen::Isometry3d(AngleAxisd(tilt, Vector3d::UnitY()));
+}
 
 /// Errors of a real head, to be found by calibration [rad].
 struct HeadFaults {
@@ -16,6 +28,9 @@ struct HeadFaults {
 /// left, z up), whose origin is the intersection of the pan and tilt axes.
 struct Head {
   Eigen::Isometry3d left_eye, right_eye;
+
+  /// The eyes of graphs/head.toml, 0.1 m apart.
+  static Head nominal() { return {hang({0.06, 0.05, 0.05}, 0), hang({0.06, -0.05, 0.05}, 0)}; }
 
   /// The same with faults.
   [[nodiscard]] Head with(const HeadFaults& faults) const {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <room/ball.h>
+#include <room/head.h>
 #include <room/people.h>
 #include <room/screen.h>
 
@@ -24,11 +25,7 @@ class Room : public testing::Test {
 
   /// The left eye's image with pan and tilt [rad].
   cv::Mat look(double pan, double tilt, const Eigen::Vector3d& ball, cv::Mat* depth = nullptr) {
-    using Eigen::AngleAxisd, Eigen::Vector3d;
-    const Eigen::Isometry3d T_world_head = Eigen::Translation3d(0, 0, kHeadHeight) *
-                                           AngleAxisd(pan, Vector3d::UnitZ()) *
-                                           Eigen::Isometry3d(AngleAxisd(tilt, Vector3d::UnitY()));
-    T_world_left = T_world_head * hang({0.06, 0.05, 0.05}, 0);
+    T_world_left = head_pose(pan, tilt) * Head::nominal().left_eye;
     cv::Mat rgb;
     EXPECT_TRUE(
         renderer->draw(world->items(ball), camera, T_world_left, world->light(), rgb, depth));
@@ -129,7 +126,7 @@ TEST_F(Room, shows_the_persons_where_they_are) {
   const auto all = People({3, "still", 1}).at(0);
   const Eigen::Vector3d nowhere(0, 0, -10);
   cv::Mat depth;
-  T_world_left = Eigen::Translation3d(0, 0, kHeadHeight) * hang({0.06, 0.05, 0.05}, 0);
+  T_world_left = head_pose(0, 0) * Head::nominal().left_eye;
   cv::Mat rgb;
   ASSERT_TRUE(renderer->draw(world->items(nowhere, all), camera, T_world_left, world->light(), rgb,
                              &depth));

@@ -4,13 +4,12 @@
 #include <people/box.h>
 #include <people/face_search.h>
 #include <room/ball.h>
-#include <room/scenery.h>
+#include <room/head.h>
 #include <room/world.h>
 
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 
 namespace {
 
@@ -38,13 +37,10 @@ constexpr std::array kViews = {
 
 /// The left eye's image.
 cv::Mat image_of(const View& view, hc::graphics::Renderer& renderer) {
-  using Eigen::AngleAxisd, Eigen::Vector3d;
   hc::room::World world(renderer, view.room, "", 0);
   hc::room::Ball ball({.seed = view.room});
-  const Eigen::Quaterniond R_world_head =
-      AngleAxisd(view.pan, Vector3d::UnitZ()) * AngleAxisd(view.tilt, Vector3d::UnitY());
-  Eigen::Isometry3d T_world_eye = hc::room::hang({0.06, 0.05, 0.05}, 0);
-  T_world_eye.prerotate(R_world_head).pretranslate(Vector3d(0, 0, hc::room::kHeadHeight));
+  const Eigen::Isometry3d T_world_eye =
+      hc::room::head_pose(view.pan, view.tilt) * hc::room::Head::nominal().left_eye;
   cv::Mat image;
   EXPECT_TRUE(renderer.draw(world.items(ball.at(view.time).position), {}, T_world_eye,
                             world.light(), image));
