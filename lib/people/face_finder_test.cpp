@@ -64,6 +64,19 @@ TEST(FaceSearch, finds_everybody_in_group_photographs) {
     EXPECT_EQ(search().look(kStart, photograph(i + 1)).size(), kFaces[i]) << i + 1;
 }
 
+TEST(FaceSearch, finds_faces_that_nearly_fill_the_image) {
+  const cv::Mat image = photograph(1);
+  for (const auto& track : search().look(kStart, image))
+    for (const float wider : {1.1F, 1.3F, 1.6F, 2.0F}) {
+      const float height = wider * track.face.box.width, width = height * 4 / 3;
+      const cv::Point2f middle = middle_of(track.face);
+      const cv::Rect part(cv::Rect2f(middle.x - width / 2, middle.y - height / 2, width, height));
+      cv::Mat near_by;
+      cv::resize(image(part & cv::Rect({}, image.size())), near_by, {800, 600});
+      EXPECT_EQ(search().look(kStart, near_by).size(), 1U) << track.number << ' ' << wider;
+    }
+}
+
 TEST(FaceSearch, finds_them_in_black_and_white) {
   cv::Mat grey;
   cv::cvtColor(photograph(5), grey, cv::COLOR_RGB2GRAY);

@@ -10,6 +10,26 @@ namespace hc::people {
 namespace {
 
 constexpr float kSameFace = 0.3F;  // least overlap
+constexpr float kLarge = 0.4F;     // width of a large face, by the image's shorter side
+constexpr float kMargin = 1.5F;    // side of the square in which it is sought, by the longer one
+
+cv::Rect2f square_around(const cv::Rect2f& box, float times) {
+  const cv::Point2f middle = (box.tl() + box.br()) / 2;
+  const float side = times * std::max(box.width, box.height);
+  return {middle.x - side / 2, middle.y - side / 2, side, side};
+}
+
+/// Where to look for the face of a box: as in a picture of one person, for which the small network
+/// was made. Empty if that is outside the image, or if the box is not finite.
+cv::Rect around(const cv::Mat& image, const cv::Rect2f& box) {
+  const cv::Rect2f square = square_around(box, 2.5F);
+  // A track that jumps may be expected anywhere, with any size.
+  const auto most = 8 * static_cast<float>(std::max(image.cols, image.rows));
+  if (!(square.width <= most && std::abs(square.x) <= most && std::abs(square.y) <= most))
+    return {};
+  const cv::Rect all(square);
+  return (all & cv::Rect({}, image.size())).empty() ? cv::Rect{} : all;
+}
 
 FaceTracks::Sighting* same_face(const Face& face, std::vector<FaceTracks::Sighting>& faces) {
   const auto found = std::ranges::find_if(faces, [&](const FaceTracks::Sighting& other) {
@@ -22,15 +42,8 @@ FaceTracks::Sighting* same_face(const Face& face, std::vector<FaceTracks::Sighti
 
 std::vector<Face> FaceSearch::look_around(const cv::Mat& image, const cv::Rect2f& box,
                                           float least) {
-  // As in a picture of one person, for which the network was made.
-  const cv::Point2f middle = (box.tl() + box.br()) / 2;
-  const float side = 2.5F * std::max(box.width, box.height);
-  // A track that jumps may be expected anywhere, with any size.
-  const auto most = 8 * static_cast<float>(std::max(image.cols, image.rows));
-  if (!(side <= most && std::abs(middle.x) <= most && std::abs(middle.y) <= most)) return {};
-  const cv::Rect around(cv::Rect2f(middle.x - side / 2, middle.y - side / 2, side, side));
-  if ((around & cv::Rect({}, image.size())).empty()) return {};
-  return near_.find(image, around, least);
+  const cv::Rect place = around(image, box);
+  return place.empty() ? std::vector<Face>{} : near_.find(image, place, least);
 }
 
 bool FaceSearch::follows(int track, Time time) const {
@@ -71,6 +84,17 @@ void FaceSearch::add(const cv::Mat& image, const Face& face, float least,
   same->may_be_new = same->may_be_new || same->face.score >= sure;
 }
 
+void FaceSearch::add_large(const cv::Mat& image, float least, std::vector<Sighting>& faces) {
+  const float wide = kLarge * static_cast<float>(std::min(image.cols, image.rows));
+  const cv::Rect whole(square_around({{}, cv::Size2f(image.size())}, kMargin));
+  for (const Face& large : near_.find(image, whole, std::max(kSure, least))) {
+    if (large.box.width < wide || same_face(large, faces) != nullptr) continue;
+    const cv::Rect place = around(image, large.box);
+    if (place.empty()) continue;
+    for (const Face& face : wide_.find(image, place, least)) add(image, face, least, faces);
+  }
+}
+
 std::vector<Track> FaceSearch::look(Time time, const cv::Mat& image, float least,
                                     const cv::Matx33f& turn) {
   if (image.empty()) return {};
@@ -81,6 +105,7 @@ std::vector<Track> FaceSearch::look(Time time, const cv::Mat& image, float least
   const auto due = static_cast<std::size_t>(std::chrono::abs(time - swept_) / period);
   if (due > 0) swept_ = time;
   for (std::size_t i = 0; i < std::min(due, parts.size()); ++i) {
+    if (next_part_ % parts.size() == 0) add_large(image, least, faces);
     auto found = wide_.find(image, parts[next_part_++ % parts.size()], least);
     if (found.size() > kMostFound) found.resize(kMostFound);
     for (const Face& face : found) add(image, face, least, faces);

@@ -29,7 +29,7 @@ struct HeadFaults {
 struct Head {
   Eigen::Isometry3d left_eye, right_eye;
 
-  /// The eyes of graphs/head.toml, 0.1 m apart.
+  /// The eyes of graphs/simulated_head.toml, 0.1 m apart.
   static Head nominal() { return {hang({0.06, 0.05, 0.05}, 0), hang({0.06, -0.05, 0.05}, 0)}; }
 
   /// The same with faults.
