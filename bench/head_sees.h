@@ -20,7 +20,10 @@
 
 namespace bench {
 
-inline constexpr double kBaseline = 0.1;           // of the simulated head [m]
+inline const double kBaseline = [] {  // of the simulated head [m]
+  const auto head = hc::room::Head::nominal();
+  return (head.left_eye.translation() - head.right_eye.translation()).norm();
+}();
 inline const hc::graphics::PinholeCamera kCamera;  // either eye's
 
 inline std::unique_ptr<hc::graphics::Renderer> make_renderer() {

@@ -14,12 +14,13 @@ namespace hc::people {
 
 /// Follows known faces by the small network, around where they are expected, and searches for
 /// others by the large one: in all parts of the first image, and then in one after the other.
-/// Before the first part the small network searches the whole image for a face that fills it. A
-/// face counts where the small network sees it, and a new one only if both are sure: the large one
-/// alone sees a face in one of 60 images of rooms without people.
+/// After the last part the small network searches the image with a margin for large faces, from 0.4
+/// of its shorter side, which the large one sees only with a margin around them. A face counts
+/// where the small network sees it, and a new one only if both are sure: the large one alone sees a
+/// face in one of 60 images of rooms without people.
 ///
-/// Cost: 5 ms of a core for each known face, 15 ms for a part, 5 ms for the whole image, and 5 ms
-/// for each face found that is not known, 20 ms for one that fills the image.
+/// Cost: 5 ms of a core for each known face, 15 ms for a part, 5 ms for large ones, and for each
+/// face found that is not known 5 ms, or 20 ms for a large one.
 class FaceSearch {
  public:
   /// How often a part is searched, while there are no faces and while some are followed. After a
@@ -54,8 +55,8 @@ class FaceSearch {
   std::vector<Sighting> followed(Time time, const cv::Mat& image, float least);
   /// The same face by the small network, whose points are more precise; nothing if it sees none.
   std::optional<Face> refined(const cv::Mat& image, const Face& face, float least);
-  /// Adds faces that nearly fill the image, which the large network sees only with a margin.
-  void add_large(const cv::Mat& image, float least, std::vector<Sighting>& faces);
+  /// Adds large faces that are not known.
+  void add_large(Time time, const cv::Mat& image, float least, std::vector<Sighting>& faces);
   /// Adds a face of the large network, unless it is known. It may be new if both are sure.
   void add(const cv::Mat& image, const Face& face, float least, std::vector<Sighting>& faces);
 

@@ -33,26 +33,29 @@ bool is_near(std::span<const float> numbers, int side) {
   return std::ranges::all_of(numbers, [&](float each) { return std::abs(each) <= most; });
 }
 
-/// A square of an image as the network takes it, f32; black outside of the image.
-cv::Mat input_of(const cv::Mat& image, const cv::Rect2f& square, int side, Ssd::Range range) {
+/// Scales what a square shows of an image to (side, side), u8 RGB; black outside of the image.
+/// Takes no more memory than what it shows.
+cv::Mat scaled(const cv::Mat& image, const cv::Rect2f& square, int side) {
+  cv::Mat small = cv::Mat::zeros(side, side, CV_8UC3);
+  const cv::Rect all({}, image.size()), inside = cv::Rect(square) & all;
+  if (inside.empty()) return small;
   const float scale = static_cast<float>(side) / square.width;
-  const cv::Matx23f to_input(scale, 0, (0.5F - square.x) * scale - 0.5F, 0, scale,
-                             (0.5F - square.y) * scale - 0.5F);
-  cv::Mat rgb;
-  if (image.channels() == 1) cv::cvtColor(image, rgb, cv::COLOR_GRAY2RGB);
-  const cv::Mat& colour = image.channels() == 1 ? rgb : image;
-  cv::Mat small, input;
-  if (scale < 0.7F) {  // means of pixels
-    const cv::Rect all = cv::Rect(square) & cv::Rect(0, 0, image.cols, image.rows);
-    cv::Mat squared(static_cast<int>(square.height), static_cast<int>(square.width), CV_8UC3,
-                    cv::Scalar::all(0));
-    colour(all).copyTo(squared(all - cv::Point(square.tl())));
-    cv::resize(squared, small, {side, side}, 0, 0, cv::INTER_AREA);
+  const bool by_means = scale < 0.7F;
+  const cv::Point one(1, 1);  // what interpolation takes beyond the square
+  const cv::Rect shown = by_means ? inside : cv::Rect(inside.tl() - one, inside.br() + one) & all;
+  cv::Mat colour = image(shown);
+  if (image.channels() == 1) cv::cvtColor(colour, colour, cv::COLOR_GRAY2RGB);
+  const cv::Point2f from = (cv::Point2f(shown.tl()) - square.tl()) * scale;
+  if (by_means) {
+    const cv::Point2f size = cv::Point2f(shown.size()) * scale;
+    const cv::Rect to = cv::Rect(cv::Point(from), cv::Point(from + size));
+    if (!to.empty()) cv::resize(colour, small(to), to.size(), 0, 0, cv::INTER_AREA);
   } else {
-    cv::warpAffine(colour, small, to_input, {side, side}, cv::INTER_LINEAR);
+    const float half = (scale - 1) / 2;  // pixel
+    const cv::Matx23f to_small(scale, 0, from.x + half, 0, scale, from.y + half);
+    cv::warpAffine(colour, small, to_small, {side, side}, cv::INTER_LINEAR);
   }
-  small.convertTo(input, CV_32F, (range.white - range.black) / 255.0, range.black);
-  return input;
+  return small;
 }
 
 cv::Rect2f square_around(const cv::Rect& part) {
@@ -87,7 +90,10 @@ std::vector<Ssd::Candidate> Ssd::candidates(const cv::Mat& image, const cv::Rect
                                             float least) {
   const cv::Rect2f square = square_around(part);
   const int side = network_->input()[0];
-  outputs_ = network_->run(input_of(image, square, side, range_));
+  cv::Mat input;
+  scaled(image, square, side)
+      .convertTo(input, CV_32F, (range_.white - range_.black) / 255.0, range_.black);
+  outputs_ = network_->run(input);
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < anchors_.size(); ++i) {
     const auto row = static_cast<int>(i);

@@ -60,5 +60,17 @@ TEST(Ssd, numbers_that_are_no_places_are_no_detections) {
   EXPECT_EQ(found(), 1U);
 }
 
+TEST(Ssd, a_strip_takes_no_more_memory_than_it_has) {
+  auto ssd = Ssd::make(std::make_unique<MadeNetwork>(
+                           nets::Shape{4, 4, 3}, std::vector{cv::Mat(cv::Mat::zeros(2, 6, CV_32F)),
+                                                             cv::Mat(cv::Mat::ones(2, 1, CV_32F))}),
+                       {{1, 2}}, 1, {}, "things");
+  ASSERT_TRUE(ssd);
+  constexpr int kLength = 400'000;  // whose square has 480 GB
+  for (const cv::Size size : {cv::Size(kLength, 4), {4, kLength}})
+    EXPECT_EQ(
+        ssd->find<Thing>(cv::Mat(size, CV_8UC3, cv::Scalar::all(90)), {{}, size}, 0.5F).size(), 2U);
+}
+
 }  // namespace
 }  // namespace hc::people

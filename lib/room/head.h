@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The mounting of a head's eyes, nominal and with the faults of a real head. Pure.
+// A head's pose, and the mounting of its eyes, nominal and with the faults of a real head. Pure.
 
 #include <Eigen/Geometry>
 

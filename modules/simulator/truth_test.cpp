@@ -5,17 +5,16 @@
 
 #include <numbers>
 
+#include <room/head.h>
+
 namespace {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-/// A head at the world's origin at the height of the ball, and gaze along x, turned to the left.
+/// An eye at the head's origin, at the height of the ball, that looks along x, turned to the left.
 Isometry3d eye(double pan) {
-  Eigen::Matrix3d optical;
-  optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return Eigen::Translation3d(0, 0, 1.2) * Eigen::AngleAxisd(pan, Vector3d::UnitZ()) *
-         Isometry3d(optical);
+  return hc::room::head_pose(pan, 0) * hc::room::hang({0, 0, 0}, 0);
 }
 
 TEST(SeenBall, is_where_the_camera_projects_it) {
