@@ -116,12 +116,12 @@ class HostsTest(Graphs):
         stat = pathlib.Path("/proc/%d/stat" % self.agent_of(host)).read_text()
         return int(stat.rpartition(")")[2].split()[1])
 
-    def run_two(self):
-        (host,) = self.network.add()
+    def run_two(self, host):
+        """A graph with a camera on a host, and its process, messages and first state."""
         self.write_graph(self.tables(host) + CAMERA % "h1" + BRIGHTNESS % "")
         process = self.run_graph()
         messages = self.observe(process)
-        return host, process, messages, self.flows(messages)
+        return process, messages, self.flows(messages)
 
     def own_programs(self):
         mine = os.readlink("/proc/self/ns/net")

@@ -21,18 +21,21 @@ TIMES = 50 if FULL else 2
 
 
 class Losses(HostsTest):
-    def recovers_from(self, victim, times=TIMES):
-        host, process, messages, state = self.run_two()
-        for _ in range(times):
-            camera = self.modules_of(host)["camera"]
-            self.kill(victim(host))
-            wait_until(lambda: not os.path.exists("/proc/%d" % camera))
-            state = self.state(
-                messages, lambda state: self.module(state, "camera")["pid"] not in (0, camera)
-            )
-            state = self.flows(messages, state["links"][0]["messages"])
-        self.stop(process)
-        self.assert_empty(host)
+    def recovers_from(self, victim, at_once=TIMES):
+        """Kills it TIMES, `at_once` in a run of the graph."""
+        (host,) = self.network.add()
+        for done in range(0, TIMES, at_once):
+            process, messages, state = self.run_two(host)
+            for _ in range(min(at_once, TIMES - done)):
+                camera = self.modules_of(host)["camera"]
+                self.kill(victim(host))
+                wait_until(lambda: not os.path.exists("/proc/%d" % camera))
+                state = self.state(
+                    messages, lambda state: self.module(state, "camera")["pid"] not in (0, camera)
+                )
+                state = self.flows(messages, state["links"][0]["messages"])
+            self.stop(process)
+            self.assert_empty(host)
 
     def test_a_killed_agent(self):
         self.recovers_from(self.agent_of)
@@ -41,11 +44,8 @@ class Losses(HostsTest):
         self.recovers_from(self.child_of_sshd)
 
     def test_a_killed_module(self):
-        at_once = 5  # more restarts in a row are delayed, and end (G40)
-        for done in range(0, TIMES, at_once):
-            self.recovers_from(
-                lambda host: self.modules_of(host)["camera"], min(at_once, TIMES - done)
-            )
+        # More restarts in a row are delayed, and end (G40).
+        self.recovers_from(lambda host: self.modules_of(host)["camera"], at_once=5)
 
     def test_a_killed_runner(self):
         (host,) = self.network.add()
@@ -59,7 +59,8 @@ class Losses(HostsTest):
             self.assertNotIn("ssh ", " ".join(self.own_programs()))
 
     def test_a_cut_cable(self):
-        host, process, messages, state = self.run_two()
+        (host,) = self.network.add()
+        process, messages, state = self.run_two(host)
         host.cut()
         self.assert_empty(host)
         lost = self.state(messages, lambda state: not state["hosts"][0]["connected"])

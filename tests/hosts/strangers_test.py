@@ -17,7 +17,8 @@ from hosts import BRIGHTNESS, CAMERA, HostsTest, WATCHDOG
 
 class Strangers(HostsTest):
     def test_the_key_of_the_previous_run_is_refused(self):
-        host, process, messages, state = self.run_two()
+        (host,) = self.network.add()
+        process, messages, state = self.run_two(host)
         reader = self.module(state, "brightness")["pid"]
         key = pathlib.Path("/proc/%d/fd/3" % reader).read_text()
         self.assertIn("PRIVATE", key)
@@ -81,7 +82,8 @@ while not select.select([0], [], [], 0)[0]:
         self.assert_empty(host)
 
     def test_other_users_get_nothing(self):
-        host, process, messages, _ = self.run_two()
+        (host,) = self.network.add()
+        process, messages, _ = self.run_two(host)
         camera = self.modules_of(host)["camera"]
         words = pathlib.Path("/proc/%d/cmdline" % camera).read_bytes()
         self.assertIn(b"key=/proc/self/fd/3", words)
