@@ -10,9 +10,10 @@ namespace hc::people {
 namespace {
 
 constexpr float kSameFace = 0.3F;  // least overlap
-// Of the small network in photographs of faces of 560 px in 800 × 533, and 300 px in 380 × 580:
-constexpr double kMargin = 2;   // side of the square in which they are seen, by the shorter side
-constexpr float kLarge = 0.4F;  // least width of a face that is sought there, by the shorter side
+// Large faces are searched in a square around the image. Its side, and their least width, both as a
+// share of the image's shorter side. Source: photographs with faces of 0.8 and 1.05 of it.
+constexpr double kMargin = 2;
+constexpr float kLarge = 0.4F;
 constexpr std::size_t kMostLarge = 4;
 
 /// The faces around a box, as in a picture of one person, for which the small network was made.

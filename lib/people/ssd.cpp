@@ -33,8 +33,8 @@ bool is_near(std::span<const float> numbers, int side) {
   return std::ranges::all_of(numbers, [&](float each) { return std::abs(each) <= most; });
 }
 
-/// Scales what a square shows of an image to (side, side), u8 RGB; black outside of the image.
-/// Takes no more memory than what it shows.
+/// A square of an image, scaled to (side, side), u8 RGB; black outside of the image. Its memory is
+/// bounded by the part that is inside, since an image may be a strip.
 cv::Mat scaled(const cv::Mat& image, const cv::Rect2f& square, int side) {
   cv::Mat small = cv::Mat::zeros(side, side, CV_8UC3);
   const cv::Rect all({}, image.size()), inside = cv::Rect(square) & all;
