@@ -4,7 +4,7 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 
-#include <algorithm>
+#include <utility>
 
 namespace hc::internal {
 Result<Got> StreamSource::take(Message& message) {
@@ -12,7 +12,7 @@ Result<Got> StreamSource::take(Message& message) {
     auto got = HC_TRY(reader_.next(message));
     if (got) return Got::Message;
     // The last read took everything, so another one would most likely find nothing.
-    if (std::exchange(is_dry_, false) && between_messages()) return nothing();
+    if (std::exchange(is_dry_, false) && between_messages()) return Got::Nothing;
     auto space = reader_.space();
     ssize_t size = read(space);
     const SecureChannel* channel = descriptor_.channel.get();
@@ -27,7 +27,7 @@ Result<Got> StreamSource::take(Message& message) {
       continue;
     }
     if (size < 0 && errno == EINTR) continue;
-    if (size < 0 && errno == EAGAIN) return nothing();
+    if (size < 0 && errno == EAGAIN) return Got::Nothing;
     // A peer that is killed while it has unread bytes resets the connection: the end of its stream.
     if (size < 0 && (channel != nullptr || errno != ECONNRESET)) {
       auto error = channel != nullptr ? channel->failure() : system_error("read", "");
@@ -44,17 +44,6 @@ ssize_t StreamSource::read(std::span<std::byte> space) {
   if (descriptor_.channel) return descriptor_.channel->read(space);
   return is_socket_ ? ::recv(descriptor_.get(), space.data(), space.size(), MSG_DONTWAIT)
                     : ::read(descriptor_.get(), space.data(), space.size());
-}
-
-/// Prepares to wait. Inside a large message TCP wakes the reader only for a good part of it, since
-/// each wake-up interrupts the writer; Unix sockets wake it for every piece.
-Got StreamSource::nothing() {
-  constexpr std::uint64_t kGoodPart = std::uint64_t{128} << 10;
-  int bytes = static_cast<int>(std::clamp<std::uint64_t>(reader_.missing(), 1, kGoodPart));
-  const bool can_ask = is_socket_ && !descriptor_.channel;  // a channel reads ahead
-  if (can_ask && std::exchange(wakes_at_, bytes) != bytes)
-    ::setsockopt(descriptor_.get(), SOL_SOCKET, SO_RCVLOWAT, &bytes, sizeof bytes);
-  return Got::Nothing;
 }
 
 bool StreamSource::awaits_writer() const {

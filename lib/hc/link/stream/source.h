@@ -33,7 +33,6 @@ class StreamSource final : public Source {
 
  private:
   [[nodiscard]] bool awaits_writer() const;
-  Got nothing();
   ssize_t read(std::span<std::byte> space);
 
   ConnectedSocket descriptor_;
@@ -41,7 +40,6 @@ class StreamSource final : public Source {
   off_t begin_;            // of the stream in the file; -1: not a file [byte]
   bool is_socket_ = true;  // until the first read fails with ENOTSOCK
   bool is_dry_ = false;    // the last read took everything
-  int wakes_at_ = 1;       // SO_RCVLOWAT of a socket [byte]
   StreamReader reader_;
 };
 

@@ -71,17 +71,6 @@ std::string place_of(const Descriptor& listening) {
   return "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
 }
 
-/// The two ends of a connection.
-struct TcpEnds {
-  Descriptor dialed, accepted;
-};
-
-TcpEnds make_connection() {
-  auto listening = *listen_on(loopback_address(0), "any");
-  auto dialed = connect(place_of(listening));
-  return {std::move(dialed), Descriptor(::accept(listening.get(), nullptr, nullptr))};
-}
-
 const SocketScheme kTcp{
     "tcp", free_port, "tcp:", "tcp-listen:", connect, internal::tcp_peer, internal::listen_tcp};
 
@@ -268,51 +257,6 @@ TEST(Tcp, AConnectionWithItselfIsNone) {
   EXPECT_EQ(carry(*sink, *patient, numbered(1, 10)).header.seq, 1);
 }
 
-TEST(Tcp, WhoWaitsInsideALargeMessageIsWokenForAGoodPart) {
-  auto [peer, accepted] = make_connection();
-  const int reading = accepted.get();
-  internal::StreamSource source({std::move(accepted)}, {});
-  auto wakes_at = [&] {
-    int bytes = 0;
-    socklen_t length = sizeof bytes;
-    EXPECT_EQ(::getsockopt(reading, SOL_SOCKET, SO_RCVLOWAT, &bytes, &length), 0);
-    return bytes;
-  };
-  std::string_view rest;
-  auto send = [&, writing = peer.get()](std::size_t bytes) {
-    for (; bytes > 0;) {
-      auto sent = ::send(writing, rest.data(), bytes, 0);
-      ASSERT_GT(sent, 0);
-      bytes -= static_cast<std::size_t>(sent);
-      rest.remove_prefix(static_cast<std::size_t>(sent));
-    }
-  };
-  Message message;
-  const auto take = [&] {
-    auto got = *source.take(message);
-    // Bytes on their way wake, or have been taken with those before.
-    while (got == Got::Nothing && *source.wait(-1, std::chrono::milliseconds(0)))
-      got = *source.take(message);
-    return got;
-  };
-  const std::string large = encode(numbered(7, 200'000)), small = encode(numbered(8, 1));
-  rest = large;
-  send(large.size() - 150'000);
-  EXPECT_EQ(take(), Got::Nothing);
-  EXPECT_EQ(wakes_at(), 128 << 10);
-  send(20'000);
-  EXPECT_FALSE(*source.wait(-1, std::chrono::milliseconds(0)));
-  EXPECT_EQ(*source.take(message), Got::Nothing);
-  EXPECT_LE(wakes_at(), 130'000);
-  send(rest.size());
-  EXPECT_EQ(next(source).header.seq, 7);
-  EXPECT_EQ(take(), Got::Nothing);
-  EXPECT_EQ(wakes_at(), 1);
-  rest = small;
-  send(small.size());
-  EXPECT_EQ(next(source).header.seq, 8);
-}
-
 /// Makes sockets of another user, as root can; any other user takes its own for those.
 class Foreign {
  public:
@@ -373,7 +317,9 @@ TEST(Tcp, AListenerOfAnotherUserIsRefused) {
 }
 
 TEST(Tcp, APeerThatHasLeftIsOfNoUser) {
-  auto [peer, accepted] = make_connection();
+  const auto listening = *listen_on(loopback_address(0), "any");
+  auto peer = connect(place_of(listening));
+  const Descriptor accepted(::accept(listening.get(), nullptr, nullptr));
   ASSERT_TRUE(accepted);
   EXPECT_TRUE(tcp_peer_user(accepted.get(), Connected::Accepted));
   peer.reset();
