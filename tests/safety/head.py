@@ -349,6 +349,11 @@ class Head(Page):
         finally:
             waits.feeder.end()
 
+    def restart_waited(self, name, before):
+        """How long a restarted module waited for a processor, and the runner after it had waited
+        `before` [ns]. [s]"""
+        return (run_delay(self.process.pid) - before + run_delay(self.pid(name))) / 1e9
+
     def quiet(self):
         """Has no task bid of its own, until settle()."""
         self.tell(

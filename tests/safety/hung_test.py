@@ -13,7 +13,7 @@ from table import Safety  # which knows the way to the others
 from head import HEAD, IS_FULL
 from driver import seat_bid, seat_stick
 from harness import wait_until
-from streams import message, rotation
+from streams import message, rotation, run_delay
 from web_socket import BINARY
 
 HUNG = 60 if IS_FULL else 0  # at least, before the stop [s]
@@ -168,6 +168,7 @@ class Hung(Safety):
         hang = {name: given.get(name, {}).get("hang", SOON) for name in self.head.names()}
         hang = {name: seconds for name, seconds in hang.items() if IS_FULL or seconds == SOON}
         before = {name: self.head.pid(name) for name in hang}
+        had_waited = run_delay(self.head.process.pid)
         begun, back = time.monotonic(), {}
         for pid in before.values():
             os.kill(pid, signal.SIGSTOP)
@@ -175,13 +176,17 @@ class Hung(Safety):
         def are_anew():
             for each in self.head.state_now()["modules"]:
                 name = each["name"]
-                if each["status"] == "running" and each["pid"] not in (0, before.get(name)):
-                    back.setdefault(name, time.monotonic() - begun - hang.get(name, 0))
+                is_new = each["status"] == "running" and each["pid"] not in (0, before.get(name))
+                if is_new and name in hang and name not in back:
+                    took = time.monotonic() - begun - hang[name]
+                    back[name] = took, self.head.restart_waited(name, had_waited)
             return before.keys() <= back.keys()
 
         try:
             wait_until(are_anew)
-            self.note("back", max(back.values()) / self.head.start_took)
+            (took, waited), started = max(back.values()), self.head.start_took
+            where = "beside others who had the processor for %.3f s" % waited
+            self.note("back", took / started, where, waited / started)
             self.hold()
         finally:
             for pid in before.values():

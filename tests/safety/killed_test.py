@@ -52,7 +52,7 @@ class Killed(Safety):
             sent = {**head.sent(), **own}
             self.is_back(name, pid, {each: sent[each] for each in outputs if each not in late})
             took = time.monotonic() - begun
-            waited = (run_delay(head.process.pid) - waited + run_delay(head.pid(name))) / 1e9
+            waited = head.restart_waited(name, waited)
             where = "%s, beside others who had the processor for %.3f s: %s"
             self.note("back", took, where % (name, waited, head.said()[said:]), waited)
             self.is_back(name, pid, {each: sent[each] for each in late})
