@@ -12,6 +12,8 @@ from page import message as message_of, number
 from streams import stick
 from web_socket import BINARY, CLOSE, WebSocket
 
+SILENCE = 0.15  # almost as long as the server of a page waits until its seat is left [s]
+
 
 class PageSocket:
     """The page's /graph: keeps the session, and hands out answers."""
@@ -68,8 +70,7 @@ class Seat:
         self.socket.send_frame(BINARY, data)
 
     def was_silent(self):
-        """For almost as long as its server waits until the seat is left, or longer."""
-        return max(self.feeder.pauses, default=0) > 0.15
+        return max(self.feeder.pauses, default=0) > SILENCE
 
     def leave(self):
         self.feeder.end()

@@ -397,3 +397,7 @@ class Waits:
         """From the begin until a moment [ns]. [s]"""
         later = [total for at, total in self.samples if at >= moment] + [self.samples[-1][1]]
         return max(0, later[0] - self.samples[0][1]) / 1e9
+
+    def silences(self, seconds):
+        """How often they may have been silent for so long [s], since they waited."""
+        return int(self.until(time.time_ns()) / seconds)

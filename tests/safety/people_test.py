@@ -56,7 +56,7 @@ class People(Safety):
         got no processor for so long [s].
         """
         silences = sum(pause > silence for each in feeders for pause in each.pauses)
-        silences += int(waits.until(time.time_ns()) / silence)
+        silences += waits.silences(silence)
         where += " beside others who had the processor %d times" % silences
         self.note(limit, max(0, count - silences), where.strip())
         self.hold()
