@@ -350,8 +350,8 @@ class Head(Page):
             waits.feeder.end()
 
     def restart_waited(self, name, before):
-        """How long a restarted module waited for a processor, and the runner after it had waited
-        `before` [ns]. [s]"""
+        """The waits for a processor of a restarted module and, beyond `before` [ns], of the runner
+        [s]."""
         return (run_delay(self.process.pid) - before + run_delay(self.pid(name))) / 1e9
 
     def quiet(self):
@@ -399,5 +399,5 @@ class Waits:
         return max(0, later[0] - self.samples[0][1]) / 1e9
 
     def silences(self, seconds):
-        """How often they may have been silent for so long [s], since they waited."""
+        """The most pauses of this length [s] that their waits may have caused."""
         return int(self.until(time.time_ns()) / seconds)
