@@ -60,7 +60,7 @@ class Cycles(Endurance):
         for _ in range(CYCLES):
             process = self.begin(RING)
             with self.observing(process) as observed:
-                self.state(observed, self.is_running)
+                self.state(observed, self.all_run)
             self.halt(process)
             self.assertEqual(processes_of(process.pid), [])
             process.communicate()
@@ -76,14 +76,14 @@ class Cycles(Endurance):
     def test_modules_that_are_started_anew_leave_nothing(self):
         process = self.begin(RING)
         observed = self.observed(process)
-        state = self.state(observed, self.is_running)
+        state = self.state(observed, self.all_run)
         counted = lambda: (*holdings(process.pid)[:2], sockets(), len(processes_of(process.pid)))
         for cycle in range(CYCLES + WARM):
             if cycle == WARM:
                 before, memory = self.settled(counted), holdings(process.pid)[2]
             pids = {each["name"]: each["pid"] for each in state["modules"]}
             self.assertEqual(self.ask(process, *("restart " + name for name in NAMES)), ["ok"])
-            is_again = lambda state: self.is_running(state) and all(
+            is_again = lambda state: self.all_run(state) and all(
                 each["pid"] not in (0, pids[each["name"]]) for each in state["modules"]
             )
             state = self.state(observed, is_again)

@@ -110,9 +110,6 @@ class Endurance(Graphs):
         finally:
             messages.close()
 
-    def is_running(self, state):
-        return all(each["status"] == "running" for each in state["modules"])
-
     def said(self):
         return self.read("errors")[-3000:]
 

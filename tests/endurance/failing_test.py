@@ -29,7 +29,7 @@ class Failing(Endurance):
     def test_a_module_that_fails_at_once_costs_little(self):
         process = self.begin(IMAGES)
         observed = self.observed(process)
-        self.state(observed, self.is_running)
+        self.state(observed, self.all_run)
         for name in ("near", "far"):
             self.await_message(name, 0)
         moments, used = [time.monotonic()], [processor_time([process.pid])]
@@ -44,7 +44,7 @@ class Failing(Endurance):
         has_failed = lambda state: (
             failing(state)
             and failing(state)["restarts"] >= 5
-            and self.is_running({"modules": others(state)})
+            and self.all_run({"modules": others(state)})
         )
         state = self.state(observed, has_failed)
         for module in others(state):

@@ -30,7 +30,7 @@ class Many(Endurance):
         begun = time.monotonic()
         process = self.begin(RING)
         with self.observing(process) as observed:
-            self.state(observed, self.is_running)
+            self.state(observed, self.all_run)
             took = time.monotonic() - begun
             report("%d modules run after %.2f s", COUNT, took)
             self.limit(took, 5, "start")
@@ -57,7 +57,7 @@ class Many(Endurance):
             process = self.begin(RING)
         finally:
             resource.setrlimit(resource.RLIMIT_NOFILE, limits)
-        self.state(self.observed(process), self.is_running)
+        self.state(self.observed(process), self.all_run)
         self.halt(process)
 
 

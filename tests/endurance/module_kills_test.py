@@ -17,7 +17,7 @@ class ModuleKills(Endurance):
     def test_messages_flow_again_and_none_is_damaged(self):
         process = self.begin(IMAGES)
         observed = self.observed(process)
-        self.state(observed, self.is_running)
+        self.state(observed, self.all_run)
         for name in ("near", "far"):
             self.await_message(name, 0)
         names = ("camera", "relay", "near", "far")
@@ -29,11 +29,11 @@ class ModuleKills(Endurance):
                     time.sleep(max(0, killed[name] + BETWEEN - time.monotonic()))
                 # Not one of the states that were sent while nobody read them.
                 with self.observing(process) as fresh:
-                    state = self.state(fresh, self.is_running)
+                    state = self.state(fresh, self.all_run)
                     before = self.module(state, name)["pid"]
                     killed[name] = time.monotonic()
                     os.kill(before, signal.SIGKILL)
-                    is_back = lambda state: self.is_running(state) and (
+                    is_back = lambda state: self.all_run(state) and (
                         self.module(state, name)["pid"] not in (0, before)
                     )
                     self.state(fresh, is_back)

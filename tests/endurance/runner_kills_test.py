@@ -20,7 +20,7 @@ class RunnerKills(Endurance):
             begun = time.monotonic()
             process = self.begin(IMAGES)
             with self.observing(process) as observed:
-                self.state(observed, self.is_running)
+                self.state(observed, self.all_run)
             for name in ("near", "far"):
                 self.await_message(name, begun)
             started.append(time.monotonic() - begun)

@@ -49,7 +49,7 @@ class WallClock(Endurance):
         started = time.monotonic()
         process = self.begin(GRAPH)
         observed = self.observed(process)
-        ready = lambda state: self.is_running({"modules": state["modules"][:4]})
+        ready = lambda state: self.all_run({"modules": state["modules"][:4]})
         first = self.state(observed, ready)
         begun = time.monotonic()
         rates = []
@@ -68,7 +68,7 @@ class WallClock(Endurance):
             state = self.state(fresh, ready)
         passed = time.monotonic() - begun
         for module in state["modules"][:4]:
-            self.assertEqual((module["status"], module["restarts"]), ("running", 0), module)
+            self.assertEqual(module["restarts"], 0, module)
         failing = self.module(state, "failing")
         self.assertGreater(failing["restarts"], 4)
         self.assertEqual(self.ask(process, "remove failing"), ["ok"])  # it may be given up by now

@@ -186,7 +186,7 @@ class Links(HostsTest):
         self.state(
             messages,
             lambda state: state["hosts"][0]["connected"]
-            and all(each["status"] == "running" for each in state["modules"])
+            and self.all_run(state)
             and self.rate(state, "head_eyes.left", "left_ball.image"),
         )
         back = time.time()

@@ -71,10 +71,9 @@ class Many(HostsTest):
         words = module["name"].split("_")
         return (int(words[1]), words[0] != "camera", int(words[-1]))
 
-    @staticmethod
-    def runs(state):
+    def runs(self, state):
         return (
-            all(each["status"] == "running" for each in state["modules"])
+            self.all_run(state)
             and all(each["per_second"] > 0 for each in state["links"])
             and all(each["connected"] for each in state["hosts"])
         )

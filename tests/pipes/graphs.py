@@ -167,5 +167,12 @@ class Graphs(Pipes):
         return out.decode(), err.decode()
 
     @staticmethod
+    def all_run(state):
+        """Whether every module runs, also one that waits for the processor: of a whole head on a busy
+        machine one does at any time."""
+        runs = lambda each: each["status"] == "running" or each["detail"] == "busy"
+        return all(map(runs, state["modules"]))
+
+    @staticmethod
     def module(state, name):
         return next((each for each in state["modules"] if each["name"] == name), None)

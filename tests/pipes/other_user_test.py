@@ -58,10 +58,6 @@ class OtherUser(Graphs):
         self.state(messages, self.all_run)
         return head, messages
 
-    @staticmethod
-    def all_run(state):
-        return all(module["status"] == "running" for module in state["modules"])
-
     def facts(self, head):
         """What anybody can know of the graph, and more."""
         processes = descendants(head.pid)

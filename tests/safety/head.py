@@ -107,10 +107,9 @@ class Head(Page):
 
     def is_whole(self):
         try:
-            state = self.state_now()
+            return self.all_run(self.state_now())
         except OSError:  # it is starting
             return False
-        return all(each["status"] == "running" for each in state["modules"])
 
     def is_going_on(self):
         """Whether the workspace decides, and the unit says where it is."""

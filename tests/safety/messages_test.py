@@ -63,7 +63,9 @@ class BadMessages(Safety):
             name = end.split(".")[0]
             ended, memory, begun = head.restarts(), self.memory(), time.time_ns()
             self.flood(end, types)
-            head.wait(head.is_whole, "all run after bad messages into " + end)
+            # It works again, too: no message keeps it busy.
+            runs = lambda: head.module(head.state_now(), name)["status"] == "running"
+            head.wait(lambda: head.is_whole() and runs(), "all run after bad messages into " + end)
             self.note_ended(ended, where=end)
             self.note("memory", self.gained(name, memory), end)
             where = "%s, focus %s" % (end, head.focused.changes(begun))
