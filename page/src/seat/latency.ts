@@ -34,6 +34,7 @@ export class Latency {
   private last?: Shown;
   /** The image before the command, and the image noise before it. */
   private pending?: { at: number; before: Shown; noise: number };
+  /** Between the last images. */
   private changes: number[] = [];
   private commanded = -Infinity;
 
@@ -41,24 +42,22 @@ export class Latency {
   command(at: number): void {
     const rested = at - this.commanded > rest;
     this.commanded = at;
-    if (this.pending && at - this.pending.at > patience) this.pending = undefined;
     if (!rested || !this.last) return;
-    this.pending = { at, before: this.last, noise: Math.max(0, ...this.changes) };
+    // The median is that of the head at rest, also if the first of them still show it moving.
+    this.pending = { at, before: this.last, noise: quantile(this.changes, 0.5) ?? 0 };
   }
 
   shown(image: Shown): void {
     const { pending, last } = this;
     this.last = image;
-    if (!pending) {
-      if (last) this.changes = [...this.changes, changeOf(last, image)].slice(-8);
-      return;
-    }
-    if (image.sensed <= pending.at) return;
-    if (changeOf(pending.before, image) <= 1.5 * pending.noise + 0.5) return;
-    this.pending = undefined;
-    this.changes = [];
+    if (last) this.changes = [...this.changes, changeOf(last, image)].slice(-8);
+    if (!pending || image.sensed <= pending.at) return;
+    const total = image.drawn - pending.at;
+    const isDifferent = changeOf(pending.before, image) > 1.5 * pending.noise + 0.5;
+    if (isDifferent || total > patience) this.pending = undefined;
+    if (!isDifferent || total > patience) return;
     this.measurements.push({
-      total: image.drawn - pending.at,
+      total,
       sensed: image.sensed - pending.at,
       arrived: image.arrived - image.sensed,
       decoded: image.decoded - image.arrived,
@@ -69,17 +68,21 @@ export class Latency {
 
   /** Median of the totals [ms]. */
   get median(): number | undefined {
-    return this.quantile(0.5);
+    return quantile(this.totals, 0.5);
   }
 
   get p99(): number | undefined {
-    return this.quantile(0.99);
+    return quantile(this.totals, 0.99);
   }
 
-  private quantile(part: number): number | undefined {
-    const totals = this.measurements.map(({ total }) => total).sort((a, b) => a - b);
-    return totals[Math.min(totals.length - 1, Math.floor(part * totals.length))];
+  private get totals(): number[] {
+    return this.measurements.map(({ total }) => total);
   }
+}
+
+function quantile(values: readonly number[], part: number): number | undefined {
+  const sorted = [...values].sort((a, b) => a - b);
+  return sorted[Math.min(sorted.length - 1, Math.floor(part * sorted.length))];
 }
 
 /** Mean difference of two images in grey values. */

@@ -124,6 +124,38 @@ test("motion to photon is to the first later image that changed more than before
   assert.equal(latency.median, 120);
 });
 
+test("motion before the first command hides no later one", () => {
+  const latency = new Latency();
+  let [grey, moment] = [100, 0];
+  const show = (count: number, step: number) => {
+    for (let i = 0; i < count; ++i) {
+      [grey, moment] = [grey + step, moment + 50];
+      const thumbnail = new Uint8Array(4).fill(grey);
+      latency.shown({
+        thumbnail,
+        sensed: moment,
+        arrived: moment,
+        decoded: moment,
+        drawn: moment,
+      });
+    }
+  };
+  show(8, 10); // another task moves the head
+  latency.command(moment);
+  show(4, 3); // too little to be told from that
+  assert.equal(latency.measurements.length, 0);
+  for (let i = 1; i <= 3; ++i) {
+    show(12, 0);
+    latency.command(moment);
+    show(4, 3);
+    assert.equal(latency.measurements.length, i);
+  }
+  latency.command(moment + 600);
+  moment += 3000; // no image for longer than a measurement takes
+  show(4, 3);
+  assert.equal(latency.measurements.length, 3);
+});
+
 test("the wall clock, with fractions of a millisecond", () => {
   let [fine, wall] = [10, 1000];
   const clock = new WallClock(
