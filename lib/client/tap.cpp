@@ -65,10 +65,10 @@ Result<Uri> ask_uri(const RunningGraph& graph, const std::string& question, int 
   return parse_uri(answer.rows.front());
 }
 
-/// Lowers the priority of this thread below the robot's modules; if that fails, it merely competes
-/// with them.
+/// Lowers the priority of this thread below the robot's modules, and not below those in background:
+/// a person may steer by its images. If that fails, it merely competes with the modules.
 void yield_to_robot() {
-  constexpr int kNice = 10;
+  constexpr int kNice = 5;
   static_cast<void>(::setpriority(PRIO_PROCESS, 0, kNice));
   const sched_param none{};
   static_cast<void>(::sched_setscheduler(0, SCHED_BATCH, &none));
