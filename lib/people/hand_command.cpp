@@ -17,11 +17,14 @@ bool is_still(const HandCommand::Directions& from, const HandCommand::Directions
 
 std::optional<Sign> HandCommand::update(Time time, Sign sign,
                                         const std::optional<Directions>& towards) {
-  const bool was_unseen = std::chrono::abs(time - std::exchange(last_, time)) > kUnseen;
+  const auto passed = time - std::exchange(last_, time);
+  const bool was_unseen = std::chrono::abs(passed) > kUnseen;
   const bool has_moved = towards && !(from_ && is_still(*from_, *towards));
   if (was_unseen || has_moved) {
     hold_ = SignHold{kHold};
     from_ = towards;
+    // It came to rest between the two images: on average, in the middle.
+    if (!was_unseen) hold_.update(time - passed / 2, sign);
   }
   return hold_.update(time, sign);
 }

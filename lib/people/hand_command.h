@@ -27,7 +27,8 @@ class HandCommand {
   /// Maximum time between two images, since a hand may have moved to and fro in between.
   static constexpr std::chrono::milliseconds kUnseen{250};
 
-  /// Takes the sign in an image.
+  /// Takes the sign in an image. A hold begins halfway between the first image of the hand at rest
+  /// and the one before, if that is at most kUnseen earlier.
   /// @param towards  nothing for a hand without a sign.
   /// @returns a sign, once, that was held still for kHold.
   std::optional<Sign> update(Time time, Sign sign, const std::optional<Directions>& towards);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace {
 
@@ -61,6 +62,29 @@ TEST(HandCommand, is_no_wave_along_the_line_of_sight) {
     return upright(0, 0, kPalm * std::cos(0.9 * std::sin(2 * std::numbers::pi * 1.5 * t)));
   };
   EXPECT_EQ(commands(Sign::Open, waves), 0);
+}
+
+/// How long a hand is seen at rest until it gives a command.
+/// @param passed  since an image in which it was elsewhere; nothing: there is none.
+/// @param apart  time between two images
+std::chrono::milliseconds rest_until_command(std::optional<std::chrono::milliseconds> passed,
+                                             std::chrono::milliseconds apart) {
+  HandCommand command;
+  const hc::Time first(1'700'000'000s);
+  if (passed) command.update(first - *passed, Sign::Open, upright(kPalm));
+  for (auto at = 0ms; at < 3s; at += apart)
+    if (command.update(first + at, Sign::Open, upright(0))) return at;
+  return -1ms;
+}
+
+TEST(HandCommand, counts_from_the_middle_between_motion_and_rest) {
+  EXPECT_EQ(rest_until_command(120ms, 120ms), 480ms);  // and the 60 ms before
+  EXPECT_EQ(rest_until_command(120ms, 110ms), 440ms);
+  EXPECT_EQ(rest_until_command(240ms, 10ms), 380ms);
+  EXPECT_EQ(rest_until_command(80ms, 80ms), 480ms);
+  // It may have been at rest for any part of a longer time.
+  EXPECT_EQ(rest_until_command(260ms, 10ms), 500ms);
+  EXPECT_EQ(rest_until_command({}, 10ms), 500ms);
 }
 
 TEST(HandCommand, starts_again_after_an_image_without_a_sign) {
