@@ -11,7 +11,7 @@ namespace hc {
 namespace {
 
 constexpr std::size_t kMaxWaiting = 256;
-constexpr std::chrono::seconds kSetBack{1};
+constexpr std::chrono::seconds kSetBack{1}, kAhead{1};
 constexpr std::chrono::milliseconds kTick{10};
 
 }  // namespace
@@ -71,9 +71,11 @@ Status ModuleFrames::feed(std::string_view parent, std::string_view child, Time 
   if (time < newest - kSetBack) {
     known().tree.forget();
     newest_.clear();
+    last_ = {};
   } else {
     newest = std::max(newest, time);
   }
+  last_ = std::max(last_, time);
   fed_ = module_.now();
   silence_ = {};
   HC_TRY(known().tree.feed(parent, child, time, T_parent_child));
@@ -82,8 +84,10 @@ Status ModuleFrames::feed(std::string_view parent, std::string_view child, Time 
 }
 
 bool ModuleFrames::awaits(const frames::Frame& target, const frames::Frame& source, Time time) {
+  const Time wanted = given(time);
   return fed_ > Time() && silence() < options_.silence &&
-         tree().is_ahead(target, source, given(time));
+         wanted - kAhead <= std::max(module_.now(), last_) &&
+         tree().is_ahead(target, source, wanted);
 }
 
 // After a long handler, poses wait in the input: it is counted in ticks, between which they are

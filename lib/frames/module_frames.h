@@ -61,7 +61,8 @@ class ModuleFrames {
   /// The same for fixed joints; a moving one ends the module.
   [[nodiscard]] Eigen::Isometry3d fixed(const frames::Frame& target, const frames::Frame& source);
 
-  /// Whether to wait for lookup() at a time after the last pose: while poses arrive.
+  /// Whether to wait for lookup() at a time after the last pose: while poses arrive, and unless it
+  /// is more than 1 s ahead of both now and the last pose, as a sender's clock may be wrong.
   [[nodiscard]] bool awaits(const frames::Frame& target, const frames::Frame& source, Time time);
   /// Calls a handler with the result of lookup(), as soon as there is no need to wait: at once, or
   /// between messages. Handlers are called in order; if more than 256 wait, the oldest is called.
@@ -103,7 +104,7 @@ class ModuleFrames {
   Parameter<std::string> text_;
   std::optional<frames::GraphFrames> frames_;
   std::map<std::string, Time, std::less<>> newest_;  // pose of each child
-  Time fed_;                                         // arrival of the last pose
+  Time last_, fed_;                                  // of the last pose, and its arrival
   std::chrono::nanoseconds silence_{0};              // since then, with an input
   std::deque<Waiting> waiting_;
 };

@@ -84,6 +84,25 @@ TEST_F(DefaultHead, a_time_to_come_is_waited_for_as_long_as_poses_come) {
               0.020, 1e-9);
 }
 
+TEST_F(DefaultHead, a_time_of_a_wrong_clock_is_not_waited_for) {
+  feed_at(0);
+  for (const Time ahead : {kStart + 1001ms, kStart + 24h, Time::max()}) {
+    EXPECT_FALSE(frames_.awaits("robot", "head", ahead));
+    frames_.when_known("robot", "head", ahead, [this](const auto& T) {
+      EXPECT_FALSE(T);
+      answers_.push_back(0);
+    });
+  }
+  EXPECT_EQ(answers_.size(), 3U);
+  EXPECT_TRUE(frames_.awaits("robot", "head", kStart + 1000ms));
+  ask(5);
+  feed_at(10);
+  ASSERT_EQ(answers_.size(), 4U) << "the next one does not wait behind them";
+  EXPECT_NEAR(answers_[3], 0.005, 1e-9);
+  feed_at(60'000);
+  EXPECT_TRUE(frames_.awaits("robot", "head", kStart + 60s + 50ms)) << "poses have that clock, too";
+}
+
 // A handler that takes 150 ms is followed by an image before the poses of that time.
 TEST_F(DefaultHead, a_pose_that_waits_in_the_input_is_waited_for) {
   Module module{"test", "A test.", {.clock = &clock_}};
