@@ -7,6 +7,7 @@
 #include <fstream>
 #include <system_error>
 #include <tuple>
+#include <utility>
 
 #include <sys/stat.h>
 
@@ -52,7 +53,7 @@ hc::Result<std::vector<Embedding>> views_in(const std::string& path) {
   return views;
 }
 
-/// Whether a name can be that of a file; hc::replace_file has others while it writes them.
+/// Whether a name can be that of a file; hc::replace_private_file has others while it writes them.
 bool is_file_name(std::string_view name) {
   return hc::people::is_person_name(name) && !name.ends_with(".unfinished");
 }
@@ -62,14 +63,20 @@ bool is_file_name(std::string_view name) {
 bool Folder::read() {
   if (path_.empty()) return false;
   std::map<std::string, hc::FileStamp> now;
-  std::error_code missing;
-  for (const auto& entry : fs::directory_iterator(path_, missing)) {
-    const auto name = entry.path().filename().string();
+  std::error_code failed;
+  fs::directory_iterator each(path_, failed);
+  for (; !failed && each != fs::directory_iterator(); each.increment(failed)) {
+    const auto name = each->path().filename().string();
     std::error_code unknown;
-    if (!is_file_name(name) || !entry.is_regular_file(unknown)) continue;
+    if (!is_file_name(name) || !each->is_regular_file(unknown)) continue;
     if (now.size() == kMostPeople) continue;
     now.emplace(name, hc::file_stamp(file_of(name)));
   }
+  if (failed && failed != std::errc::no_such_file_or_directory) {
+    complain(failed.message());
+    return false;
+  }
+  complaint_.clear();
   if (now == files_) return false;
   for (const auto& [name, stamp] : files_)
     if (!now.contains(name)) gallery_.forget(name);
@@ -84,6 +91,11 @@ bool Folder::read() {
   }
   files_ = std::move(now);
   return true;
+}
+
+void Folder::complain(const std::string& why) {
+  if (std::exchange(complaint_, why) != why)
+    log_(hc::format("{} cannot be read, so known people stay as they are: {}", path_, why));
 }
 
 hc::Status Folder::learn(const std::string& name, const std::vector<Embedding>& views) {
@@ -109,10 +121,7 @@ hc::Status Folder::learn(const std::string& name, const std::vector<Embedding>& 
   for (const auto& view : all) numbers.insert(numbers.end(), view.begin(), view.end());
   const auto message = hc::table<float>().message(
       static_cast<std::int32_t>(all.size()), static_cast<std::int32_t>(all[0].size()), numbers);
-  const mode_t others = ::umask(S_IRWXG | S_IRWXO);  // for its owner alone, also in an open folder
-  const auto written = hc::replace_file(file_of(name), hc::encode(message));
-  ::umask(others);
-  HC_TRY(written);
+  HC_TRY(hc::replace_private_file(file_of(name), hc::encode(message)));
   read();
   return {};
 }

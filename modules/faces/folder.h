@@ -24,7 +24,8 @@ class Folder {
   Folder(std::string path, std::function<void(std::string_view)> log)
       : path_(std::move(path)), log_(std::move(log)) {}
 
-  /// Reads the files that are new or have changed, and forgets the people whose file has gone.
+  /// Reads the files that are new or have changed, and forgets the people whose file has gone. If
+  /// the folder cannot be read, nothing changes, and the log says why, once.
   /// @returns  whether anything has changed.
   bool read();
   /// Adds views to a person, who may be new, and writes their file. Makes the folder, for its owner
@@ -36,10 +37,12 @@ class Folder {
   [[nodiscard]] const hc::people::Gallery& gallery() const { return gallery_; }
 
  private:
+  void complain(const std::string& why);
   [[nodiscard]] std::string file_of(const std::string& name) const { return path_ + "/" + name; }
 
   std::string path_;
   std::function<void(std::string_view)> log_;
   hc::people::Gallery gallery_;
   std::map<std::string, hc::FileStamp> files_;  // as they were read
+  std::string complaint_;                       // the last one about the folder
 };

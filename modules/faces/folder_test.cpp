@@ -122,6 +122,29 @@ TEST_F(FolderTest, files_are_for_their_owner_alone) {
   ASSERT_TRUE(folder.learn("Anna", {embedding(0.2F)}));
   const auto others = fs::perms::group_all | fs::perms::others_all;
   EXPECT_EQ(fs::status(path_ + "/Anna").permissions() & others, fs::perms::none);
+  write("Anna.unfinished", "");  // as another user may have made it
+  fs::permissions(path_ + "/Anna.unfinished", fs::perms::all);
+  const auto learned = folder.learn("Anna", {embedding(0.3F)});
+  ASSERT_FALSE(learned);
+  EXPECT_NE(learned.error().detail.find("other users can read it"), std::string::npos);
+  EXPECT_TRUE(folder.gallery().find(embedding(0.2F), 0.01F));
+}
+
+TEST_F(FolderTest, that_cannot_be_read_changes_nobody) {
+  Folder folder = open();
+  ASSERT_TRUE(folder.learn("Anna", {embedding(0.2F)}));
+  for (int round = 1; round <= 2; ++round) {
+    fs::rename(path_, path_ + " elsewhere");
+    std::ofstream{path_} << "no folder";
+    EXPECT_FALSE(folder.read());
+    EXPECT_FALSE(folder.read());
+    EXPECT_TRUE(folder.gallery().names().contains("Anna"));
+    ASSERT_EQ(said_.size(), static_cast<std::size_t>(round)) << "once each time";
+    EXPECT_NE(said_.back().find(path_ + " cannot be read"), std::string::npos) << said_.back();
+    fs::remove(path_);
+    fs::rename(path_ + " elsewhere", path_);
+    EXPECT_FALSE(folder.read());
+  }
 }
 
 TEST_F(FolderTest, names_cannot_lead_out_of_it) {

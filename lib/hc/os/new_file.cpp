@@ -20,9 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds kPatience{2};  // to wait for another process that writes the file
+constexpr mode_t kPublic = 0666, kPrivate = 0600;
 constexpr const char* kIsWritten = ": another process is writing it";
 
-Result<Descriptor> open_file(const std::string& path, int flags, mode_t mode = 0666) {
+Result<Descriptor> open_file(const std::string& path, int flags, mode_t mode = kPublic) {
   return open_descriptor("open", path, [&] {
     return ::open(path.c_str(), flags | O_CREAT | O_CLOEXEC | O_NOCTTY, mode);
   });
@@ -82,8 +83,10 @@ Status put_in_place(const std::string& path, std::string_view contents, mode_t m
   const std::string unfinished = path + ".unfinished";
   const auto file = HC_TRY(open_successor(unfinished, mode));
   const bool is_wanted = replaces || ::access(path.c_str(), F_OK) != 0;
-  if (!replaces && is_wanted && is_accessible_to_others(file))
-    return Error{Code::System, unfinished + ": other users can read it; remove it"};
+  if (is_wanted && mode == kPrivate && is_accessible_to_others(file))
+    return Error{Code::System, unfinished +
+                                   ": other users can read it; remove it, or "
+                                   "choose a file system that has permissions"};
   Status done = is_wanted ? write_to(file, path, contents) : Status();
   if (done && is_wanted && std::rename(unfinished.c_str(), path.c_str()) != 0)
     done = system_error("rename", path);
@@ -145,12 +148,16 @@ Result<NewFile> continue_file(const std::string& path) {
 }
 
 Status replace_file(const std::string& path, std::string_view contents) {
-  if (!is_written_in_place(path)) return put_in_place(path, contents, 0666, true);
+  if (!is_written_in_place(path)) return put_in_place(path, contents, kPublic, true);
   return write_to(HC_TRY(open_file(path, O_WRONLY)), path, contents);
 }
 
+Status replace_private_file(const std::string& path, std::string_view contents) {
+  return put_in_place(path, contents, kPrivate, true);
+}
+
 Status make_private_file(const std::string& path, std::string_view contents) {
-  return put_in_place(path, contents, 0600, false);
+  return put_in_place(path, contents, kPrivate, false);
 }
 
 }  // namespace hc

@@ -44,14 +44,20 @@ Result<NewFile> continue_file(const std::string& path);
 /// where the file system has it, and wait up to 2 s for each other. Devices and the like
 /// (is_written_in_place()) are written directly.
 ///
-/// Errors: System (also: another process does not finish); the file is then unchanged.
+/// Errors: System (also: another process does not finish), NotFound (the folder does not exist);
+/// the file is then unchanged.
 Status replace_file(const std::string& path, std::string_view contents);
+
+/// Replaces a file, or a device, by a file that only its owner can read. Readers and concurrent
+/// calls are served as by replace_file().
+///
+/// Errors: those of replace_file(), System (PATH.unfinished can be read by other users).
+Status replace_private_file(const std::string& path, std::string_view contents);
 
 /// Creates a file that only its owner can read, unless it exists. Concurrent calls, serialised as
 /// above, leave the contents of one of them, complete.
 ///
-/// Errors: System (also: PATH.unfinished exists and other users can read it), NotFound (the folder
-/// does not exist).
+/// Errors: those of replace_private_file().
 Status make_private_file(const std::string& path, std::string_view contents);
 
 }  // namespace hc

@@ -127,7 +127,9 @@ TEST_F(NewFiles, APrivateFileIsNotWrittenWhereOthersCanRead) {
   std::ofstream(at("x.unfinished")) << "";
   ASSERT_EQ(::chmod(at("x.unfinished").c_str(), 0604), 0);
   EXPECT_EQ(refused(make_private_file(at("x"), "secret")).detail,
-            at("x.unfinished") + ": other users can read it; remove it");
+            at("x.unfinished") +
+                ": other users can read it; remove it, or choose a file system that "
+                "has permissions");
   EXPECT_FALSE(fs::exists(at("x")));
   EXPECT_EQ(contents("x.unfinished"), "");
   fs::remove(at("x.unfinished"));
@@ -137,11 +139,27 @@ TEST_F(NewFiles, APrivateFileIsNotWrittenWhereOthersCanRead) {
   EXPECT_EQ(contents("x"), "secret");
 }
 
+TEST_F(NewFiles, AFileThatOthersCanReadBecomesPrivate) {
+  std::ofstream(at("x")) << "old";
+  ASSERT_EQ(::chmod(at("x").c_str(), 0666), 0);
+  must(replace_private_file(at("x"), "secret"));
+  EXPECT_EQ(contents("x"), "secret");
+  EXPECT_EQ(fs::status(at("x")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  std::ofstream(at("x.unfinished")) << "";
+  ASSERT_EQ(::chmod(at("x.unfinished").c_str(), 0606), 0);
+  EXPECT_EQ(refused(replace_private_file(at("x"), "another secret")).detail,
+            at("x.unfinished") +
+                ": other users can read it; remove it, or choose a file system that "
+                "has permissions");
+  EXPECT_EQ(contents("x"), "secret");
+}
+
 TEST_F(NewFiles, WhatAnUnfinishedFileLinksToStays) {
   std::ofstream(at("other")) << "of others";
   fs::create_symlink(at("other"), at("x.unfinished"));
   EXPECT_FALSE(replace_file(at("x"), "ours"));
   EXPECT_FALSE(make_private_file(at("x"), "ours"));
+  EXPECT_FALSE(replace_private_file(at("x"), "ours"));
   EXPECT_EQ(contents("other"), "of others");
 }
 
