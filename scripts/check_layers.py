@@ -9,7 +9,7 @@ import sys
 
 # Library packages: over other libraries, without messages but in the files of MESSAGES.
 PACKAGES = {"frames", "vision", "nets", "people", "graphics", "room", "sound", "gaze", "web"}
-MESSAGES = {"messages", "module_cameras", "module_frames"}
+MESSAGES = {"messages", "module_cameras", "module_frames", "right_images"}
 # A layer, and those that it may include beside itself.
 ALLOWED = {
     "base": "",

@@ -31,8 +31,10 @@ Faces::Faces(hc::Module& module) : module_(module) {
     });
   });
   module.on(right_, [this](const hc::Image& image) {
-    right_image_ = image.keep();
-    look_right(right_image_);
+    if (module_.time_of(image.header) == last_)
+      look_right(image);
+    else
+      rights_.add(image.keep());
   });
   module.on(cameras_, [this](const hc::Message& message) {
     mount_.take(hc::value_or_drop(hc::pose_of(message)));
@@ -70,15 +72,14 @@ void Faces::read_folder() {
 }
 
 void Faces::forget() {
-  if (!std::exchange(is_idle_, true)) return;
+  if (looked_ && module_.monotonic() - *looked_ < hc::people::FaceTracks::kLongest) return;
   for (const NameRequest& request : std::exchange(requests_, {})) refuse(request, "no image comes");
   views_ = {};
   seen_.clear();
-  right_image_ = {};
+  rights_ = {};
 }
 
 void Faces::look(const hc::Message& message) {
-  is_idle_ = false;
   const cv::Mat image = hc::value_or_drop(hc::as_mat(message));
   const auto time = module_.time_of(message.header);
   const auto turn = turn_to(message.header);
@@ -87,7 +88,8 @@ void Faces::look(const hc::Message& message) {
   describe(time, image, seen_);
   answer_requests();
   send(message.header, seen_);
-  look_right(right_image_);
+  if (const auto* right = rights_.find(time)) look_right(*right);
+  looked_ = module_.monotonic();
 }
 
 cv::Matx33f Faces::turn_to(const hc::Header& image) {
@@ -113,7 +115,6 @@ void Faces::describe(hc::Time time, const cv::Mat& image, const std::vector<Trac
 }
 
 void Faces::look_right(const hc::Message& message) {
-  if (message.header.empty() || module_.time_of(message.header) != last_) return;
   const cv::Mat image = hc::value_or_drop(hc::as_mat(message));
   const auto pair = pair_of(intrinsics_.of(image.cols, image.rows));
   for (const std::size_t place : distances_.due(last_, seen_)) {

@@ -13,6 +13,7 @@
 #include <people/face_table.h>
 #include <people/track_views.h>
 #include <vision/module_cameras.h>
+#include <vision/right_images.h>
 
 #include "folder.h"
 
@@ -39,7 +40,7 @@ class Faces {
   void start();
   /// Looks at a left image, once it is known how the head was turned then.
   void look(const hc::Message& message);
-  /// Measures distances in a right image, if it is of the last pair.
+  /// Measures distances in the right image of the last left one.
   void look_right(const hc::Message& message);
   /// How pixels have moved since the last image by the turn of the head.
   cv::Matx33f turn_to(const hc::Header& image);
@@ -55,7 +56,7 @@ class Faces {
   /// Why a track's person does not get this name; nothing: they do.
   [[nodiscard]] std::optional<std::string> reason_against(const NameRequest& request) const;
   void read_folder();
-  /// Forgets everybody where no image has come since the last call.
+  /// Forgets everybody where no image has come for as long as a track lasts.
   void forget();
   /// A person's number; 0: unknown.
   [[nodiscard]] int person(int track) const;
@@ -104,8 +105,8 @@ class Faces {
   std::optional<Folder> folder_;
   hc::people::TrackViews views_;
   hc::people::FaceDistances distances_;
-  bool is_idle_ = true;
-  hc::Message right_image_;                        // the last one
+  std::optional<hc::MonotonicTime> looked_;  // when it last looked at an image
+  hc::vision::RightImages rights_;
   hc::Time last_;                                  // left image
   std::optional<Eigen::Matrix3d> R_robot_camera_;  // then
   std::vector<hc::people::Track> seen_;            // then

@@ -65,8 +65,7 @@ void Hands::see_left(const hc::Message& message) {
   for (const auto& track : tracks)
     if (update_hold(track) && !pointing_) pointing_ = track;
   if (!right_.linked()) return aim(nullptr);
-  const auto right = std::exchange(right_ahead_, std::nullopt);
-  if (right && module_.time_of(right->header) == last_) aim(&*right);
+  if (const auto* right = rights_.find(last_)) aim(right);
 }
 
 void Hands::see_right(const hc::Message& message) {
@@ -75,7 +74,7 @@ void Hands::see_right(const hc::Message& message) {
   } else if (module_.time_of(message.header) == last_) {
     aim(&message);
   } else {
-    right_ahead_ = message.keep();
+    rights_.add(message.keep());
   }
 }
 

@@ -17,6 +17,7 @@
 #include <people/hand_table.h>
 #include <people/sign.h>
 #include <vision/module_cameras.h>
+#include <vision/right_images.h>
 
 #include "aims.h"
 #include "palm_stop.h"
@@ -119,10 +120,10 @@ class Hands {
   SeenFaces seen_faces_;
   Aims aims_;
   SteadyAim steady_;
-  std::optional<Aim> aim_;                  // the last one, in the robot's frame
-  std::optional<HandTrack> pointing_;       // in the last left image
-  hc::Time last_;                           // left image
-  cv::Size size_;                           // of the images
-  std::optional<hc::Message> right_ahead_;  // right image that came before the left one
+  std::optional<Aim> aim_;             // the last one, in the robot's frame
+  std::optional<HandTrack> pointing_;  // in the last left image
+  hc::Time last_;                      // left image
+  cv::Size size_;                      // of the images
+  hc::vision::RightImages rights_;
   std::optional<hc::Message> last_depth_;
 };
