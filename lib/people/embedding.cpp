@@ -7,6 +7,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include <people/warp.h>
+
 namespace hc::people {
 namespace {
 
@@ -46,10 +48,11 @@ cv::Mat face_chip(const cv::Mat& image, const Face& face) {
   }
   if (!(spread > 0)) return cv::Mat::zeros(kSide, kSide, CV_8UC3);
   const float a = along / spread, b = across / spread;
-  const cv::Matx23f to_chip(a, -b, to.x - a * from.x + b * from.y, b, a,
+  const cv::Matx23d to_chip(a, -b, to.x - a * from.x + b * from.y, b, a,
                             to.y - b * from.x - a * from.y);
-  cv::Mat chip;
-  cv::warpAffine(image, chip, to_chip, {kSide, kSide}, cv::INTER_LINEAR);
+  cv::Matx23d to_image;
+  cv::invertAffineTransform(to_chip, to_image);
+  cv::Mat chip = warped(image, to_image, kSide, cv::BORDER_CONSTANT);
   if (chip.channels() == 1) cv::cvtColor(chip, chip, cv::COLOR_GRAY2RGB);
   return chip;
 }

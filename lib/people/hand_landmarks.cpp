@@ -6,6 +6,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include <people/warp.h>
+
 namespace hc::people {
 namespace {
 
@@ -18,9 +20,7 @@ cv::Mat input_of(const cv::Mat& image, const Region& region) {
   constexpr float kMiddle = (kImage - 1) / 2.0F;
   const cv::Matx23f to_image(cos, -sin, region.middle.x - (cos - sin) * kMiddle, sin, cos,
                              region.middle.y - (sin + cos) * kMiddle);
-  cv::Mat turned, input;
-  cv::warpAffine(image, turned, to_image, {kImage, kImage}, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
-                 cv::BORDER_REPLICATE);
+  cv::Mat input, turned = warped(image, to_image, kImage, cv::BORDER_REPLICATE);
   if (turned.channels() == 1) cv::cvtColor(turned, turned, cv::COLOR_GRAY2RGB);
   turned.convertTo(input, CV_32F, 1 / 255.0);
   return input;
