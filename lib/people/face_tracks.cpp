@@ -21,8 +21,8 @@ cv::Point3f place_of(const Face& face) {
 }  // namespace
 
 bool FaceTracks::Following::is_over(Time time) const {
-  const auto unseen = std::chrono::abs(time - track.seen);
-  return unseen > kLongest || (unseen > kLife && misses >= kMisses);
+  const auto unseen = time - track.seen;
+  return unseen > kLongest || unseen < -kLife || (unseen > kLife && misses >= kMisses);
 }
 
 cv::Point3f FaceTracks::Following::predicted(Time time) const {

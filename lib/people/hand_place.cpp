@@ -89,7 +89,8 @@ std::optional<double> depth_in(const cv::Mat& depth, const Hand& hand) {
                             static_cast<int>(std::lround(at.y)));
       ++count;
       if (!cv::Rect({}, depth.size()).contains(pixel)) continue;
-      if (const float metres = depth.at<float>(pixel); metres > 0) known.push_back(metres);
+      if (const float metres = depth.at<float>(pixel); metres > 0 && std::isfinite(metres))
+        known.push_back(metres);
     }
   }
   if (2 * static_cast<int>(known.size()) < count) return std::nullopt;

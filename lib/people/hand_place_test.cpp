@@ -102,6 +102,10 @@ TEST(HandPlace, depth_is_read_from_the_palm) {
   EXPECT_EQ(depth_in(depth, hand.left), static_cast<double>(0.79F));
   depth = 0;
   EXPECT_FALSE(depth_in(depth, hand.left)) << "unknown";
+  for (const float none : {INFINITY, -INFINITY, NAN}) {
+    depth = none;
+    EXPECT_FALSE(depth_in(depth, hand.left)) << none;
+  }
   EXPECT_FALSE(depth_in(cv::Mat(10, 10, CV_32F, cv::Scalar(1)), hand.left)) << "outside";
 }
 

@@ -32,10 +32,11 @@ std::vector<HandTracks::Expected> HandTracks::expected(Time time) {
 }
 
 void HandTracks::correct(Following& one, Time time, const Hand& hand) {
-  constexpr float kShare = 0.5F;  // of a new speed; smooths what the points tremble
+  constexpr float kShare = 0.5F;    // of a new speed; smooths what the points tremble
+  constexpr float kLeast = 0.004F;  // between two images, for the same reason [s]
   const auto passed = static_cast<float>(seconds(time - one.track.seen));
   const cv::Point2f moved = region_of(hand).middle - region_of(one.track.hand).middle;
-  if (passed > 0) one.speed += (moved / passed - one.speed) * kShare;
+  if (passed >= kLeast) one.speed += (moved / passed - one.speed) * kShare;
   one.seen_before = std::exchange(one.track.seen, time);
   one.track.hand = hand;
   one.is_seen = true;

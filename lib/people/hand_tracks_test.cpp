@@ -42,6 +42,14 @@ TEST(HandTracks, are_expected_where_they_move_to) {
   EXPECT_NEAR(lost.middle.x, rest.middle.x + 110 + 60, 1) << "where it was after 0.3 s";
 }
 
+TEST(HandTracks, stay_where_images_come_at_almost_one_time) {
+  HandTracks tracks;
+  tracks.update(kFirstSeen, {{0, made_hand({}, {100, 300})}});
+  tracks.update(kFirstSeen + 1us, {{1, made_hand({}, {105, 300})}});
+  const Region there = region_of(made_hand({}, {105, 300}));
+  EXPECT_NEAR(tracks.expected(kFirstSeen + 50ms).at(0).region.middle.x, there.middle.x, 1);
+}
+
 TEST(HandTracks, continue_a_lost_hand_that_a_new_one_overlaps) {
   HandTracks tracks;
   tracks.update(kFirstSeen, {{0, made_hand({})}});

@@ -38,7 +38,7 @@ struct Reach {
 /// The place where a ray meets what a depth image shows: where it first gets behind a visible
 /// surface. Nothing if it leaves the image, or comes to the camera, before it does.
 /// @param depth  (H, W) f32 of the same camera [m], 0 unknown.
-/// Cost: linear in the pixels that the ray crosses, a few thousand.
+/// Cost: linear in the pixels that the ray crosses, a few thousand, or steps of 0.1 mm.
 std::optional<Eigen::Vector3d> place_pointed_at(const Ray& ray, const cv::Mat& depth,
                                                 const vision::Pinhole& camera,
                                                 const Reach& reach = {});

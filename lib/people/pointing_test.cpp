@@ -138,6 +138,24 @@ TEST(PlacePointedAt, is_found_beyond_pixels_without_depth) {
   EXPECT_NEAR(place->x(), 1.5, 0.01);
 }
 
+TEST(PlacePointedAt, is_on_no_pixel_whose_depth_is_not_a_number) {
+  for (const float none : {INFINITY, -INFINITY, NAN}) {
+    cv::Mat depth = wall(2);
+    depth.colRange(0, 400) = none;
+    const auto place = place_pointed_at(ray({-0.5, 0, 1}, {0.5, 0, 2.2}), depth, kLens);
+    ASSERT_TRUE(place) << none;
+    EXPECT_NEAR(place->z(), 2, 0.01) << none;
+    EXPECT_FALSE(place_pointed_at(ray({-0.5, 0, 1}, {-0.4, 0, 2}), depth, kLens)) << none;
+  }
+}
+
+TEST(PlacePointedAt, is_found_soon_with_any_focal_length) {
+  const auto place =
+      place_pointed_at({{0, 0, 1}, Vector3d::UnitZ(), false}, wall(2), {1e14, 1e14, 399.5, 299.5});
+  ASSERT_TRUE(place);
+  EXPECT_NEAR(place->z(), 2, 0.01);
+}
+
 TEST(PlacePointedAt, is_none_where_the_ray_leaves_what_is_seen) {
   const cv::Mat depth = wall(3);
   EXPECT_FALSE(place_pointed_at(ray({0, 0, 1}, {5, 0, 1.5}), depth, kLens)) << "to the side";

@@ -22,7 +22,7 @@ std::optional<Aim> Aims::take(hc::Time time) {
     const Aim& next = waiting_.front();
     const auto apart = std::chrono::abs(next.time - time);
     if (nearest && apart > std::chrono::abs(nearest->time - time)) break;
-    if (next.time > time + kApart) break;
+    if (next.time - time > kApart) break;
     if (apart <= kApart) nearest = next;
     waiting_.pop_front();
   }

@@ -35,6 +35,13 @@ TEST(Aims, are_not_for_depth_images_of_other_times) {
   EXPECT_EQ(taken(aims, 1150ms), 1000);
 }
 
+TEST(Aims, are_too_old_for_the_last_of_all_times) {
+  Aims aims;
+  aims.add(aim_at(0ms));
+  EXPECT_FALSE(aims.take(hc::Time::max()));
+  EXPECT_EQ(taken(aims, 0ms), -1) << "it was dropped";
+}
+
 TEST(Aims, are_forgotten_where_time_goes_back) {
   Aims aims;
   aims.add(aim_at(1000ms));

@@ -9,7 +9,7 @@ void SeenFaces::take(hc::Time time, const hc::MatrixView<const double>& table) {
   time_ = time;
   eyes_.clear();
   std::vector<cv::Rect2f> boxes;
-  for (std::size_t i = 0; i < table.height(); ++i)
+  for (std::size_t i = 0; i < table.height() && boxes.size() < kMost; ++i)
     if (const auto row = hc::people::face_in(table.row(i))) {
       if (hc::people::can_be_face(row->place)) eyes_.push_back(row->place);
       boxes.push_back(row->face.box);

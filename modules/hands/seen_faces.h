@@ -2,6 +2,7 @@
 #pragma once
 // The faces in view, from the table of module `faces`. No ports.
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,8 @@ class SeenFaces {
   /// How long somebody is taken to be in view after their face was; then hands are sought less
   /// often.
   static constexpr std::chrono::milliseconds kInView{3000};
+  /// The most faces that count, the first of a table, since each takes time in every image.
+  static constexpr std::size_t kMost = 64;
   /// Maximum distance of a hand from the eyes of its person. [m]
   static constexpr double kArm = 1.1;
 

@@ -49,6 +49,16 @@ TEST(SeenFaces, are_in_view_for_a_while_after_they_were_seen) {
   EXPECT_TRUE(faces.boxes(kSeen + 3s).empty());
 }
 
+TEST(SeenFaces, are_not_kept_without_end) {
+  std::vector<double> table(1000 * hc::people::kFaceColumns);
+  for (std::size_t i = 0; i < 1000; ++i)
+    write(hc::people::FaceRow{{{10, 20, 30, 40}, 1, {}}, static_cast<int>(i) + 1, 0, {2, 0, 0}},
+          std::span(table).subspan(i * hc::people::kFaceColumns, hc::people::kFaceColumns));
+  SeenFaces faces;
+  faces.take(kSeen, {table.data(), 1000, hc::people::kFaceColumns, 1});
+  EXPECT_EQ(faces.boxes(kSeen).size(), SeenFaces::kMost);
+}
+
 TEST(SeenFaces, are_of_the_nearest_person) {
   const std::vector<Vector3d> places = {{0.06, 0.05, 1.55}, {0.76, 0.05, 1.4}};
   EXPECT_NEAR(eyes_of(places, {0.1, 0, 1})->x(), 0, 1e-9);
