@@ -27,6 +27,7 @@ class Attend {
     module.on(faces_, [this](const auto& message) { see(message); });
     module.on(direction_, [this](const auto& message) { hear(message); });
     module.on(hold_, [this](const auto& message) { hold(message.numbers()[0]); });
+    module.on_end([this] { frames_.answer_all(); });
   }
 
  private:
