@@ -101,12 +101,17 @@ class BeastServer final : public Server {
     while (!shared_->guard([&] { context_.run(); })) {
     }
     shared_->asides.clear();
+    shared_->on_last = nullptr;
   }
   void stop() override {
     loop_->post([this] {
-      constexpr std::chrono::milliseconds kMoment{200};
-      stop_ =
-          loop_->call_at(std::chrono::steady_clock::now() + kMoment, [this] { context_.stop(); });
+      constexpr std::chrono::milliseconds kMoment{200}, kMost{4000};
+      const auto now = std::chrono::steady_clock::now();
+      stop_ = loop_->call_at(now + kMoment, [this] {
+        if (shared_->sockets == 0) return context_.stop();
+        shared_->on_last = [this] { context_.stop(); };
+      });
+      give_up_ = loop_->call_at(now + kMost, [this] { context_.stop(); });
     });
   }
   Loop& loop() override { return *loop_; }
@@ -164,7 +169,7 @@ class BeastServer final : public Server {
   std::unique_ptr<Loop> loop_;
   asio::posix::stream_descriptor loop_ready_{context_, loop_->descriptor()};
   std::list<Loop::Handle> timers_;
-  Loop::Handle stop_;
+  Loop::Handle stop_, give_up_;
 };
 
 }  // namespace

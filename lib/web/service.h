@@ -35,7 +35,7 @@ class Service {
   /// Errors: as Server::listen() and load_identity().
   static Result<std::unique_ptr<Service>> open(const Listening& listening, Loop& loop,
                                                std::function<void(std::string_view)> log);
-  /// Closes the site and stops the server, which takes 0.2 s.
+  /// Closes the site and stops the server, which takes 0.2 s, and with slow clients 4 s at most.
   ~Service();
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;

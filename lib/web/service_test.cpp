@@ -15,11 +15,15 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <future>
 #include <latch>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <hc/testing/loopback.h>
@@ -45,25 +49,38 @@ class Hello final : public Site {
     if (request.path == "/aside/fail")
       reply.aside = []() -> Reply { throw std::runtime_error("it fails aside"); };
     if (request.path == "/file") std::swap(reply.file, file), reply.size = 5;
+    if (request.path == "/socket") reply.status = 101;
     return reply;
   }
-  void open(std::shared_ptr<WebSocket> /*socket*/, const Request& /*request*/) override {}
-  void close() override { closed_ += 1, closed_.notify_all(); }
+  void open(std::shared_ptr<WebSocket> opened, const Request& /*request*/) override {
+    socket = std::move(opened);
+    socket->send(std::make_shared<const std::string>(std::size_t{1} << 22, '.'));
+    opened_socket.count_down();
+  }
+  void close() override {
+    closed_ += 1, closed_.notify_all();
+    if (!socket) return;
+    socket->close(1001, "bye");
+    on_close();
+  }
 
-  std::latch waiting{1};  ///< blocks /aside
-  Descriptor file;        ///< of /file
+  std::latch waiting{1};              ///< blocks /aside
+  Descriptor file;                    ///< of /file
+  std::shared_ptr<WebSocket> socket;  ///< of /socket
+  std::latch opened_socket{1};
+  std::function<void()> on_close;  ///< of it, called by close()
 
  private:
   std::atomic<int>& closed_;
 };
 
 /// Requests a path.
-Descriptor ask(std::uint16_t port, const std::string& path) {
+Descriptor ask(std::uint16_t port, const std::string& path,
+               const std::string& fields = "Connection: close\r\n") {
   Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const auto place = testing::loopback(port);
   EXPECT_EQ(::connect(socket.get(), reinterpret_cast<const sockaddr*>(&place), sizeof place), 0);
-  const std::string request =
-      "GET " + path + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
+  const std::string request = "GET " + path + " HTTP/1.1\r\nHost: localhost\r\n" + fields + "\r\n";
   EXPECT_EQ(::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL),
             std::ssize(request));
   return socket;
@@ -74,10 +91,11 @@ bool is_readable(int descriptor) {
   return ::poll(&polled, 1, kWatchdog) == 1;
 }
 
-std::string answer(int socket) {
+/// All that arrives, up to what ends with a text.
+std::string answer(int socket, std::string_view end = "\xff") {
   std::string all;
   std::array<char, 1024> part;
-  while (is_readable(socket)) {
+  while (!all.ends_with(end) && is_readable(socket)) {
     const auto got = ::recv(socket, part.data(), part.size(), 0);
     if (got <= 0) break;
     all.append(part.data(), static_cast<std::size_t>(got));
@@ -252,6 +270,35 @@ TEST_F(ServiceTest, ends_after_the_work_aside) {
   begun.wait();
   service_.reset();
   EXPECT_TRUE(is_done);
+}
+
+TEST_F(ServiceTest, ends_after_a_slow_client_has_heard_why) {
+  Hello& hello = serve();
+  const auto client =
+      ask(port(), "/socket",
+          "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+          "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n");
+  hello.opened_socket.wait();
+  auto& server = service_->server();
+  std::promise<void> moment;
+  Loop::Handle timer;
+  server.post([&] {
+    hello.on_close = [&] {
+      // Later than a server without sockets ends.
+      timer =
+          server.loop().call_at(std::chrono::steady_clock::now() + std::chrono::milliseconds(250),
+                                [&] { moment.set_value(), timer.reset(); });
+    };
+  });
+  std::thread ending([this] { service_.reset(); });
+  EXPECT_EQ(moment.get_future().wait_for(std::chrono::milliseconds(kWatchdog)),
+            std::future_status::ready);
+  const std::string close =
+      "\x88\x05\x03\xe9"
+      "bye";
+  EXPECT_TRUE(answer(client.get(), close).ends_with(close));
+  EXPECT_EQ(::shutdown(client.get(), SHUT_WR), 0);
+  ending.join();
 }
 
 TEST_F(ServiceTest, ends_though_it_served_nothing) {

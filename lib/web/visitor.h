@@ -27,6 +27,8 @@ struct Shared {
   std::list<Visitor*> strangers;  // without a session, oldest first
   std::size_t known = 0;          // number of visitors with a session
   std::list<Aside> asides;        // running
+  std::size_t sockets = 0;        // WebSockets that are not closed yet
+  std::function<void()> on_last;  // the last one of them is closed; null: nobody waits
 
   /// Calls a function of a site and logs exceptions. @returns  false if it has thrown.
   template <typename Call>

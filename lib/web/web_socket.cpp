@@ -34,7 +34,10 @@ template <typename Stream>
 class Socket final : public WebSocket, public std::enable_shared_from_this<Socket<Stream>> {
  public:
   Socket(Stream&& stream, std::shared_ptr<Visitor> visitor)
-      : stream_(std::move(stream)), visitor_(std::move(visitor)) {}
+      : stream_(std::move(stream)), visitor_(std::move(visitor)) {
+    ++visitor_->shared().sockets;
+  }
+  ~Socket() override { leave(); }
 
   void accept(Head head, Request request, const Reply& reply) {
     beast::get_lowest_layer(stream_).expires_never();
@@ -113,7 +116,7 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
   void finish() {
     const auto& [code, text] = *closing_;
     stream_.async_close(websocket::close_reason(static_cast<websocket::close_code>(code), text),
-                        [self = this->shared_from_this()](beast::error_code) {});
+                        [self = this->shared_from_this()](beast::error_code) { self->leave(); });
   }
 
   void read() {
@@ -134,7 +137,14 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
   void lose() {
     const auto closed = on_close;
     forget();
+    leave();
     if (closed) visitor_->shared().guard(closed);
+  }
+  /// Does not count any more as a socket that is open.
+  void leave() {
+    if (std::exchange(has_left_, true)) return;
+    auto& shared = visitor_->shared();
+    if (--shared.sockets == 0 && shared.on_last) shared.on_last();
   }
   void forget() { on_text = on_binary = nullptr, on_sent = on_close = nullptr; }
 
@@ -142,7 +152,7 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
   std::shared_ptr<Visitor> visitor_;
   beast::flat_buffer buffer_;
   std::deque<Outgoing> queue_;  // the first is being written
-  bool is_writing_ = false;
+  bool is_writing_ = false, has_left_ = false;
   std::optional<std::pair<std::uint16_t, std::string>> closing_;
 };
 
