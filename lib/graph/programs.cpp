@@ -7,9 +7,11 @@
 #include <array>
 #include <chrono>
 #include <cstdlib>
+#include <utility>
 
 #include <graph/process.h>
 #include <hc/base/suggestion.h>
+#include <hc/os/procfs.h>
 #include <hc/os/wait_readable.h>
 
 namespace hc {
@@ -20,7 +22,8 @@ using MonotonicClock = std::chrono::steady_clock;
 
 namespace {
 
-constexpr std::chrono::seconds kDescribeTime{10};
+// For a program that does not compute, and for one that does, as on a busy machine.
+constexpr std::chrono::seconds kDescribeTime{10}, kMostDescribeTime{60};
 constexpr std::size_t kMaxDescription = std::size_t{1} << 20;
 constexpr std::size_t kMaxLine = 300;
 
@@ -34,19 +37,32 @@ struct Described {
   std::string text;
 };
 
+/// Of a process and its descendants.
+std::chrono::nanoseconds processor_time(pid_t process) {
+  auto all = descendants(process);
+  all.push_back(process);
+  return usage_of(all, false).processor;
+}
+
 /// Runs `program --describe` to its end.
 Result<Described> run_describe(const std::string& program, Process::Capture capture, int stop) {
   auto process = HC_TRY(Process::start({program, "--describe"}, capture));
   Described described;
-  auto give_up = MonotonicClock::now() + kDescribeTime;
+  const auto begin = MonotonicClock::now();
+  auto patience = kDescribeTime;
+  std::chrono::nanoseconds computed{0};
   auto wait = [&](int descriptor) -> Status {
-    auto left = std::chrono::ceil<milliseconds>(give_up - MonotonicClock::now());
     std::array<int, 1> descriptors = {descriptor};
-    auto ready = HC_TRY(wait_readable(descriptors, stop, std::max(left, milliseconds(0))));
-    if (ready == 1)
-      return Error{Code::System, program + " --describe has not ended after " +
-                                     std::to_string(kDescribeTime.count()) + " s"};
-    return {};
+    while (true) {
+      auto left = std::chrono::ceil<milliseconds>(begin + patience - MonotonicClock::now());
+      auto ready = HC_TRY(wait_readable(descriptors, stop, std::max(left, milliseconds(0))));
+      if (ready != 1) return {};
+      const auto before = std::exchange(computed, processor_time(process.number()));
+      if (computed == before || patience == kMostDescribeTime)
+        return Error{Code::System, program + " --describe has not ended after " +
+                                       std::to_string(patience.count()) + " s"};
+      patience += kDescribeTime;
+    }
   };
   while (described.text.size() <= kMaxDescription) {
     HC_TRY(wait(process.output()));
