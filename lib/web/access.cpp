@@ -15,6 +15,7 @@
 
 #include <hc/base/check.h>
 #include <hc/base/format.h>
+#include <hc/base/text.h>
 #include <hc/os/secret.h>
 
 namespace hc::web {
@@ -63,9 +64,7 @@ std::string_view name_of(Right right) {
 }
 
 std::optional<Right> right_named(std::string_view name) {
-  const auto found = std::ranges::find(kRights, name);
-  if (found == kRights.end()) return std::nullopt;
-  return static_cast<Right>(found - kRights.begin());
+  return enum_named<Right>(kRights, name);
 }
 
 std::string own_address() {

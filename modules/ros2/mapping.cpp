@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <hc/base/text.h>
+#include <hc/base/words.h>
 
 #include "names.h"
 
@@ -19,17 +20,6 @@ constexpr const char* kSpace = " \t\n";
 
 hc::Error wrong(std::string_view what, const std::string& why) {
   return {hc::Code::Invalid, "\"" + std::string(what) + "\" " + why};
-}
-
-/// The non-empty parts between characters of `at`.
-std::vector<std::string_view> split(std::string_view text, std::string_view at) {
-  std::vector<std::string_view> parts;
-  while (true) {
-    const auto end = text.find_first_of(at);
-    if (const auto part = text.substr(0, end); !part.empty()) parts.push_back(part);
-    if (end == std::string_view::npos) return parts;
-    text.remove_prefix(end + 1);
-  }
 }
 
 /// Splits at the first `=`; without one the second part is empty.
@@ -69,7 +59,7 @@ hc::Status read_options(std::span<const std::string_view> words, bool is_subscri
         return wrong(word, "is neither qos=reliable nor qos=best_effort");
       each.reliable = value == "reliable";
     } else if (key == "joints") {
-      for (const auto joint : split(value, "+")) each.choice.joints.emplace_back(joint);
+      for (const auto joint : hc::words_of(value, "+")) each.choice.joints.emplace_back(joint);
     } else if (key == "coord" && is_subscribed) {
       if (!hc::read_number(value, each.coord) || each.coord < 0)
         return wrong(word, "is not a coord");
@@ -84,7 +74,7 @@ hc::Status read_options(std::span<const std::string_view> words, bool is_subscri
 }
 
 hc::Result<Mapping> parse_published(std::string_view entry) {
-  const auto words = split(entry, kSpace);
+  const auto words = hc::words_of(entry);
   const auto [port, topic] = pair_of(words.front());
   Mapping each;
   each.port = port;
@@ -106,7 +96,7 @@ hc::Result<Mapping> parse_published(std::string_view entry) {
 }
 
 hc::Result<Mapping> parse_subscribed(std::string_view entry) {
-  const auto words = split(entry, kSpace);
+  const auto words = hc::words_of(entry);
   const auto [topic, output] = pair_of(words.front());
   const auto source = std::ranges::find(sources(), output, &Source::output);
   if (source == sources().end()) {
@@ -135,7 +125,7 @@ hc::Result<std::vector<Mapping>> parse(std::string_view text,
   constexpr std::size_t kMost = 100;
   std::vector<Mapping> all;
   std::set<std::string> seen;
-  for (const auto entry : split(text, ",")) {
+  for (const auto entry : hc::words_of(text, ",")) {
     if (entry.find_first_not_of(kSpace) == std::string_view::npos) continue;
     auto each = parse_entry(entry);
     if (!each) return each.error();

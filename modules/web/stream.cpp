@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <hc/base/text.h>
+#include <hc/base/time.h>
 #include <hc/compress/compress.h>
 #include <hc/mtp/codec.h>
 
@@ -160,10 +161,7 @@ Stream::Clock::time_point Stream::serve() {
         continue;
       }
       if (viewer->wanted.rate > 0)
-        viewer->due =
-            std::max(viewer->due + std::chrono::duration_cast<Clock::duration>(
-                                       std::chrono::duration<double>(1 / viewer->wanted.rate)),
-                     now);
+        viewer->due = std::max(viewer->due + hc::duration(1 / viewer->wanted.rate), now);
       auto& [wanted, viewers] = all[{viewer->wanted.form, viewer->wanted.width}];
       wanted = viewer->wanted;
       viewers.push_back(viewer);

@@ -163,7 +163,6 @@ class Comparer {
   bool hold_next() {
     hc::Message message;
     if (!take(replayed_, replayed_time_, message)) return false;
-    ++result_.replayed;
     held_.emplace(replayed_time_, KeptMessage{message.keep()});
     return true;
   }

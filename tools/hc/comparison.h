@@ -24,13 +24,13 @@ std::string difference(const hc::Message& recorded, const hc::Message& replayed,
                        const Tolerance& tolerance);
 
 struct Comparison {
-  std::size_t recorded = 0, replayed = 0;  ///< messages
-  std::size_t same = 0;                    ///< recorded messages that were replayed
-  std::size_t differing = 0;               ///< replayed with other contents at that time
-  std::size_t missing = 0;                 ///< recorded but not replayed
-  std::size_t extra = 0;                   ///< replayed but not recorded
-  std::size_t after_end = 0;               ///< recorded after `last`, and not replayed
-  std::string first;                       ///< the first difference; empty: none
+  std::size_t recorded = 0;   ///< messages
+  std::size_t same = 0;       ///< recorded messages that were replayed
+  std::size_t differing = 0;  ///< replayed with other contents at that time
+  std::size_t missing = 0;    ///< recorded but not replayed
+  std::size_t extra = 0;      ///< replayed but not recorded
+  std::size_t after_end = 0;  ///< recorded after `last`, and not replayed
+  std::string first;          ///< the first difference; empty: none
 
   [[nodiscard]] bool is_same(const Tolerance& tolerance) const;
   [[nodiscard]] std::string text() const;

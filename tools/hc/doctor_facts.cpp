@@ -26,6 +26,7 @@
 #include <string_view>
 
 #include <hc/base/natural_order.h>
+#include <hc/os/descriptor.h>
 
 #include "common.h"
 
@@ -33,17 +34,7 @@ namespace tool {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Owns a descriptor; -1: none.
-struct Held {
-  explicit Held(int descriptor) : number(descriptor) {}
-  Held(const Held&) = delete;
-  Held& operator=(const Held&) = delete;
-  ~Held() {
-    if (number >= 0) ::close(number);
-  }
-  int number;
-};
+using hc::Descriptor;
 
 Feature feature(std::string name, bool works) {
   const int error = errno;
@@ -51,13 +42,13 @@ Feature feature(std::string name, bool works) {
 }
 
 bool seals_memory() {
-  Held memory(::memfd_create("hypercolumn", MFD_CLOEXEC | MFD_ALLOW_SEALING));
-  return memory.number >= 0 && ::fcntl(memory.number, F_ADD_SEALS,
-                                       F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE) == 0;
+  const Descriptor memory(::memfd_create("hypercolumn", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  return memory &&
+         ::fcntl(memory.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE) == 0;
 }
 
 bool opens_pidfd() {
-  return Held(static_cast<int>(::syscall(SYS_pidfd_open, ::getpid(), 0))).number >= 0;
+  return bool(Descriptor(static_cast<int>(::syscall(SYS_pidfd_open, ::getpid(), 0))));
 }
 
 bool has_membarrier() {
@@ -73,18 +64,17 @@ bool has_futex() {
 }
 
 bool has_abstract_sockets() {
-  Held socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   std::string name = "hypercolumn doctor " + std::to_string(::getpid());
   std::copy(name.begin(), name.end(), address.sun_path + 1);  // a leading NUL: abstract
   auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  return socket.number >= 0 &&
-         ::bind(socket.number, reinterpret_cast<const sockaddr*>(&address), size) == 0;
+  return socket && ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), size) == 0;
 }
 
 bool opens(const std::string& path, int flags) {
-  return Held(::open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)).number >= 0;
+  return bool(Descriptor(::open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)));
 }
 
 std::vector<Feature> kernel_features() {

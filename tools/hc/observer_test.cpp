@@ -57,7 +57,7 @@ TEST(Screen, ShowsModulesAndLinks) {
   auto state = some_state(2);
   state.modules[0].last_line = "ready";
   EXPECT_EQ(
-      draw(state, {{"", "track", 0.6, 0.1, true, false}, {"left", "point", 1, 0, false, true}},
+      draw(state, {{"", "track", 0.6, true, false}, {"left", "point", 1, false, true}},
            {120, 0, true}),
       "head: running 1:05 min, 2/2 modules up, 60 messages/s, 6 % CPU, focus track\n"
       "bids: track 0.60 *, left: point 1.00 (person)\n"
@@ -113,8 +113,7 @@ TEST(Screen, IsScrolledAndHasTroubleFirst) {
 TEST(Screen, FitsAnySize) {
   for (std::size_t width : {1U, 20U, 40U, 80U, 300U})
     for (std::size_t height : {1U, 2U, 5U, 6U, 100U}) {
-      const auto text =
-          draw(some_state(7), {{"", "track", 1, 0, true, false}}, {width, height, true});
+      const auto text = draw(some_state(7), {{"", "track", 1, true, false}}, {width, height, true});
       EXPECT_LE(std::count(text.begin(), text.end(), '\n'), height);
       for (std::size_t begin = 0, end = 0; (end = text.find('\n', begin)) != std::string::npos;
            begin = end + 1) {

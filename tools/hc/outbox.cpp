@@ -2,7 +2,6 @@
 #include "outbox.h"
 
 #include <condition_variable>
-#include <csignal>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -10,6 +9,9 @@
 #include <hc/base/format.h>
 #include <hc/base/visible.h>
 #include <hc/os/program.h>
+#include <hc/os/thread.h>
+
+#include "common.h"
 
 namespace tool {
 
@@ -68,12 +70,7 @@ struct Outbox::Shared {
 };
 
 Outbox::Outbox(int descriptor) : shared_(std::make_shared<Shared>(descriptor)) {
-  // Only the main thread handles signals.
-  sigset_t all, before;
-  ::sigfillset(&all);
-  ::pthread_sigmask(SIG_SETMASK, &all, &before);
-  std::thread([shared = shared_] { shared->write(); }).detach();
-  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  value_or_fail(hc::start_thread([shared = shared_] { shared->write(); })).detach();
 }
 
 Outbox::~Outbox() {

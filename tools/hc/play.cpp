@@ -8,6 +8,7 @@
 #include <hc/base/clock.h>
 #include <hc/base/format.h>
 #include <hc/base/text.h>
+#include <hc/base/time.h>
 #include <hc/os/program.h>
 #include <hc/os/wait_readable.h>
 
@@ -18,7 +19,6 @@
 namespace tool {
 namespace {
 
-using Seconds = std::chrono::duration<double>;
 using MonotonicClock = std::chrono::steady_clock;
 
 struct PlayOptions {
@@ -44,8 +44,7 @@ class Pace {
     if (begun_ && pause > gap_)
       say(hc::format("hc play: skipping a pause of {} (--gap)", seconds_in_words(pause)));
     begun_ = true;
-    const auto due = begin_ + std::chrono::duration_cast<MonotonicClock::duration>(
-                                  Seconds((seconds - skipped_) / speed_));
+    const auto due = begin_ + hc::duration((seconds - skipped_) / speed_);
     while (true) {
       auto left = due - MonotonicClock::now();
       if (left <= left.zero()) return true;

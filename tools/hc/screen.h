@@ -20,7 +20,7 @@ struct Screen {
 struct Bid {
   std::string workspace;  ///< empty: the only one
   std::string mode;
-  double salience = 0, age = 0;  ///< age [s]
+  double salience = 0;
   bool in_focus = false, is_person = false;
 };
 

@@ -95,7 +95,7 @@ class Bids {
     std::vector<Bid> bids;
     for (std::size_t i = 0; i < rows.height(); ++i) {
       const auto row = rows.row(i);
-      bids.push_back({workspace, state.mode_name(static_cast<std::int64_t>(row[0])), row[1], row[2],
+      bids.push_back({workspace, state.mode_name(static_cast<std::int64_t>(row[0])), row[1],
                       row[3] != 0, row[4] != 0});
     }
     return bids;

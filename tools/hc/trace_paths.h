@@ -35,7 +35,6 @@ struct Step {
   /// The message sent has a new time; it was derived from the messages handled last.
   bool renews_time = false;
 
-  [[nodiscard]] nanoseconds sum() const { return link + waiting + processing; }
   [[nodiscard]] std::string text() const;
 };
 

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include <hc/base/json_string.h>
+#include <hc/base/text.h>
 
 // toml++ before 3.4 asserts conditions that hostile text violates (a line end in a table's name),
 // although it reports the same error next; so its assertions are disabled.
@@ -21,15 +22,13 @@ namespace {
 /// toml++ up to 3.4 has undefined behaviour for misplaced non-ASCII characters. This encodes each
 /// of their bytes as ~ and two hexadecimal digits; original() decodes them.
 std::string ascii_only(std::string_view text) {
-  constexpr std::string_view kHex = "0123456789abcdef";
   std::string result;
   result.reserve(text.size());
   for (char c : text) {
-    auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80 && c != '~')
+    if (static_cast<unsigned char>(c) < 0x80 && c != '~')
       result += c;
     else
-      result.append({'~', kHex[byte >> 4], kHex[byte & 15]});
+      result.append("~").append(hexadecimal_byte(c));
   }
   return result;
 }

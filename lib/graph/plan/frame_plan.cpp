@@ -59,8 +59,7 @@ class Frames {
   /// A parent that is not declared is the root; there must be one root.
   void check_tree() {
     std::string root;
-    std::vector<std::string> known;
-    for (const auto& frame : graph_.frames) known.push_back(frame.name);
+    auto known = names_of(graph_.frames);
     for (const auto& frame : graph_.frames) {
       const std::string& parent = frame.parent.value;
       if (parent.empty() || by_name_.contains(parent)) continue;

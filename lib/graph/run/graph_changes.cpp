@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <hc/contract/description.h>
 #include <hc/contract/graph_command.h>
 
 namespace hc::internal {
@@ -54,7 +55,7 @@ void GraphChanges::reload() {
 
 void GraphChanges::obey(const std::vector<std::string>& lines, const GraphServer::Reply& reply) {
   auto has_module = [&](const std::string& name) {
-    return std::ranges::find(plan_.modules, name, &PlannedModule::name) != plan_.modules.end();
+    return find_named(plan_.modules, name) != nullptr;
   };
   std::vector<std::string> wrong;
   Commands commands;

@@ -126,8 +126,6 @@ void Reports::count(Counted& counted, const LinkCounters& row, bool is_input, Mo
   add(row, report);
   report.age = row.age;
   report.gap = row.gap;
-  report.quality = row.quality;
-  report.scale = row.scale;
   counted.report = report;
 }
 

@@ -2,12 +2,12 @@
 // What clients ask a running graph, and how it changes to another plan.
 #include <graph/run/runner.h>
 
+#include <map>
+
 #include <hc/base/format.h>
 #include <hc/base/suggestion.h>
+#include <hc/contract/description.h>
 #include <hc/contract/trace.h>
-
-#include <algorithm>
-#include <map>
 
 namespace hc::internal {
 
@@ -65,12 +65,9 @@ Result<std::string> Runner::open_port(bool is_input, const std::string& port) {
 }
 
 Result<std::string> Runner::describe(const std::string& module) const {
-  std::vector<std::string> known;
-  for (const auto& each : plan_.modules) {
-    if (each.name == module) return each.description;
-    known.push_back(each.name);
-  }
-  return Error{Code::Invalid, "no module \"" + module + "\"" + suggestion(module, known)};
+  if (const auto* found = find_named(plan_.modules, module)) return found->description;
+  return Error{Code::Invalid,
+               "no module \"" + module + "\"" + suggestion(module, names_of(plan_.modules))};
 }
 
 /// The last notice of each module that the graph has.

@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <csignal>
-#include <cstdio>
 
 #include <graph/process.h>
+#include <hc/base/format.h>
 
 namespace hc::internal {
 namespace {
@@ -16,12 +16,6 @@ using Verb = ModuleCommand::Verb;
 
 constexpr int kCutOff = 1;                             // counts as a failure for restarts
 constexpr std::chrono::milliseconds kCauseDelay{200};  // for the cause of an end to appear
-
-std::string seconds_in_words(std::chrono::nanoseconds time) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g s", std::chrono::duration<double>(time).count());
-  return text;
-}
 
 }  // namespace
 
@@ -105,15 +99,9 @@ void Supervised::start_again() {
   handle_end(kCannotExecute);
 }
 
-void Supervised::end() {
+void Supervised::end(Wish wish) {
   if (is_over()) return;
-  wish_ = Wish::End;
-  ask_to_end();
-}
-
-void Supervised::dismiss() {
-  if (is_over()) return;
-  wish_ = Wish::Dismissal;
+  wish_ = wish;
   ask_to_end();
 }
 
@@ -233,7 +221,8 @@ void Supervised::decide(int status) {
     return start_again();
   }
   if (decision.next == Next::Again) {
-    callbacks_.event(Level::Warning, words + "; restarting in " + seconds_in_words(decision.delay));
+    callbacks_.event(Level::Warning,
+                     words + hc::format("; restarting in {:.2g} s", seconds(decision.delay)));
     change(ModuleStatus::Waiting, words);
     timer_ = loop_.call_at(MonotonicClock::now() + decision.delay, [this] { start_again(); });
     return;

@@ -58,9 +58,9 @@ class Supervised {
   /// Starts it. Errors: System; those of restarts are events.
   Status start();
   /// Ends it for good: SIGTERM, then SIGKILL after the grace time.
-  void end();
+  void end() { end(Wish::End); }
   /// Ends it because it is no longer needed. Unlike with end(), a failure then counts.
-  void dismiss();
+  void dismiss() { end(Wish::Dismissal); }
   /// Ends it if it runs, and starts it again, even after a permanent failure.
   void restart();
 
@@ -117,6 +117,7 @@ class Supervised {
   void send(const std::optional<ModuleCommand>& command);
   [[nodiscard]] bool takes_commands() const { return !plan_.control_uri.empty(); }
   void change(ModuleStatus status, const std::string& detail = "");
+  void end(Wish wish);
   void ask_to_end();
   void note_dropped_lines(MonotonicTime time);
   void take_report(const Message& message);

@@ -24,10 +24,6 @@ constexpr double kWorstQuality = 30, kStageQuality = 75;
 constexpr double kHysteresis = 0.15;
 constexpr double kMostThinning = 6;  // the rate falls to 1/64
 
-double seconds(TimePoint::duration duration) {
-  return std::chrono::duration<double>(duration).count();
-}
-
 }  // namespace
 
 /// Turns the dial by the size of the last images against their share of the bandwidth.
@@ -84,13 +80,10 @@ std::optional<Form> Adaptation::choose(Time time, TimePoint now, bool is_behind)
   learn_path(elapsed, is_behind);
   time_ = time;
   last_ = now;
-  const std::chrono::duration<double> half(period_ / 2);
-  const bool is_early = due_ && seconds(*due_ - now) > half.count();
+  const bool is_early = due_ && seconds(*due_ - now) > period_ / 2;
   chosen_.reset();
   if (limits_.may_skip && (is_behind || is_early)) return chosen_;
-  const auto period = std::chrono::duration_cast<TimePoint::duration>(
-      std::chrono::duration<double>(wanted_period()));
-  due_ = std::max(due_.value_or(now) + period, now);
+  due_ = std::max(due_.value_or(now) + duration(wanted_period()), now);
   chosen_ = form_ = form_now();
   return chosen_;
 }
