@@ -85,10 +85,9 @@ const std::vector<Embedding>& TrackViews::views(int track) const {
   return found == tracks_.end() ? kNone : found->second.last;
 }
 
-bool TrackViews::is_new(int track) const {
+bool TrackViews::may_become_sure(int track) const {
   const auto found = tracks_.find(track);
-  return found == tracks_.end() ||
-         (found->second.last.size() < kLeast && !found->second.may_be_another);
+  return found == tracks_.end() || !found->second.may_be_another;
 }
 
 std::optional<Embedding> TrackViews::embedding(int track) const {

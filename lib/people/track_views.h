@@ -44,8 +44,9 @@ class TrackViews {
 
   /// The last views of a track, at most kViews.
   [[nodiscard]] const std::vector<Embedding>& views(int track) const;
-  /// Whether the first views of a track are still collected, of one person as far as is known.
-  [[nodiscard]] bool is_new(int track) const;
+  /// Whether a track is of one person, as far as is known, so that it is sure after some more views
+  /// or images that are less rare.
+  [[nodiscard]] bool may_become_sure(int track) const;
   /// Their mean; nothing while it is not sure whose they are.
   [[nodiscard]] std::optional<Embedding> embedding(int track) const;
 

@@ -183,8 +183,8 @@ void Faces::refuse(const NameRequest& request, const std::string& why) {
 
 bool Faces::learn(const NameRequest& request) {
   const auto& [track, name, until] = request;
-  if (!views_.embedding(track) && networks_->search.follows(track, last_) && views_.is_new(track) &&
-      module_.monotonic() < until)
+  if (!views_.embedding(track) && networks_->search.follows(track, last_) &&
+      views_.may_become_sure(track) && module_.monotonic() < until)
     return false;
   // A person asked for it, so each answer is logged.
   if (const auto why = reason_against(request)) {
