@@ -28,7 +28,7 @@ struct Shared {
   std::size_t known = 0;          // number of visitors with a session
   std::list<Aside> asides;        // running
   std::size_t sockets = 0;        // WebSockets that are not closed yet
-  std::function<void()> on_last;  // the last one of them is closed; null: nobody waits
+  std::function<void()> on_last;  // called when the last WebSocket has closed; may be empty
 
   /// Calls a function of a site and logs exceptions. @returns  false if it has thrown.
   template <typename Call>

@@ -140,7 +140,7 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
     leave();
     if (closed) visitor_->shared().guard(closed);
   }
-  /// Does not count any more as a socket that is open.
+  /// No longer counts as an open WebSocket.
   void leave() {
     if (std::exchange(has_left_, true)) return;
     auto& shared = visitor_->shared();
