@@ -116,7 +116,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     if (error == beast::error::timeout || error == http::error::end_of_stream) return;
     if (error.category() == http::make_error_code(http::error::bad_line_ending).category())
       return write(refusal(400, "not an HTTP request"), false);
-    if (error) return;
+    if (error || visitor_->shared().is_ending) return;
     auto head = parser_->release();
     auto request = request_of(head);
     if (!request) return write(refusal(400, "the path is malformed"), false);

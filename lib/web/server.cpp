@@ -105,6 +105,10 @@ class BeastServer final : public Server {
   }
   void stop() override {
     loop_->post([this] {
+      // A client that connects again would be cut off, and not hear why.
+      shared_->is_ending = true;
+      boost::system::error_code ignored;
+      acceptor_.close(ignored);
       constexpr std::chrono::milliseconds kMoment{200}, kMost{4000};
       const auto now = std::chrono::steady_clock::now();
       stop_ = loop_->call_at(now + kMoment, [this] {
@@ -142,6 +146,7 @@ class BeastServer final : public Server {
 
   void accept() {
     acceptor_.async_accept([this](boost::system::error_code error, tcp::socket socket) {
+      if (shared_->is_ending) return;
       if (error) {
         // Usually out of descriptors. If closing a stranger cannot free one, retry later.
         if (error != asio::error::no_descriptors || !Visitor::drop_one(*shared_)) {

@@ -74,15 +74,20 @@ class Hello final : public Site {
   std::atomic<int>& closed_;
 };
 
-/// Requests a path.
+/// Requests a path over a connection.
+void ask(const Descriptor& socket, const std::string& path, const std::string& fields) {
+  const std::string request = "GET " + path + " HTTP/1.1\r\nHost: localhost\r\n" + fields + "\r\n";
+  EXPECT_EQ(::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL),
+            std::ssize(request));
+}
+
+/// Connects, and requests a path.
 Descriptor ask(std::uint16_t port, const std::string& path,
                const std::string& fields = "Connection: close\r\n") {
   Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const auto place = testing::loopback(port);
   EXPECT_EQ(::connect(socket.get(), reinterpret_cast<const sockaddr*>(&place), sizeof place), 0);
-  const std::string request = "GET " + path + " HTTP/1.1\r\nHost: localhost\r\n" + fields + "\r\n";
-  EXPECT_EQ(::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL),
-            std::ssize(request));
+  ask(socket, path, fields);
   return socket;
 }
 
@@ -272,12 +277,14 @@ TEST_F(ServiceTest, ends_after_the_work_aside) {
   EXPECT_TRUE(is_done);
 }
 
-TEST_F(ServiceTest, ends_after_a_slow_client_has_heard_why) {
+TEST_F(ServiceTest, ends_after_a_slow_client_has_heard_why_and_takes_no_other_meanwhile) {
   Hello& hello = serve();
-  const auto client =
-      ask(port(), "/socket",
-          "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-          "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n");
+  const std::string upgrade =
+      "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+  const auto place = testing::loopback(port());
+  const auto client = ask(port(), "/socket", upgrade), idle = ask(port(), "/", "");
+  EXPECT_TRUE(answer(idle.get(), "hello").ends_with("hello"));
   hello.opened_socket.wait();
   auto& server = service_->server();
   std::promise<void> moment;
@@ -296,6 +303,11 @@ TEST_F(ServiceTest, ends_after_a_slow_client_has_heard_why) {
   const std::string close =
       "\x88\x05\x03\xe9"
       "bye";
+  const Descriptor late(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  EXPECT_EQ(::connect(late.get(), reinterpret_cast<const sockaddr*>(&place), sizeof place), -1);
+  EXPECT_EQ(errno, ECONNREFUSED);
+  ask(idle, "/socket", upgrade);
+  EXPECT_EQ(answer(idle.get()), "");
   EXPECT_TRUE(answer(client.get(), close).ends_with(close));
   EXPECT_EQ(::shutdown(client.get(), SHUT_WR), 0);
   ending.join();

@@ -27,6 +27,7 @@ struct Shared {
   std::list<Visitor*> strangers;  // without a session, oldest first
   std::size_t known = 0;          // number of visitors with a session
   std::list<Aside> asides;        // running
+  bool is_ending = false;         // takes no more requests
   std::size_t sockets = 0;        // WebSockets that are not closed yet
   std::function<void()> on_last;  // called when the last WebSocket has closed; may be empty
 
