@@ -352,12 +352,15 @@ Result<Layers> read_layers(const std::string& path, const Named& named) {
 
 }  // namespace
 
-Result<std::unique_ptr<Network>> Network::read(const std::string& path) {
+Result<std::unique_ptr<Network>> Network::read(const std::string& path,
+                                               std::optional<std::array<int, 2>> size) {
   const auto named = [&](const Error& error) {
     return Error{error.code, hc::format("{}: {}", path, error.detail)};
   };
-  const auto layers = HC_TRY(read_layers(path, named));
-  auto made = make(layers);
+  auto layers = Result<Layers>(HC_TRY(read_layers(path, named)));
+  if (size) layers = resized(*std::move(layers), (*size)[0], (*size)[1]);
+  if (!layers) return named(layers.error());
+  auto made = make(*layers);
   if (!made) return named(made.error());
   return made;
 }

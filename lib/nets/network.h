@@ -3,7 +3,9 @@
 // Computes the layers of a network, by OpenCV's dnn and our own pointwise and depthwise
 // convolutions.
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,10 +31,12 @@ class Network {
 
   /// @param path  of a file of TensorFlow Lite, or of face-api's face recognition: a manifest
   ///     NAME.json, with NAME.bin beside it.
+  /// @param size  (height, width) of its images, if not that in the file. @see resized()
   ///
-  /// Errors: those of read_weights(), read_tflite(), read_face_recognition() and make(), beginning
-  /// with the path.
-  static Result<std::unique_ptr<Network>> read(const std::string& path);
+  /// Errors: those of read_weights(), read_tflite(), read_face_recognition(), resized() and make(),
+  /// beginning with the path.
+  static Result<std::unique_ptr<Network>> read(
+      const std::string& path, std::optional<std::array<int, 2>> size = std::nullopt);
   /// Layers may be those of any file, since all shapes are checked first.
   ///
   /// Errors: Malformed (a shape does not follow from those before it), Unsupported (a layer cannot

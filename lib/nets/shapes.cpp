@@ -318,4 +318,38 @@ Status check_shapes(const Layers& layers) {
   return Check(layers).run();
 }
 
+Result<Layers> resized(Layers layers, int height, int width) {
+  HC_TRY(check_shapes(layers));
+  const auto tensor = [&](int number) -> Tensor& {
+    return layers.tensors[static_cast<std::size_t>(number)];
+  };
+  const Shape from = tensor(layers.input).shape;
+  const Shape to{1, height, width, from[3]};
+  const long long pixels = 1LL * height * width, pixels_before = 1LL * from[1] * from[2];
+  const auto scale = [](int& extent, long long by, long long of) {
+    const long long made = extent * by;
+    if (made <= 0 || made % of != 0 || made / of > kMostNumbers) return false;
+    extent = static_cast<int>(made / of);
+    return true;
+  };
+  tensor(layers.input).shape = to;
+  long long count = 0;
+  for (const Layer& layer : layers.layers) {
+    Shape& shape = tensor(layer.output).shape;
+    if (pixels <= kMostNumbers) count += size_of(shape) * pixels / pixels_before;
+    if (pixels > kMostNumbers || count > kMostNumbers)
+      return Error{Code::TooLarge, hc::format("results with more than {} numbers", kMostNumbers)};
+    const std::string before = text(shape);
+    const bool is_whole = shape.size() == 4
+                              ? scale(shape[1], height, from[1]) && scale(shape[2], width, from[2])
+                              : shape.size() > 1 && scale(shape[1], pixels, pixels_before);
+    if (!is_whole)
+      return Error{Code::Unsupported,
+                   hc::format("a result of {} for an image of {} has no size for one of {}", before,
+                              text(from), text(to))};
+    if (layer.kind == Kind::ResizeBilinear) tensor(layer.inputs[1]).integers = {shape[1], shape[2]};
+  }
+  return layers;
+}
+
 }  // namespace hc::nets

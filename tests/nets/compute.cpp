@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// nets_compute NAME <INPUTS >OUTPUTS: computes a network of share/hypercolumn/nets for images of
-// f32, one after the other, and writes all its outputs for each.
+// nets_compute NAME [HEIGHT WIDTH] <INPUTS >OUTPUTS: computes a network of share/hypercolumn/nets
+// for images of f32, one after the other, and writes all its outputs for each.
+#include <array>
 #include <cstdio>
+#include <cstdlib>
+#include <optional>
 #include <string>
 
 #include <opencv2/core.hpp>
@@ -11,7 +14,9 @@
 
 int main(int argc, char** argv) {
   const std::string name = argc > 1 ? argv[1] : "";
-  const auto network = hc::nets::Network::read(hc::nets::weights_path(name));
+  std::optional<std::array<int, 2>> size;
+  if (argc > 3) size = {std::atoi(argv[2]), std::atoi(argv[3])};
+  const auto network = hc::nets::Network::read(hc::nets::weights_path(name), size);
   if (!network) {
     std::fprintf(stderr, "nets_compute: %s\n", network.error().text().c_str());
     return 1;

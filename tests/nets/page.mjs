@@ -39,25 +39,25 @@ const drawn = [
 ];
 const photographs = ["sample1.jpg", "sample2.jpg", "sample3.jpg", "sample5.jpg"];
 
-async function photographed(name, side) {
+async function photographed(name, height, width) {
   const image = await createImageBitmap(await (await fetch(`/photographs/${name}`)).blob());
-  const size = Math.min(image.width, image.height);
-  const context = new OffscreenCanvas(side, side).getContext("2d");
-  const left = (image.width - size) / 2;
-  context.drawImage(image, left, 0, size, size, 0, 0, side, side);
-  const { data } = context.getImageData(0, 0, side, side);
+  const scale = Math.min(image.width / width, image.height / height);
+  const context = new OffscreenCanvas(width, height).getContext("2d");
+  const left = (image.width - scale * width) / 2;
+  context.drawImage(image, left, 0, scale * width, scale * height, 0, 0, width, height);
+  const { data } = context.getImageData(0, 0, width, height);
   return (u, v, c, i) => data[4 * Math.floor(i / 3) + c] / 255;
 }
 
-/** All pictures, side × side × 3. */
-async function pictures(side) {
+/** All pictures, height × width × 3. */
+async function pictures(height, width) {
   const all = [...drawn];
-  for (const name of photographs) all.push(await photographed(name, side));
+  for (const name of photographs) all.push(await photographed(name, height, width));
   return all.map((draw) => {
-    const picture = new Float32Array(side * side * 3);
+    const picture = new Float32Array(height * width * 3);
     for (let i = 0; i < picture.length; ++i) {
       const at = Math.floor(i / 3);
-      picture[i] = draw((at % side) / side, Math.floor(at / side) / side, i % 3, i);
+      picture[i] = draw((at % width) / width, Math.floor(at / width) / height, i % 3, i);
     }
     return picture;
   });
@@ -66,13 +66,14 @@ async function pictures(side) {
 const give = (what, arrays) => fetch(`/${what}`, { method: "POST", body: new Blob(arrays) });
 
 /** Gives inputs and outputs of a file; returns the numbers of each output. */
-window.computeByTflite = async (name, side, least) => {
+window.computeByTflite = async (path, height, width, least) => {
   tflite.setWasmPath("/tflite/wasm/");
-  const model = await tflite.loadTFLiteModel(`/nets/${name}`);
-  const inputs = (await pictures(side)).map((all) => all.map((p) => least + (1 - least) * p));
+  const model = await tflite.loadTFLiteModel(path);
+  const all = await pictures(height, width);
+  const inputs = all.map((picture) => picture.map((p) => least + (1 - least) * p));
   const outputs = [];
   for (const input of inputs) {
-    const made = model.predict(tf.tensor(input, [1, side, side, 3]));
+    const made = model.predict(tf.tensor(input, [1, height, width, 3]));
     // A copy: these are views of the interpreter's memory.
     for (const { name } of model.outputs) outputs.push((await made[name].data()).slice());
   }
@@ -87,7 +88,7 @@ window.computeByFaceApi = async () => {
   await tf.setBackend("cpu");
   await tf.ready();
   await nets.faceRecognitionNet.loadFromUri("/face-api/model");
-  const chosen = (await pictures(150)).filter((_, i) => i % 4 === 3);
+  const chosen = (await pictures(150, 150)).filter((_, i) => i % 4 === 3);
   const chips = chosen.map((all) => all.map((p) => Math.round(255 * p)));
   const mean = [122.782, 117.001, 104.298];
   const outputs = [];
