@@ -5,12 +5,12 @@ namespace hc::people {
 
 Result<FaceFinder> FaceFinder::make(std::unique_ptr<nets::Network> network) {
   // Source: MediaPipe, face_detection_short_range.pbtxt and face_detection_full_range.pbtxt.
-  constexpr int kSideOfFullRange = 192;
+  constexpr int kSideOfShortRange = 128;
   constexpr Ssd::Range kRange{-1, 1};
-  auto ssd = HC_TRY(
-      network->input()[0] == kSideOfFullRange
-          ? Ssd::make(std::move(network), {{48, 1}}, Face::kPoints, kRange, "faces")
-          : Ssd::make(std::move(network), {{16, 2}, {8, 6}}, Face::kPoints, kRange, "faces"));
+  auto ssd =
+      HC_TRY(network->input()[0] == kSideOfShortRange
+                 ? Ssd::make(std::move(network), {{8, 2}, {16, 6}}, Face::kPoints, kRange, "faces")
+                 : Ssd::make(std::move(network), {{4, 1}}, Face::kPoints, kRange, "faces"));
   return FaceFinder(std::move(ssd));
 }
 

@@ -20,7 +20,8 @@ namespace hc::people {
 ///     for (const Face& face : finder->find(image, {0, 0, 800, 600})) …
 class FaceFinder {
  public:
-  /// @param network  face_detection_short_range or face_detection_full_range.
+  /// @param network  face_detection_short_range, or face_detection_full_range for images of any
+  ///     size that is one of multiples of 32.
   ///
   /// Errors: Malformed (its inputs and outputs are not those of such a network).
   static Result<FaceFinder> make(std::unique_ptr<nets::Network> network);
@@ -29,6 +30,8 @@ class FaceFinder {
   /// @param image  (height, width) of u8, RGB or grey.
   /// @param least  of their scores.
   std::vector<Face> find(const cv::Mat& image, const cv::Rect& part, float least = 0.5F);
+  /// (width, height) of the images that the network sees. [px]
+  [[nodiscard]] cv::Size size() const { return ssd_.size(); }
 
  private:
   explicit FaceFinder(Ssd ssd) : ssd_(std::move(ssd)) {}

@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -21,14 +23,15 @@ using hc::people::Face;
 using hc::people::FaceFinder;
 using hc::people::FaceSearch;
 
-hc::Result<FaceFinder> finder(const std::string& range) {
+hc::Result<FaceFinder> finder(const std::string& range,
+                              std::optional<std::array<int, 2>> size = {}) {
   auto network = HC_TRY(hc::nets::Network::read(
-      HC_BINARY_DIR "/share/hypercolumn/nets/face_detection_" + range + "_range.tflite"));
+      HC_BINARY_DIR "/share/hypercolumn/nets/face_detection_" + range + "_range.tflite", size));
   return FaceFinder::make(std::move(network));
 }
 
 FaceSearch search() {
-  return {*finder("full"), *finder("short")};
+  return {*finder("full", FaceSearch::kWideSize), *finder("short")};
 }
 
 /// One of six photographs of 3 to 5 persons, 800 pixels wide; RGB.
@@ -50,6 +53,13 @@ std::optional<Face> face_around(FaceFinder& near, const cv::Mat& image, cv::Poin
   for (const Face& face : found)
     if (face.box.contains(middle)) return face;
   return std::nullopt;
+}
+
+/// How long it takes until all parts of an image are searched while faces are followed.
+std::chrono::milliseconds sweep_of(const cv::Mat& image) {
+  const auto [height, width] = FaceSearch::kWideSize;
+  const auto parts = hc::people::parts_of(image.size(), {width, height});
+  return FaceSearch::kSweep * static_cast<int>(parts.size());
 }
 
 cv::Point2f middle_of(const Face& face) {
@@ -157,10 +167,8 @@ TEST(FaceSearch, finds_in_time_who_comes_in_while_others_are_followed) {
   const std::size_t before = faces.look(kStart, without).size();
   EXPECT_LT(before, all.size());
   hc::Time now = kStart;
-  const auto most =
-      FaceSearch::kSweep * static_cast<int>(hc::people::parts_of(image.size()).size());
   std::size_t seen = before;
-  for (; now <= kStart + most && seen < all.size(); now += 50ms)
+  for (; now <= kStart + sweep_of(image) && seen < all.size(); now += 50ms)
     seen = faces.look(now, image).size();
   EXPECT_EQ(seen, all.size());
 }
@@ -177,8 +185,7 @@ TEST(FaceSearch, takes_a_face_beside_a_followed_one_for_new_only_after_a_search)
   ASSERT_EQ((from | to) & cv::Rect({}, image.size()), from | to);
   cv::Mat other = image.clone(), small = other(to);
   cv::resize(image(from), small, to.size(), 0, 0, cv::INTER_AREA);
-  const auto last =
-      kStart + FaceSearch::kSweep * static_cast<int>(hc::people::parts_of(image.size()).size());
+  const auto last = kStart + sweep_of(image);
   EXPECT_EQ(faces.look_around(other, first.at(0).face.box).size(), 2U);
   EXPECT_EQ(faces.look(kStart + 50ms, other).size(), first.size());
   std::size_t most = 0;

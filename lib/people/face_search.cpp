@@ -71,7 +71,7 @@ std::optional<Face> FaceSearch::refined(const cv::Mat& image, const Face& face, 
 
 void FaceSearch::add(const cv::Mat& image, const Face& face, float least,
                      std::vector<Sighting>& faces) {
-  const float sure = std::max(kSure, least);
+  const float sure = std::max(face.score < kLikely ? kSureElsewhere : kSure, least);
   auto* same = same_face(face, faces);
   if (same == nullptr || same->face.score < sure) {
     const auto near = refined(image, face, least);
@@ -98,7 +98,7 @@ void FaceSearch::add_large(Time time, const cv::Mat& image, float least,
   });
   if (found.size() > kMostLarge) found.resize(kMostLarge);
   for (const Face& face : found)
-    for (const Face& large : find_around(wide_, image, face.box, least))
+    for (const Face& large : find_around(wide_, image, face.box, kPossible))
       if (overlap(large.box, face.box) > kSameFace) {
         add(image, large, least, faces);
         break;
@@ -109,13 +109,13 @@ std::vector<Track> FaceSearch::look(Time time, const cv::Mat& image, float least
                                     const cv::Matx33f& turn) {
   if (image.empty()) return {};
   tracks_.turn(turn);
-  const auto parts = parts_of(image.size());
+  const auto parts = parts_of(image.size(), wide_.size());
   auto faces = followed(time, image, least);
   const auto period = faces.empty() ? kSearch : kSweep;
   const auto due = static_cast<std::size_t>(std::chrono::abs(time - swept_) / period);
   if (due > 0) swept_ = time;
   for (std::size_t i = 0; i < std::min(due, parts.size()); ++i) {
-    auto found = wide_.find(image, parts[next_part_++ % parts.size()], least);
+    auto found = wide_.find(image, parts[next_part_++ % parts.size()], kPossible);
     if (found.size() > kMostFound) found.resize(kMostFound);
     for (const Face& face : found) add(image, face, least, faces);
     if (next_part_ % parts.size() == 0) add_large(time, image, least, faces);

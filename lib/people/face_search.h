@@ -2,6 +2,7 @@
 #pragma once
 // Finds and follows the faces in the images of a camera.
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -13,30 +14,40 @@
 namespace hc::people {
 
 /// Follows known faces by the small network, around where they are expected, and searches for
-/// others by the large one: in all parts of the first image, and then in one after the other.
+/// others by the large one: in all parts of the first image, and then in one after the other. A
+/// part has the shape of the large network's images: an image of that shape has one.
 /// After the last part the small network searches the image with a margin for large faces, from 0.4
 /// of its shorter side, which the large one sees only with a margin around them. A face counts
-/// where the small network sees it, and a new one only if both are sure: the large one alone sees a
-/// face in one of 60 images of rooms without people.
+/// where the small network sees it, and a new one only if it is sure, and the surer the less the
+/// large one is.
 ///
-/// Cost: 5 ms of a core for each known face, 15 ms for a part, 5 ms for large ones, and for each
-/// face found that is not known 5 ms, or 20 ms for a large one.
+/// Cost: 4 ms of a core for each known face, 15 ms for a part, 4 ms for large ones, and for each
+/// possible face that is not known 4 ms, or 20 ms for a large one.
 class FaceSearch {
  public:
   /// How often a part is searched, while there are no faces and while some are followed. After a
   /// longer time without images, as many parts as would have been.
-  static constexpr std::chrono::milliseconds kSearch{150}, kSweep{200};
+  static constexpr std::chrono::milliseconds kSearch{200}, kSweep{300};
   /// Faces that are followed, and faces that are taken from a part, the best ones.
-  static constexpr std::size_t kMostFollowed = 8, kMostFound = 16;
-  /// Least score of a new face by the small network. That of the large one's false faces is 0.56 at
-  /// most, that of faces in photographs 0.75 at least. Source: bench/faces.
-  static constexpr float kSure = 0.65F;
+  static constexpr std::size_t kMostFollowed = 8, kMostFound = 32;
+  /// Least score by the large network of a place at which the small one looks, and of one where a
+  /// face is likely.
+  static constexpr float kPossible = 0.3F, kLikely = 0.5F;
+  /// Least score by the small network of a new face where one is likely, and elsewhere. In rooms
+  /// without people it gives 0.49 and 0.74 at most to what the large one takes for faces. Source:
+  /// bench/faces.
+  static constexpr float kSure = 0.65F, kSureElsewhere = 0.8F;
 
-  /// @param wide  with face_detection_full_range. @param near  with face_detection_short_range.
+  /// (height, width) of the large network's images: of the shape of most cameras' images. The
+  /// network was made for those of 192 × 192.
+  static constexpr std::array<int, 2> kWideSize{192, 256};
+
+  /// @param wide  with face_detection_full_range, of any size.
+  /// @param near  with face_detection_short_range.
   FaceSearch(FaceFinder wide, FaceFinder near) : wide_(std::move(wide)), near_(std::move(near)) {}
 
   /// The faces of the next image, (height, width) of u8, RGB or grey, of any size.
-  /// @param least  of the scores by both networks.
+  /// @param least  of the scores by the small network.
   /// @param turn  of the camera since the last image. @see FaceTracks::turn()
   std::vector<Track> look(Time time, const cv::Mat& image, float least = 0.5F,
                           const cv::Matx33f& turn = cv::Matx33f::eye());

@@ -19,7 +19,7 @@ Region region_of(const Palm& palm) {
 Result<PalmFinder> PalmFinder::make(std::unique_ptr<nets::Network> network) {
   // Source: MediaPipe, palm_detection_cpu.pbtxt.
   auto ssd =
-      HC_TRY(Ssd::make(std::move(network), {{24, 2}, {12, 6}}, Palm::kPoints, {0, 1}, "palms"));
+      HC_TRY(Ssd::make(std::move(network), {{8, 2}, {16, 6}}, Palm::kPoints, {0, 1}, "palms"));
   return PalmFinder(std::move(ssd));
 }
 

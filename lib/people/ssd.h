@@ -23,9 +23,10 @@ namespace hc::people {
 /// a `score` 0 … 1; see Face.
 class Ssd {
  public:
-  /// A square grid of cells, each with so many anchors in its middle.
+  /// A grid of square cells that fill the network's image, each with so many anchors in its middle.
   struct Grid {
-    int cells = 0, anchors = 0;
+    int side = 1;  ///< of a cell [px]
+    int anchors = 0;
   };
   struct Range {
     float black = 0, white = 1;
@@ -39,9 +40,12 @@ class Ssd {
   static Result<Ssd> make(std::unique_ptr<nets::Network> network, std::initializer_list<Grid> grids,
                           std::size_t points, Range range, std::string_view what);
 
+  /// (width, height) of the images that the network sees. [px]
+  [[nodiscard]] cv::Size size() const { return size_; }
+
   /// The detections in a part of an image, which may extend beyond it, unmerged, in any order. The
-  /// network sees a square with the part in its middle. Their numbers are finite, and they are at
-  /// most two sides of it away.
+  /// network sees the part in the middle of a rectangle of the shape of size(). Their numbers are
+  /// finite, and they are at most two of its longer sides away.
   /// @param image  (height, width) of u8, RGB or grey. @param least  of their scores.
   template <typename Detection>
   std::vector<Detection> find(const cv::Mat& image, const cv::Rect& part, float least) {
@@ -71,12 +75,16 @@ class Ssd {
   };
 
   Ssd(std::unique_ptr<nets::Network> network, std::vector<cv::Point2f> anchors, Range range)
-      : network_(std::move(network)), anchors_(std::move(anchors)), range_(range) {}
+      : network_(std::move(network)),
+        size_(network_->input()[1], network_->input()[0]),
+        anchors_(std::move(anchors)),
+        range_(range) {}
   /// Valid until the next call.
   std::vector<Candidate> candidates(const cv::Mat& image, const cv::Rect& part, float least);
 
   std::unique_ptr<nets::Network> network_;
-  std::vector<cv::Point2f> anchors_;  // in the network's image, 0 … 1
+  cv::Size size_;
+  std::vector<cv::Point2f> anchors_;  // in the network's image [px]
   Range range_;
   std::vector<cv::Mat> outputs_;  // of the last image
 };

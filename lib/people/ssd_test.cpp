@@ -43,7 +43,7 @@ TEST(Ssd, numbers_that_are_no_places_are_no_detections) {
   numbers.col(3) = 2;
   auto ssd =
       Ssd::make(std::make_unique<MadeNetwork>(nets::Shape{4, 4, 3}, std::vector{numbers, scores}),
-                {{1, 2}}, 1, {}, "things");
+                {{4, 2}}, 1, {}, "things");
   ASSERT_TRUE(ssd);
   const cv::Mat image(40, 40, CV_8UC3, cv::Scalar::all(90));
   const auto found = [&] { return ssd->find<Thing>(image, {0, 0, 40, 40}, 0.5F).size(); };
@@ -64,7 +64,7 @@ TEST(Ssd, a_strip_takes_no_more_memory_than_it_has) {
   auto ssd = Ssd::make(std::make_unique<MadeNetwork>(
                            nets::Shape{4, 4, 3}, std::vector{cv::Mat(cv::Mat::zeros(2, 6, CV_32F)),
                                                              cv::Mat(cv::Mat::ones(2, 1, CV_32F))}),
-                       {{1, 2}}, 1, {}, "things");
+                       {{4, 2}}, 1, {}, "things");
   ASSERT_TRUE(ssd);
   constexpr int kLength = 400'000;  // whose square has 480 GB
   for (const cv::Size size : {cv::Size(kLength, 4), {4, kLength}})

@@ -16,8 +16,11 @@ using hc::people::Track;
 
 namespace {
 
-hc::Result<std::unique_ptr<hc::nets::Network>> network(const std::string& name) {
-  return hc::nets::Network::read(hc::nets::weights_path(name));
+/// @param size  of the network's images, if not that in the file. @see hc::nets::Network::read()
+template <typename Finder>
+Finder read(const std::string& name, std::optional<std::array<int, 2>> size = std::nullopt) {
+  const auto path = hc::nets::weights_path(name);
+  return hc::value_or_end(Finder::make(hc::value_or_end(hc::nets::Network::read(path, size))));
 }
 
 }  // namespace
@@ -52,13 +55,11 @@ Faces::Faces(hc::Module& module) : module_(module) {
 }
 
 void Faces::start() {
-  using hc::people::FaceFinder, hc::people::Identifier;
-  const auto finder = [](const std::string& name) {
-    return hc::value_or_end(FaceFinder::make(hc::value_or_end(network(name))));
-  };
-  networks_.emplace(Networks{
-      {finder("face_detection_full_range.tflite"), finder("face_detection_short_range.tflite")},
-      hc::value_or_end(Identifier::make(hc::value_or_end(network("face_recognition.json"))))});
+  using hc::people::FaceFinder, hc::people::FaceSearch, hc::people::Identifier;
+  networks_.emplace(
+      Networks{{read<FaceFinder>("face_detection_full_range.tflite", FaceSearch::kWideSize),
+                read<FaceFinder>("face_detection_short_range.tflite")},
+               read<Identifier>("face_recognition.json")});
   folder_.emplace(*people_, [this](std::string_view line) { module_.log(line); });
   read_folder();
 }

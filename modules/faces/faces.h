@@ -94,9 +94,9 @@ class Faces {
   hc::Parameter<double> same_ = module_.parameter(
       "same", hc::people::kSamePerson, "",
       "maximum distance of a face from the person it is taken for", {.min = 0, .max = 2});
-  hc::Parameter<double> score_ =
-      module_.parameter("score", 0.5, "", "minimum score of a face; of a new one at least 0.65",
-                        {.min = 0, .max = 1});
+  hc::Parameter<double> score_ = module_.parameter(
+      "score", 0.5, "", "minimum score of a face; of a new one at least 0.65 or 0.8",
+      {.min = 0, .max = 1});
   hc::ModuleFrames frames_{module_};
   hc::vision::ModulePair intrinsics_{module_, frames_, "distances have no true scale"};
 
