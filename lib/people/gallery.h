@@ -11,9 +11,9 @@
 
 namespace hc::people {
 
-/// Largest distance of a face from the person it is taken for. No two persons in the photographs of
-/// doc/figures.md are nearer.
-inline constexpr double kSamePerson = 0.4;
+/// Maximum distance of a face from the person it is taken for. No views of two persons in the
+/// photographs of doc/figures.md are nearer.
+inline constexpr double kSamePerson = 0.34;
 
 /// The mean of several embeddings, which is nearer to each view of a person than these are to one
 /// another.
