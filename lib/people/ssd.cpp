@@ -49,7 +49,8 @@ cv::Mat scaled(const cv::Mat& image, const cv::Rect2f& region, const cv::Size& s
   const cv::Point2f from = (cv::Point2f(shown.tl()) - region.tl()) * scale;
   if (by_means) {
     const cv::Point2f extent = cv::Point2f(shown.size()) * scale;
-    const cv::Rect to = cv::Rect(cv::Point(from), cv::Point(from + extent));
+    // Rounded pixels may be one beyond the edge.
+    const cv::Rect to = cv::Rect(cv::Point(from), cv::Point(from + extent)) & cv::Rect({}, size);
     if (to.empty()) return small;
     // By halves first, which are means too, and take a fifth of the time that all at once takes.
     while (colour.cols >= 2 * to.width && colour.rows >= 2 * to.height)

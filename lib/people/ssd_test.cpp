@@ -60,6 +60,19 @@ TEST(Ssd, numbers_that_are_no_places_are_no_detections) {
   EXPECT_EQ(found(), 1U);
 }
 
+TEST(Ssd, parts_of_any_size_and_place_are_scaled) {
+  const std::vector outputs{cv::Mat(cv::Mat::zeros(24, 6, CV_32F)),
+                            cv::Mat(cv::Mat::ones(24, 1, CV_32F))};
+  auto ssd = Ssd::make(std::make_unique<MadeNetwork>(nets::Shape{192, 256, 3}, outputs), {{64, 2}},
+                       1, {}, "things");
+  ASSERT_TRUE(ssd);
+  const cv::Mat image(600, 800, CV_8UC3, cv::Scalar::all(90));
+  for (const int height : {1, 199, 275, 281, 334})
+    for (int width = 1; width < 600; ++width)
+      EXPECT_EQ(ssd->find<Thing>(image, {width - 40, 20, width, height}, 0.5F).size(), 24U)
+          << width << ' ' << height;
+}
+
 TEST(Ssd, a_strip_takes_no_more_memory_than_it_has) {
   auto ssd = Ssd::make(std::make_unique<MadeNetwork>(
                            nets::Shape{4, 4, 3}, std::vector{cv::Mat(cv::Mat::zeros(2, 6, CV_32F)),
