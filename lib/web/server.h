@@ -104,11 +104,13 @@ class Server {
                                                 int ports, const std::string& identity,
                                                 LogSink log);
 
+  /// Before stop().
   [[nodiscard]] virtual std::uint16_t port() const = 0;
   /// Serves a site until stop().
   virtual void run(Site& site) = 0;
-  /// Ends run() after 0.2 s, so that the last messages arrive; if WebSockets are still open then,
-  /// when all are closed, after 4 s at most. Thread-safe.
+  /// Accepts no more clients, and answers no more requests. Ends run() after 0.2 s, so that the
+  /// last messages arrive; if WebSockets are still open then, when all are closed, after 4 s at
+  /// most. Thread-safe.
   virtual void stop() = 0;
   /// The loop of run()'s thread, for other tasks there.
   [[nodiscard]] virtual Loop& loop() = 0;

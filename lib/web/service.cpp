@@ -39,8 +39,8 @@ void Service::run(std::unique_ptr<Site> site) {
 
 Service::~Service() {
   if (!thread_.joinable()) return;
-  server().post([this] { site_->close(); });
   server().stop();
+  server().post([this] { site_->close(); });
   thread_.join();
 }
 

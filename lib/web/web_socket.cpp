@@ -28,6 +28,7 @@ using tcp = asio::ip::tcp;
 
 constexpr std::size_t kMaxMessage = 65536;     // [byte]
 constexpr std::chrono::seconds kPongTime{10};  // of a silent WebSocket
+constexpr int kGoingAway = 1001;               // of RFC 6455
 
 /// A WebSocket over a stream of either kind, kept alive by the page's handlers and by pending I/O.
 template <typename Stream>
@@ -60,6 +61,7 @@ class Socket final : public WebSocket, public std::enable_shared_from_this<Socke
     stream_.async_accept(*kept, [self = this->shared_from_this(), kept,
                                  asked = std::move(request)](beast::error_code error) {
       if (error) return;
+      if (self->visitor_->shared().is_ending) return self->close(kGoingAway, "the server ends");
       if (!self->visitor_->shared().guard([&] { self->visitor_->site().open(self, asked); }))
         return self->lose();
       self->read();
