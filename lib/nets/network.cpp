@@ -336,7 +336,8 @@ class OpencvNetwork final : public Network {
 
 /// Those of a file of TensorFlow Lite, or of face-api's manifest and the weights beside it.
 template <typename Named>
-Result<Layers> read_layers(const std::string& path, const Named& named) {
+Result<Layers> read_layers(const std::string& path, std::optional<std::array<int, 2>> size,
+                           const Named& named) {
   const auto bytes = HC_TRY(read_weights(path));
   auto layers = Result<Layers>(Layers());
   if (const std::filesystem::path manifest = path; manifest.extension() == ".json") {
@@ -346,6 +347,7 @@ Result<Layers> read_layers(const std::string& path, const Named& named) {
   } else {
     layers = read_tflite(std::as_bytes(std::span(bytes)));
   }
+  if (layers && size) layers = resized(*std::move(layers), (*size)[0], (*size)[1]);
   if (!layers) return named(layers.error());
   return layers;
 }
@@ -357,10 +359,8 @@ Result<std::unique_ptr<Network>> Network::read(const std::string& path,
   const auto named = [&](const Error& error) {
     return Error{error.code, hc::format("{}: {}", path, error.detail)};
   };
-  auto layers = Result<Layers>(HC_TRY(read_layers(path, named)));
-  if (size) layers = resized(*std::move(layers), (*size)[0], (*size)[1]);
-  if (!layers) return named(layers.error());
-  auto made = make(*layers);
+  const auto layers = HC_TRY(read_layers(path, size, named));
+  auto made = make(layers);
   if (!made) return named(made.error());
   return made;
 }

@@ -326,6 +326,10 @@ Result<Layers> resized(Layers layers, int height, int width) {
   const Shape from = tensor(layers.input).shape;
   const Shape to{1, height, width, from[3]};
   const long long pixels = 1LL * height * width, pixels_before = 1LL * from[1] * from[2];
+  const auto too_large = [] {
+    return Error{Code::TooLarge, hc::format("results with more than {} numbers", kMostNumbers)};
+  };
+  if (pixels > kMostNumbers) return too_large();
   const auto scale = [](int& extent, long long by, long long of) {
     const long long made = extent * by;
     if (made <= 0 || made % of != 0 || made / of > kMostNumbers) return false;
@@ -333,13 +337,12 @@ Result<Layers> resized(Layers layers, int height, int width) {
     return true;
   };
   tensor(layers.input).shape = to;
-  long long count = 0;
+  long long count = pixels * from[3];
   for (const Layer& layer : layers.layers) {
     Shape& shape = tensor(layer.output).shape;
-    if (pixels <= kMostNumbers) count += size_of(shape) * pixels / pixels_before;
-    if (pixels > kMostNumbers || count > kMostNumbers)
-      return Error{Code::TooLarge, hc::format("results with more than {} numbers", kMostNumbers)};
     const std::string before = text(shape);
+    count += size_of(shape) * pixels / pixels_before;
+    if (count > kMostNumbers) return too_large();
     const bool is_whole = shape.size() == 4
                               ? scale(shape[1], height, from[1]) && scale(shape[2], width, from[2])
                               : shape.size() > 1 && scale(shape[1], pixels, pixels_before);
@@ -349,7 +352,11 @@ Result<Layers> resized(Layers layers, int height, int width) {
                               text(from), text(to))};
     if (layer.kind == Kind::ResizeBilinear) tensor(layer.inputs[1]).integers = {shape[1], shape[2]};
   }
-  return layers;
+  const auto checked = check_shapes(layers);
+  if (checked) return layers;
+  if (checked.error().code == Code::TooLarge) return checked.error();
+  return Error{Code::Unsupported,
+               hc::format("a network for images of {} alone, not of {}", text(from), text(to))};
 }
 
 }  // namespace hc::nets

@@ -24,12 +24,12 @@ int axis_of(const Layer& layer, const Shape& shape);
 /// Errors: Malformed, Unsupported, TooLarge (see Network::make()).
 Status check_shapes(const Layers& layers);
 
-/// The same network for images of another size, if it has only convolutions, pools and resizes,
-/// which are the same everywhere in an image, and what flattens their results at the end.
+/// The same network for images of another size, if it computes the same everywhere in an image:
+/// with convolutions, pools and resizes, and flattens what they give at the end.
 /// @param height, width  [px]
 ///
-/// Errors: those of check_shapes(); Unsupported (the extent of a result would not be whole),
-/// TooLarge (more than kMostNumbers in all results). What results is to be checked again.
+/// Errors: those of check_shapes(); Unsupported (not such a network, or the extent of a result
+/// would not be whole), TooLarge (more than kMostNumbers in the image and all results).
 Result<Layers> resized(Layers layers, int height, int width);
 
 }  // namespace hc::nets

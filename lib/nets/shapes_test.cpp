@@ -27,7 +27,7 @@ TEST(Resized, networks_of_convolutions_take_images_of_other_sizes) {
   }
 }
 
-TEST(Resized, networks_are_refused_whose_results_would_not_be_whole) {
+TEST(Resized, sizes_that_give_fractional_results_are_refused) {
   for (const auto& [height, width] :
        {std::array{192, 200}, {191, 192}, {16, 192}, {0, 192}, {-32, 192}}) {
     const auto refused = read("face_detection_full_range.tflite", height, width);
@@ -40,9 +40,12 @@ TEST(Resized, networks_are_refused_whose_results_would_not_be_whole) {
                 "1×192×200×3");
 }
 
-TEST(Resized, networks_of_whole_images_are_refused) {
-  EXPECT_EQ(read("hand_landmark_lite.tflite", 448, 448).error().code, Code::Malformed);
-  EXPECT_EQ(read("face_recognition.json", 300, 300).error().code, Code::Malformed);
+TEST(Resized, networks_of_one_size_alone_are_refused) {
+  EXPECT_EQ(read("hand_landmark_lite.tflite", 448, 448).error().detail,
+            hc::nets::weights_path("hand_landmark_lite.tflite") +
+                ": a network for images of 1×224×224×3 alone, not of 1×448×448×3");
+  EXPECT_EQ(read("hand_landmark_lite.tflite", 448, 448).error().code, Code::Unsupported);
+  EXPECT_EQ(read("face_recognition.json", 300, 300).error().code, Code::Unsupported);
 }
 
 TEST(Resized, too_large_ones_are_refused) {

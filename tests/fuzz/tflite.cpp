@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any file of TensorFlow Lite: layers that can be computed, or one clear error.
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -15,6 +16,12 @@ int fuzz_tflite(const std::uint8_t* data, std::size_t size) {
     HC_CHECK(!checked.error().detail.empty());
     return 0;
   }
+  // What is too large or unsupported for another size is refused, too.
+  const auto& image = layers->tensors[static_cast<std::size_t>(layers->input)].shape;
+  for (const auto& [height, width] :
+       {std::array{image[1], image[2] / 3 * 4}, {2 * (image[1] % 65536), image[2]}})
+    if (const auto other = hc::nets::resized(*layers, height, width))
+      HC_CHECK(hc::nets::check_shapes(*other).has_value());
   long long numbers = 0;
   for (const auto& tensor : layers->tensors) numbers += hc::nets::size_of(tensor.shape);
   if (numbers > 1 << 16) return 0;  // it may take long to compute

@@ -64,7 +64,7 @@ after(async () => {
 const numbers = (bytes) =>
   new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
 
-/** face_detection_full_range for images of 192 × 256, of which the interpreter infers the rest. */
+/** face_detection_full_range for images of 192 × 256, and the interpreter infers all other shapes. */
 async function widened() {
   const bytes = await readFile(join(folders.nets, "face_detection_full_range.tflite"));
   const file = new Int32Array(bytes.buffer, bytes.byteOffset, bytes.length >> 2);
