@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // faces [--found] [LIST]: scores the recognition of faces, as Markdown: faces found in photographs
-// of Debian's packages (bench/photographs.txt), which are never copied, and in simulated rooms
+// of packages (bench/photographs.txt), which are never copied, and in simulated rooms
 // without people; how sure it is whose they are, in the photographs and of the simulated persons
 // from many sides. --found prints the faces that are found.
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -100,14 +99,6 @@ cv::Mat load(const Photograph& photograph) {
   return image;
 }
 
-template <typename Finder>
-Finder read(const std::string& name, std::optional<std::array<int, 2>> size = std::nullopt) {
-  return must(Finder::make(must(hc::nets::Network::read(hc::nets::weights_path(name), size))));
-}
-FaceFinder wide_finder() {
-  return read<FaceFinder>("face_detection_full_range.tflite", FaceSearch::kWideSize);
-}
-
 /// Finds faces, and describes them.
 class Sight {
  public:
@@ -141,8 +132,9 @@ class Sight {
   }
 
  private:
-  FaceSearch search_{wide_finder(), read<FaceFinder>("face_detection_short_range.tflite")};
-  Identifier identifier_ = read<Identifier>("face_recognition.json");
+  FaceSearch search_ = must(FaceSearch::read());
+  Identifier identifier_ = must(Identifier::make(
+      must(hc::nets::Network::read(hc::nets::weights_path("face_recognition.json")))));
   hc::Time now_{1'700'000'000s};
   hc::room::Chance chance_{1};
 };
@@ -161,7 +153,7 @@ const Face* face_at(const std::vector<Face>& faces, const cv::Point2f& middle, f
 /// A face in an image, described.
 struct View {
   std::string person;
-  std::string image;  // pairs of one person are of different ones
+  std::string image;  // two views of one person are compared only if their images differ
   Embedding embedding = {};
 };
 
@@ -248,7 +240,7 @@ struct FalseFaces {
 };
 
 FalseFaces find_false_faces(Sight& sight, std::uint64_t rooms, int images) {
-  auto wide = wide_finder();
+  auto wide = must(FaceFinder::read_wide());
   const auto renderer = bench::make_renderer();
   FalseFaces all;
   for (std::uint64_t seed = 1; seed <= rooms; ++seed) {

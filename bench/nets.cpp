@@ -3,10 +3,7 @@
 // in an image of 800 × 600 px: in all of it, and around one face that is followed.
 #include <benchmark/benchmark.h>
 
-#include <array>
 #include <chrono>
-#include <memory>
-#include <optional>
 #include <string>
 
 #include <opencv2/core.hpp>
@@ -18,23 +15,12 @@
 
 namespace {
 
-using hc::people::FaceFinder, hc::people::FaceSearch;
-
 void use_cores(const benchmark::State& state) {
   cv::setNumThreads(state.range(0) == 1 ? 1 : cv::getNumberOfCPUs());
 }
 
-constexpr const char *kWide = "face_detection_full_range.tflite",
-                     *kNear = "face_detection_short_range.tflite";
-
-hc::Result<std::unique_ptr<hc::nets::Network>> read(const std::string& name) {
-  std::optional<std::array<int, 2>> size;
-  if (name == kWide) size = FaceSearch::kWideSize;
-  return hc::nets::Network::read(hc::nets::weights_path(name), size);
-}
-
 void run(benchmark::State& state, const std::string& name) {
-  const auto network = read(name);
+  const auto network = hc::nets::Network::read(hc::nets::weights_path(name));
   if (!network) {
     state.SkipWithError(network.error().text().c_str());
     return;
@@ -51,16 +37,20 @@ void run(benchmark::State& state, const std::string& name) {
 
 /// Without faces, so that nothing is followed.
 void search(benchmark::State& state, bool whole) {
-  FaceSearch faces(*FaceFinder::make(*read(kWide)), *FaceFinder::make(*read(kNear)));
+  auto faces = hc::people::FaceSearch::read();
+  if (!faces) {
+    state.SkipWithError(faces.error().text().c_str());
+    return;
+  }
   use_cores(state);
   cv::Mat image(600, 800, CV_8UC3);
   cv::randu(image, 0, 255);
   hc::Time time{std::chrono::hours(1)};
   for ([[maybe_unused]] auto _ : state) {
     if (whole)
-      benchmark::DoNotOptimize(faces.look(time += std::chrono::hours(1), image));
+      benchmark::DoNotOptimize(faces->look(time += std::chrono::hours(1), image));
     else
-      benchmark::DoNotOptimize(faces.look_around(image, {400, 300, 90, 90}));
+      benchmark::DoNotOptimize(faces->look_around(image, {400, 300, 90, 90}));
   }
 }
 
@@ -75,8 +65,9 @@ void measure(benchmark::internal::Benchmark* of) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  for (const char* name : {kNear, kWide, "palm_detection_lite.tflite", "hand_landmark_lite.tflite",
-                           "face_recognition.json"})
+  for (const char* name :
+       {"face_detection_short_range.tflite", "face_detection_full_range.tflite",
+        "palm_detection_lite.tflite", "hand_landmark_lite.tflite", "face_recognition.json"})
     measure(benchmark::RegisterBenchmark(name, run, std::string(name)));
   measure(benchmark::RegisterBenchmark("faces/whole_image", search, true));
   measure(benchmark::RegisterBenchmark("faces/around_one", search, false));

@@ -12,17 +12,15 @@ std::vector<cv::Rect> parts_of(const cv::Size& image, const cv::Size& shape) {
   const double right = 1.0 * image.width / shape.width, down = 1.0 * image.height / shape.height;
   const double scale = std::max(std::min(right, down), std::max(right, down) / kMostParts);
   const double beyond = std::max(right, down) / scale - 1;  // parts
-  if (!(beyond > kNearly)) return {cv::Rect({}, image)};
+  if (!(beyond > kNearly)) return {cv::Rect({}, image)};    // also of an empty image
   const cv::Size part(std::max(1, cvRound(scale * shape.width)),
                       std::max(1, cvRound(scale * shape.height)));
-  const int count = 1 + cvCeil((beyond - kNearly) / kStep);
+  const int last = cvCeil((beyond - kNearly) / kStep);
+  const bool is_wide = right > down;
+  const int way = is_wide ? image.width - part.width : image.height - part.height;
   std::vector<cv::Rect> parts;
-  for (int i = 0; i < count; ++i) {
-    const auto at = [&](int length, int side) { return (length - side) * i / (count - 1); };
-    const cv::Point begin = right > down ? cv::Point(at(image.width, part.width), 0)
-                                         : cv::Point(0, at(image.height, part.height));
-    parts.emplace_back(begin, part);
-  }
+  for (int i = 0; i <= last; ++i)
+    parts.emplace_back(is_wide ? cv::Point(way * i / last, 0) : cv::Point(0, way * i / last), part);
   return parts;
 }
 

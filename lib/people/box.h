@@ -15,7 +15,8 @@ inline float overlap(const cv::Rect2f& a, const cv::Rect2f& b) {
 }
 
 /// Parts that cover an image, each as high or as wide as it, and overlapping by nearly a quarter or
-/// more. The whole image, if it has nearly the shape of a part.
+/// more. Those of a strip are larger, at most twelve, and extend beyond it. The whole image, if it
+/// has nearly the shape of a part.
 /// @param shape  of a part: its width and height, in any unit.
 std::vector<cv::Rect> parts_of(const cv::Size& image, const cv::Size& shape = {1, 1});
 

@@ -41,7 +41,11 @@ TEST(Parts, cover_images_of_any_size) {
                                  {720, 1280},
                                  {711, 533},
                                  {97, 400},
-                                 {40, 30}})
+                                 {40, 30},
+                                 {65535, 40},
+                                 {40, 65535},
+                                 {1, 600},
+                                 {800, 1}})
       expect_cover(image, shape);
 }
 
@@ -49,6 +53,10 @@ TEST(Parts, are_the_whole_image_if_it_has_nearly_their_shape) {
   for (const cv::Size image : {cv::Size(800, 600), {640, 480}, {1366, 1024}, {606, 450}})
     EXPECT_EQ(parts_of(image, {256, 192}), std::vector{cv::Rect({}, image)}) << image;
   EXPECT_EQ(parts_of({800, 600}), (std::vector<cv::Rect>{{0, 0, 600, 600}, {200, 0, 600, 600}}));
+}
+
+TEST(Parts, of_an_empty_image_are_empty) {
+  EXPECT_EQ(parts_of({0, 0}), std::vector{cv::Rect()});
 }
 
 TEST(Parts, are_few_for_a_strip) {

@@ -16,12 +16,19 @@ namespace hc::people {
 
 /// Finds faces.
 ///
-///     auto finder = FaceFinder::make(std::move(network));
-///     for (const Face& face : finder->find(image, {0, 0, 800, 600})) …
+///     auto finder = HC_TRY(FaceFinder::read_wide());
+///     for (const Face& face : finder.find(image, {0, 0, 800, 600})) …
 class FaceFinder {
  public:
-  /// @param network  face_detection_short_range, or face_detection_full_range for images of any
-  ///     size that is one of multiples of 32.
+  /// The small network, for faces that fill a good part of an image of 128 × 128
+  /// (face_detection_short_range), and the large one, for those in all of an image of 4 : 3, as
+  /// most cameras' are (face_detection_full_range, for 256 × 192 instead of 192 × 192).
+  ///
+  /// Errors: those of nets::Network::read() and make().
+  static Result<FaceFinder> read_near();
+  static Result<FaceFinder> read_wide();
+  /// @param network  face_detection_short_range, whose images are of 128 × 128, or
+  ///     face_detection_full_range for another size.
   ///
   /// Errors: Malformed (its inputs and outputs are not those of such a network).
   static Result<FaceFinder> make(std::unique_ptr<nets::Network> network);

@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <optional>
 
@@ -22,17 +21,6 @@ using namespace std::chrono_literals;
 using hc::people::Face;
 using hc::people::FaceFinder;
 using hc::people::FaceSearch;
-
-hc::Result<FaceFinder> finder(const std::string& range,
-                              std::optional<std::array<int, 2>> size = {}) {
-  auto network = HC_TRY(hc::nets::Network::read(
-      HC_BINARY_DIR "/share/hypercolumn/nets/face_detection_" + range + "_range.tflite", size));
-  return FaceFinder::make(std::move(network));
-}
-
-FaceSearch search() {
-  return {*finder("full", FaceSearch::kWideSize), *finder("short")};
-}
 
 /// One of six photographs of 3 to 5 persons, 800 pixels wide; RGB.
 cv::Mat photograph(int number) {
@@ -57,8 +45,7 @@ std::optional<Face> face_around(FaceFinder& near, const cv::Mat& image, cv::Poin
 
 /// How long it takes until all parts of an image are searched while faces are followed.
 std::chrono::milliseconds sweep_of(const cv::Mat& image) {
-  const auto [height, width] = FaceSearch::kWideSize;
-  const auto parts = hc::people::parts_of(image.size(), {width, height});
+  const auto parts = hc::people::parts_of(image.size(), FaceFinder::read_wide()->size());
   return FaceSearch::kSweep * static_cast<int>(parts.size());
 }
 
@@ -72,12 +59,12 @@ constexpr hc::Time kStart(1'700'000'000s);
 
 TEST(FaceSearch, finds_everybody_in_group_photographs) {
   for (int i = 0; i < 6; ++i)
-    EXPECT_EQ(search().look(kStart, photograph(i + 1)).size(), kFaces[i]) << i + 1;
+    EXPECT_EQ(FaceSearch::read()->look(kStart, photograph(i + 1)).size(), kFaces[i]) << i + 1;
 }
 
 TEST(FaceSearch, finds_a_face_that_fills_the_image_once) {
   const cv::Mat image = photograph(1);
-  const auto tracks = search().look(kStart, image);
+  const auto tracks = FaceSearch::read()->look(kStart, image);
   ASSERT_EQ(tracks.size(), 3U);
   for (const auto& track : tracks)
     for (const float wider : {1.1F, 1.3F, 1.6F}) {
@@ -91,7 +78,7 @@ TEST(FaceSearch, finds_a_face_that_fills_the_image_once) {
       const float scale = 600 / height;
       const cv::Point2f at = (face.tl() - cv::Point2f(part.tl())) * scale;
       const cv::Rect2f expected(at, cv::Size2f(face.width * scale, face.height * scale));
-      auto faces = search();
+      auto faces = *FaceSearch::read();
       for (auto now = kStart; now < kStart + 1s; now += 50ms) {
         const auto seen = faces.look(now, near_by);
         ASSERT_EQ(seen.size(), 1U) << track.number << ' ' << wider;
@@ -105,7 +92,7 @@ TEST(FaceSearch, finds_a_face_that_fills_the_image_once) {
 TEST(FaceSearch, finds_them_in_black_and_white) {
   cv::Mat grey;
   cv::cvtColor(photograph(5), grey, cv::COLOR_RGB2GRAY);
-  EXPECT_EQ(search().look(kStart, grey).size(), 5U);
+  EXPECT_EQ(FaceSearch::read()->look(kStart, grey).size(), 5U);
 }
 
 TEST(FaceSearch, finds_no_face_that_is_upside_down) {
@@ -113,7 +100,7 @@ TEST(FaceSearch, finds_no_face_that_is_upside_down) {
   for (int i = 0; i < 6; ++i) {
     cv::Mat turned;
     cv::rotate(photograph(i + 1), turned, cv::ROTATE_180);
-    found += search().look(kStart, turned).size();
+    found += FaceSearch::read()->look(kStart, turned).size();
   }
   EXPECT_EQ(found, 0U) << "of 22";
 }
@@ -122,20 +109,24 @@ TEST(FaceSearch, finds_nobody_where_there_is_nobody) {
   cv::Mat noise(600, 800, CV_8UC3);
   cv::RNG random(7);
   random.fill(noise, cv::RNG::UNIFORM, 0, 255);
-  EXPECT_TRUE(search().look(kStart, noise).empty());
+  EXPECT_TRUE(FaceSearch::read()->look(kStart, noise).empty());
   for (const int level : {0, 128, 255})
-    EXPECT_TRUE(search().look(kStart, cv::Mat(600, 800, CV_8UC3, cv::Scalar::all(level))).empty());
+    EXPECT_TRUE(FaceSearch::read()
+                    ->look(kStart, cv::Mat(600, 800, CV_8UC3, cv::Scalar::all(level)))
+                    .empty());
 }
 
 TEST(FaceSearch, takes_images_of_any_size) {
   for (const cv::Size size :
        {cv::Size(1, 1), {1, 600}, {800, 1}, {16, 16}, {4000, 300}, {300, 4000}, {65535, 40}})
-    EXPECT_TRUE(search().look(kStart, cv::Mat(size, CV_8UC3, cv::Scalar::all(90))).empty()) << size;
-  EXPECT_TRUE(search().look(kStart, cv::Mat()).empty());
+    EXPECT_TRUE(
+        FaceSearch::read()->look(kStart, cv::Mat(size, CV_8UC3, cv::Scalar::all(90))).empty())
+        << size;
+  EXPECT_TRUE(FaceSearch::read()->look(kStart, cv::Mat()).empty());
 }
 
 TEST(FaceSearch, looks_around_no_box_that_is_no_place) {
-  auto faces = search();
+  auto faces = *FaceSearch::read();
   const cv::Mat image(60, 80, CV_8UC3, cv::Scalar::all(90));
   for (const cv::Rect2f& box : {cv::Rect2f(NAN, 0, 9, 9), cv::Rect2f(0, 0, INFINITY, 9),
                                 cv::Rect2f(0, 0, 1e6F, 1e6F), cv::Rect2f(1e12F, 0, 9, 9)})
@@ -143,7 +134,7 @@ TEST(FaceSearch, looks_around_no_box_that_is_no_place) {
 }
 
 TEST(FaceSearch, follows_faces_by_the_same_numbers) {
-  FaceSearch faces = search();
+  FaceSearch faces = *FaceSearch::read();
   const cv::Mat image = photograph(3);
   hc::Time now = kStart;
   for (int i = 0; i < 10; ++i, now += 50ms) {
@@ -157,9 +148,9 @@ TEST(FaceSearch, follows_faces_by_the_same_numbers) {
 }
 
 TEST(FaceSearch, finds_in_time_who_comes_in_while_others_are_followed) {
-  FaceSearch faces = search();
+  FaceSearch faces = *FaceSearch::read();
   cv::Mat image = photograph(6), without = image.clone();
-  const auto all = search().look(kStart, image);
+  const auto all = FaceSearch::read()->look(kStart, image);
   const auto rightmost = std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
     return a.face.box.x < b.face.box.x;
   });
@@ -174,7 +165,7 @@ TEST(FaceSearch, finds_in_time_who_comes_in_while_others_are_followed) {
 }
 
 TEST(FaceSearch, takes_a_face_beside_a_followed_one_for_new_only_after_a_search) {
-  FaceSearch faces = search();
+  FaceSearch faces = *FaceSearch::read();
   cv::Mat image = photograph(1);
   const auto first = faces.look(kStart, image);
   // The same face once more, half as large, so near that the small network sees both.
@@ -195,9 +186,9 @@ TEST(FaceSearch, takes_a_face_beside_a_followed_one_for_new_only_after_a_search)
 }
 
 TEST(FaceFinder, finds_faces_that_are_tilted_or_partly_outside) {
-  auto near = *finder("short");
+  auto near = *FaceFinder::read_near();
   const cv::Mat image = photograph(1);
-  const auto middle = middle_of(search().look(kStart, image).at(0).face);
+  const auto middle = middle_of(FaceSearch::read()->look(kStart, image).at(0).face);
   const float side = 250;
   const auto upright = face_around(near, image, middle, side);
   ASSERT_TRUE(upright);
@@ -227,11 +218,11 @@ TEST(Embedding, is_near_for_one_person_and_far_for_others) {
       hc::nets::Network::read(HC_BINARY_DIR "/share/hypercolumn/nets/face_recognition.json");
   ASSERT_TRUE(network);
   auto identifier = *hc::people::Identifier::make(std::move(*network));
-  auto near = *finder("short");
+  auto near = *FaceFinder::read_near();
   for (int i = 1; i <= 6; ++i) {
     const cv::Mat image = photograph(i);
     std::vector<hc::people::Embedding> people;
-    for (const auto& track : search().look(kStart, image)) {
+    for (const auto& track : FaceSearch::read()->look(kStart, image)) {
       people.push_back(identifier.describe(image, track.face).value());
       // The same person a little turned, darker and smaller.
       cv::Mat other;
@@ -241,7 +232,7 @@ TEST(Embedding, is_near_for_one_person_and_far_for_others) {
       const auto found = face_around(near, other, middle, 1.6F * track.face.box.width);
       ASSERT_TRUE(found);
       EXPECT_LT(hc::people::distance(people.back(), identifier.describe(other, *found).value()),
-                0.4F)
+                static_cast<float>(hc::people::kSamePerson))
           << i;
     }
     for (std::size_t a = 0; a < people.size(); ++a)

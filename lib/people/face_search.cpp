@@ -40,6 +40,12 @@ FaceTracks::Sighting* same_face(const Face& face, std::vector<FaceTracks::Sighti
 
 }  // namespace
 
+Result<FaceSearch> FaceSearch::read() {
+  auto wide = HC_TRY(FaceFinder::read_wide());
+  auto near = HC_TRY(FaceFinder::read_near());
+  return FaceSearch(std::move(wide), std::move(near));
+}
+
 std::vector<Face> FaceSearch::look_around(const cv::Mat& image, const cv::Rect2f& box,
                                           float least) {
   return find_around(near_, image, box, least);

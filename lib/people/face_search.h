@@ -2,7 +2,6 @@
 #pragma once
 // Finds and follows the faces in the images of a camera.
 
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -18,11 +17,12 @@ namespace hc::people {
 /// part has the shape of the large network's images: an image of that shape has one.
 /// After the last part the small network searches the image with a margin for large faces, from 0.4
 /// of its shorter side, which the large one sees only with a margin around them. A face counts
-/// where the small network sees it, and a new one only if it is sure, and the surer the less the
-/// large one is.
+/// where the small network sees it, and a new one only if that one is sure; where the large one is
+/// less sure, it must be surer.
 ///
 /// Cost: 4 ms of a core for each known face, 15 ms for a part, 4 ms for large ones, and for each
-/// possible face that is not known 4 ms, or 20 ms for a large one.
+/// possible face of a part (kMostFound) that is not known, or not sure, 4 ms, or 20 ms for a large
+/// one.
 class FaceSearch {
  public:
   /// How often a part is searched, while there are no faces and while some are followed. After a
@@ -38,12 +38,9 @@ class FaceSearch {
   /// bench/faces.
   static constexpr float kSure = 0.65F, kSureElsewhere = 0.8F;
 
-  /// (height, width) of the large network's images: of the shape of most cameras' images. The
-  /// network was made for those of 192 × 192.
-  static constexpr std::array<int, 2> kWideSize{192, 256};
-
-  /// @param wide  with face_detection_full_range, of any size.
-  /// @param near  with face_detection_short_range.
+  /// Errors: those of FaceFinder::read_wide().
+  static Result<FaceSearch> read();
+  /// @param wide  the large network, for images of any shape. @param near  the small one.
   FaceSearch(FaceFinder wide, FaceFinder near) : wide_(std::move(wide)), near_(std::move(near)) {}
 
   /// The faces of the next image, (height, width) of u8, RGB or grey, of any size.
@@ -68,7 +65,7 @@ class FaceSearch {
   std::optional<Face> refined(const cv::Mat& image, const Face& face, float least);
   /// Adds large faces that are not known.
   void add_large(Time time, const cv::Mat& image, float least, std::vector<Sighting>& faces);
-  /// Adds a face of the large network, unless it is known. It may be new if both are sure.
+  /// Adds a face of the large network, unless it is known. It may be new if the small one is sure.
   void add(const cv::Mat& image, const Face& face, float least, std::vector<Sighting>& faces);
 
   FaceFinder wide_, near_;

@@ -17,11 +17,17 @@ class MadeNetwork final : public nets::Network {
       : input_(std::move(input)), outputs_(std::move(outputs)) {}
 
   [[nodiscard]] const nets::Shape& input() const override { return input_; }
-  std::vector<cv::Mat> run(const cv::Mat& /*image*/) override { return outputs_; }
+  std::vector<cv::Mat> run(const cv::Mat& image) override {
+    last_ = image.clone();
+    return outputs_;
+  }
+  /// The last image.
+  [[nodiscard]] const cv::Mat& last() const { return last_; }
 
  private:
   nets::Shape input_;
   std::vector<cv::Mat> outputs_;
+  cv::Mat last_;
 };
 
 }  // namespace hc::people

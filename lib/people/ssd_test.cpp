@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include <people/made_network_test.h>
 
@@ -60,17 +64,36 @@ TEST(Ssd, numbers_that_are_no_places_are_no_detections) {
   EXPECT_EQ(found(), 1U);
 }
 
-TEST(Ssd, parts_of_any_size_and_place_are_scaled) {
-  const std::vector outputs{cv::Mat(cv::Mat::zeros(24, 6, CV_32F)),
-                            cv::Mat(cv::Mat::ones(24, 1, CV_32F))};
-  auto ssd = Ssd::make(std::make_unique<MadeNetwork>(nets::Shape{192, 256, 3}, outputs), {{64, 2}},
-                       1, {}, "things");
+TEST(Ssd, a_part_of_any_size_and_place_is_seen_where_it_is) {
+  cv::Mat numbers = cv::Mat::zeros(24, 6, CV_32F), scores(24, 1, CV_32F, cv::Scalar(-100));
+  scores.at<float>(0) = 100;
+  auto made = std::make_unique<MadeNetwork>(nets::Shape{192, 256, 3}, std::vector{numbers, scores});
+  const MadeNetwork& network = *made;
+  auto ssd = Ssd::make(std::move(made), {{64, 2}}, 1, {}, "things");
   ASSERT_TRUE(ssd);
-  const cv::Mat image(600, 800, CV_8UC3, cv::Scalar::all(90));
-  for (const int height : {1, 199, 275, 281, 334})
-    for (int width = 1; width < 600; ++width)
-      EXPECT_EQ(ssd->find<Thing>(image, {width - 40, 20, width, height}, 0.5F).size(), 24U)
-          << width << ' ' << height;
+  for (const int type : {CV_8UC3, CV_8UC1})
+    for (const int height : {30, 101, 199, 275, 281, 334, 600})
+      for (int width = 30; width < 800; width += 7) {
+        const cv::Rect part(width / 3 - 10, height / 5 - 5, width, height);
+        const int side = std::min(width, height) / 4;
+        const cv::Rect square(part.x + part.width / 2, part.y + part.height / 2, side, side);
+        cv::Mat image(600, 800, type, cv::Scalar::all(0));
+        image(square) = cv::Scalar::all(255);
+        const auto found = ssd->find<Thing>(image, part, 0.5F);
+        ASSERT_EQ(found.size(), 1U);
+        // The first anchor is at (32, 32). It says where the white square is, in the network's
+        // image.
+        cv::Mat red;
+        cv::extractChannel(network.last(), red, 0);
+        const auto sums = cv::moments(red);
+        const cv::Point2d seen(sums.m10 / sums.m00 + 0.5, sums.m01 / sums.m00 + 0.5);
+        const double scale = std::max(width / 256.0, height / 192.0);
+        const cv::Point2d anchor = (found[0].box.tl() + found[0].box.br()) / 2;
+        const cv::Point2d place = anchor + (seen - cv::Point2d(32, 32)) * scale;
+        EXPECT_LT(cv::norm(place - cv::Point2d(square.tl() + square.br()) / 2),
+                  0.75 * std::max(1.0, scale))
+            << part;
+      }
 }
 
 TEST(Ssd, a_strip_takes_no_more_memory_than_it_has) {

@@ -14,16 +14,7 @@
 
 using hc::people::Track;
 
-namespace {
-
-/// @param size  of the network's images, if not that in the file. @see hc::nets::Network::read()
-template <typename Finder>
-Finder read(const std::string& name, std::optional<std::array<int, 2>> size = std::nullopt) {
-  const auto path = hc::nets::weights_path(name);
-  return hc::value_or_end(Finder::make(hc::value_or_end(hc::nets::Network::read(path, size))));
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Faces::Faces(hc::Module& module) : module_(module) {
   module.on_start([this] { start(); });
@@ -55,11 +46,10 @@ Faces::Faces(hc::Module& module) : module_(module) {
 }
 
 void Faces::start() {
-  using hc::people::FaceFinder, hc::people::FaceSearch, hc::people::Identifier;
-  networks_.emplace(
-      Networks{{read<FaceFinder>("face_detection_full_range.tflite", FaceSearch::kWideSize),
-                read<FaceFinder>("face_detection_short_range.tflite")},
-               read<Identifier>("face_recognition.json")});
+  const auto recognition = hc::nets::weights_path("face_recognition.json");
+  networks_.emplace(Networks{hc::value_or_end(hc::people::FaceSearch::read()),
+                             hc::value_or_end(hc::people::Identifier::make(
+                                 hc::value_or_end(hc::nets::Network::read(recognition))))});
   folder_.emplace(*people_, [this](std::string_view line) { module_.log(line); });
   read_folder();
 }

@@ -95,7 +95,8 @@ class Faces {
       "same", hc::people::kSamePerson, "",
       "maximum distance of a face from the person it is taken for", {.min = 0, .max = 2});
   hc::Parameter<double> score_ = module_.parameter(
-      "score", 0.5, "", "minimum score of a face; of a new one at least 0.65 or 0.8",
+      "score", 0.5, "",
+      "minimum score of a face; of a new one at least 0.65, or 0.8 where one is less likely",
       {.min = 0, .max = 1});
   hc::ModuleFrames frames_{module_};
   hc::vision::ModulePair intrinsics_{module_, frames_, "distances have no true scale"};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // In simulated rooms without people there are no faces.
-#include <nets/weights.h>
 #include <people/box.h>
 #include <people/face_search.h>
 #include <room/ball.h>
@@ -10,18 +9,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <optional>
 
 namespace {
 
 using hc::people::FaceFinder, hc::people::FaceSearch;
-
-FaceFinder finder(const std::string& range, std::optional<std::array<int, 2>> size = {}) {
-  auto network = hc::nets::Network::read(
-      hc::nets::weights_path("face_detection_" + range + "_range.tflite"), size);
-  EXPECT_TRUE(network) << network.error().text();
-  return *FaceFinder::make(std::move(*network));
-}
 
 /// A view in which the large network sees a face.
 struct View {
@@ -51,16 +42,17 @@ cv::Mat image_of(const View& view, hc::graphics::Renderer& renderer) {
 TEST(Rooms, without_people_are_without_faces) {
   auto renderer = hc::graphics::Renderer::make();
   ASSERT_TRUE(renderer) << renderer.error().text();
-  auto wide = finder("full", FaceSearch::kWideSize);
-  FaceSearch search(finder("full", FaceSearch::kWideSize), finder("short"));
+  auto wide = FaceFinder::read_wide();
+  auto search = FaceSearch::read();
+  ASSERT_TRUE(wide && search);
   std::size_t seen = 0;
   hc::Time time{};
   for (const View& view : kViews) {
     const cv::Mat image = image_of(view, **renderer);
-    for (const cv::Rect& part : hc::people::parts_of(image.size(), wide.size()))
-      seen += wide.find(image, part, FaceSearch::kPossible).size();
+    for (const cv::Rect& part : hc::people::parts_of(image.size(), wide->size()))
+      seen += wide->find(image, part, FaceSearch::kPossible).size();
     time += std::chrono::hours(1);  // so that all parts are searched
-    EXPECT_TRUE(search.look(time, image).empty())
+    EXPECT_TRUE(search->look(time, image).empty())
         << "room " << view.room << " at " << view.time << " s";
   }
   EXPECT_GT(seen, 0U) << "the large network alone sees faces there";
