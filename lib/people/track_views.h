@@ -26,9 +26,9 @@ class TrackViews {
   static constexpr std::size_t kLeast = 3;
   /// Time between the views of a track that has kViews.
   static constexpr std::chrono::milliseconds kPause{1000};
-  /// Maximum distance of a view from the mean of the others of its track, of which it is often
-  /// farther than kSamePerson when a head turns. One that is farther, of a track that is sure, is
-  /// left out once.
+  /// Maximum distance of a view from the mean of the others of its track; more than kSamePerson,
+  /// since one in ten views of a head that turns is farther than that. A sure track ignores a
+  /// single view that is farther.
   static constexpr float kApart = 0.4F;
   /// A track that is not seen in the images of a longer time may go on with another person; where
   /// images are that rare, one that may have been passed by another face in between.
