@@ -58,8 +58,8 @@ class Rtsp(Pipes):
         self.assertEqual(apart % GREYS, 0)
         pairs = list(zip(left, right))[-100:]
         self.assertEqual({b - a for a, b in pairs}, {apart})
-        # 18 pairs a second of 20.
-        self.assertLessEqual(pairs[-1][0] - pairs[0][0], 100 * RATE / 18)
+        # Of each burst, the newest images alone would make 10 pairs a second of 20.
+        self.assertLess(pairs[-1][0] - pairs[0][0], 100 * RATE / 12)
         self.assert_regular(times[-100:], left[-100:])
 
 
