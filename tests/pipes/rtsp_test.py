@@ -58,8 +58,8 @@ class Rtsp(Pipes):
         self.assertEqual(apart % GREYS, 0)
         pairs = list(zip(left, right))[-100:]
         self.assertEqual({b - a for a, b in pairs}, {apart})
-        # Of each burst, the newest images alone would make 10 pairs a second of 20.
-        self.assertLess(pairs[-1][0] - pairs[0][0], 100 * RATE / 12)
+        # At least 15 of 20 pairs a second: a busy machine may lose some.
+        self.assertLess(pairs[-1][0] - pairs[0][0], 100 * RATE / 15)
         self.assert_regular(times[-100:], left[-100:])
 
 
